@@ -1,0 +1,141 @@
+//! Where cells live: a periodic box (also sheared, for Lees–Edwards boundaries) or an open field of view.
+
+use crate::{Error, Scalar, Vector};
+
+/// The boundary condition. All of geometry, mechanics and inference see boundaries through this type only.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Domain {
+    /// Copies of the cells fill the plane.
+    Periodic(PeriodicBox),
+    /// The plane, of which a part was seen: cells at the rim of the data have no closed polygon.
+    Open,
+}
+
+/// A periodic box with lattice vectors `(L_x, 0)` and `(offset, L_y)`.
+///
+/// A non-zero offset is the Lees–Edwards boundary of simple shear.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct PeriodicBox {
+    lengths: [f64; 2],
+    offset: f64,
+}
+
+impl PeriodicBox {
+    /// A rectangular box with sides `[L_x, L_y]`.
+    ///
+    /// # Errors
+    /// [`Error::BoxSide`] if a side is not positive and finite.
+    pub fn new(lengths: [f64; 2]) -> Result<Self, Error> {
+        Self::sheared(lengths, 0.0)
+    }
+
+    /// A box whose upper neighbour image is displaced by `offset` along x.
+    ///
+    /// # Errors
+    /// [`Error::BoxSide`] or [`Error::BoxOffset`] if a number is not usable.
+    pub fn sheared(lengths: [f64; 2], offset: f64) -> Result<Self, Error> {
+        for (axis, length) in ['x', 'y'].into_iter().zip(lengths) {
+            if !(length.is_finite() && length > 0.0) {
+                return Err(Error::BoxSide { axis, length });
+            }
+        }
+        if !offset.is_finite() {
+            return Err(Error::BoxOffset { offset });
+        }
+        Ok(Self { lengths, offset })
+    }
+
+    /// Side lengths `[L_x, L_y]`.
+    pub fn lengths(&self) -> [f64; 2] {
+        self.lengths
+    }
+
+    /// Displacement along x of the image one box above.
+    pub fn offset(&self) -> f64 {
+        self.offset
+    }
+
+    /// Area of the box.
+    pub fn area(&self) -> f64 {
+        self.lengths[0] * self.lengths[1]
+    }
+
+    /// Translation by `n` lattice vectors.
+    #[inline]
+    pub fn translation(&self, n: [i32; 2]) -> Vector<f64> {
+        let [nx, ny] = [f64::from(n[0]), f64::from(n[1])];
+        Vector::new(nx * self.lengths[0] + ny * self.offset, ny * self.lengths[1])
+    }
+
+    /// Lattice translation `n` such that `r − translation(n)` lies in the rectangle `[0, L_x) × [0, L_y)`.
+    pub fn image(&self, r: Vector<f64>) -> [i32; 2] {
+        let ny = (r.y / self.lengths[1]).floor();
+        let nx = ((r.x - ny * self.offset) / self.lengths[0]).floor();
+        [nx as i32, ny as i32]
+    }
+
+    /// The image of `r` in the rectangle `[0, L_x) × [0, L_y)`.
+    pub fn wrap(&self, r: Vector<f64>) -> Vector<f64> {
+        r - self.translation(self.image(r))
+    }
+
+    /// The shortest image of a displacement, for displacements well below half the box.
+    pub fn shortest(&self, d: Vector<f64>) -> Vector<f64> {
+        let ny = (d.y / self.lengths[1]).round();
+        let nx = ((d.x - ny * self.offset) / self.lengths[0]).round();
+        d - self.translation([nx as i32, ny as i32])
+    }
+}
+
+impl Domain {
+    /// Displacement from cell `from` to the image of cell `to` that is `image` lattice vectors away.
+    #[inline]
+    pub fn displacement<S: Scalar>(
+        &self,
+        from: Vector<S>,
+        to: Vector<S>,
+        image: [i16; 2],
+    ) -> Vector<S> {
+        let d = to - from;
+        match self {
+            Self::Periodic(cell) if image != [0, 0] => {
+                let t = cell.translation([i32::from(image[0]), i32::from(image[1])]);
+                Vector::new(d.x + t.x, d.y + t.y)
+            }
+            _ => d,
+        }
+    }
+
+    /// The shortest displacement equivalent to `d`.
+    pub fn shortest(&self, d: Vector<f64>) -> Vector<f64> {
+        match self {
+            Self::Periodic(cell) => cell.shortest(d),
+            Self::Open => d,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn wrapping_lands_in_the_box_and_differs_by_a_lattice_vector() {
+        let cell = PeriodicBox::sheared([3.0, 2.0], 0.7).unwrap();
+        for r in [
+            Vector::new(-0.1, 5.3),
+            Vector::new(7.0, -4.1),
+            Vector::new(0.0, 0.0),
+        ] {
+            let w = cell.wrap(r);
+            assert!((0.0..3.0).contains(&w.x) && (0.0..2.0).contains(&w.y), "{w}");
+            assert!((r - w - cell.translation(cell.image(r))).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn unusable_boxes_are_refused() {
+        assert!(matches!(PeriodicBox::new([0.0, 1.0]), Err(Error::BoxSide { axis: 'x', .. })));
+        assert!(matches!(PeriodicBox::new([1.0, f64::NAN]), Err(Error::BoxSide { axis: 'y', .. })));
+    }
+}

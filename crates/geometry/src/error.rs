@@ -1,0 +1,93 @@
+use thiserror::Error;
+
+/// Why a domain or a tessellation cannot be made.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A box side that is not a positive finite number.
+    #[error("box side {axis} is {length}, but it must be positive and finite")]
+    BoxSide {
+        /// Name of the side: `x` or `y`.
+        axis: char,
+        /// The length given.
+        length: f64,
+    },
+    /// A Lees–Edwards offset that is not finite.
+    #[error("the shear offset of the box is {offset}, but it must be finite")]
+    BoxOffset {
+        /// The offset given.
+        offset: f64,
+    },
+    /// A coordinate that is NaN or infinite, or so far away that positions lose their meaning.
+    #[error("cell {cell} is at ({x}, {y}), which is not a usable position")]
+    Position {
+        /// Index of the cell.
+        cell: usize,
+        /// Its x coordinate.
+        x: f64,
+        /// Its y coordinate.
+        y: f64,
+    },
+    /// Fewer cells than a tessellation needs.
+    #[error("{found} cells, but a tessellation needs at least {required}")]
+    TooFewCells {
+        /// Number of cells given.
+        found: usize,
+        /// Number of cells needed.
+        required: usize,
+    },
+    /// Two cells at one point (after wrapping into a periodic box).
+    #[error("cells {first} and {second} are at the same point ({x}, {y})")]
+    DuplicateCells {
+        /// Index of the first of the two cells.
+        first: usize,
+        /// Index of the second.
+        second: usize,
+        /// Their x coordinate.
+        x: f64,
+        /// Their y coordinate.
+        y: f64,
+    },
+    /// All cells of an open field of view on one line.
+    #[error("all {cells} cells lie on one line")]
+    Collinear {
+        /// Number of cells.
+        cells: usize,
+    },
+    /// Positions whose Delaunay triangulation could not be made consistent across the periodic boundary.
+    #[error("the periodic triangulation of {cells} cells is inconsistent near cell {cell}")]
+    Inconsistent {
+        /// Number of cells.
+        cells: usize,
+        /// A cell where two images disagree.
+        cell: usize,
+    },
+    /// More cells than 32-bit indices can address.
+    #[error("{cells} cells are more than the {limit} that can be addressed")]
+    TooManyCells {
+        /// Number of cells given.
+        cells: usize,
+        /// The largest number possible.
+        limit: usize,
+    },
+}
+
+impl Error {
+    /// Advice on what to change, if there is any.
+    pub fn hint(&self) -> Option<&'static str> {
+        Some(match self {
+            Self::BoxSide { .. } | Self::BoxOffset { .. } => {
+                "give the side lengths of the periodic box in the unit of the positions"
+            }
+            Self::Position { .. } => "mark absent cells by NaN in both coordinates, and give positions near the origin",
+            Self::TooFewCells { .. } => "give more cells, or a periodic box",
+            Self::DuplicateCells { .. } => {
+                "remove one of the two; in a periodic box two positions may coincide after wrapping, which a box that is \
+                 too small causes"
+            }
+            Self::Collinear { .. } => "cells on a line have no Voronoi polygons; check that x and y are different columns",
+            Self::Inconsistent { .. } => "several cells lie on one circle to rounding precision; move them by a tiny random amount",
+            Self::TooManyCells { .. } => "split the data",
+        })
+    }
+}

@@ -1,0 +1,43 @@
+//! The plane, its boundaries and the Voronoi tessellation.
+//!
+//! Topology is decided on `f64` by spade; every formula of the geometry is generic over [`Scalar`], so the same code
+//! gives values on `f64` and exact derivatives on dual numbers, at frozen topology.
+//!
+//! There is no physics here.
+//!
+//! ```
+//! use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, Tessellation, Vector};
+//!
+//! // Two offset rows of a triangular lattice: every Voronoi cell is a regular hexagon.
+//! let (dx, dy) = (1.0, 3f64.sqrt() / 2.0);
+//! let mut positions = Vec::new();
+//! for row in 0..4 {
+//!     for column in 0..4 {
+//!         positions.push(Vector::new(column as f64 * dx + 0.5 * (row % 2) as f64, row as f64 * dy));
+//!     }
+//! }
+//! let domain = Domain::Periodic(PeriodicBox::new([4.0 * dx, 4.0 * dy])?);
+//! let tessellation = Tessellation::new(&positions, domain)?;
+//! let mut polygon = CellPolygon::<f64>::default();
+//! polygon.fill(&tessellation, &positions, 5);
+//! assert_eq!(polygon.len(), 6);
+//! assert!((polygon.area() - dx * dy).abs() < 1e-14);
+//! # Ok::<(), voronudge_geometry::Error>(())
+//! ```
+
+mod builder;
+mod domain;
+mod error;
+mod field_of_view;
+mod plane;
+mod polygon;
+mod scalar;
+mod tessellation;
+
+pub use domain::{Domain, PeriodicBox};
+pub use error::Error;
+pub use field_of_view::{FieldOfView, Visibility};
+pub use plane::{Vector, circumcentre, cross, dot, quarter_turn};
+pub use polygon::{CellPolygon, areas, perimeters};
+pub use scalar::{Scalar, lift};
+pub use tessellation::{Tessellation, Triangle};

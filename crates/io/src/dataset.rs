@@ -1,0 +1,161 @@
+//! The data set in memory.
+
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
+
+use ndarray::{Array2, Array3, Axis};
+
+use crate::error::{Error, SettingFault};
+use crate::input::InputFile;
+use crate::noise::Noise;
+use crate::validate;
+
+/// Tracked cells: positions, perhaps velocities and labels, and what their numbers mean.
+///
+/// Made by [`Source::load`](crate::Source::load), by an import, or field by field from a
+/// simulation; [`DataSet::check`] holds a hand-made one to the same rules.
+#[derive(Debug, Clone, PartialEq)]
+pub struct DataSet {
+    /// (frames, cells, 2) in `length_unit`, y up, NaN in both coordinates where a cell is absent.
+    pub positions: Array3<f64>,
+    /// Same shape, `length_unit` per `time_unit`, y up, NaN where not measured.
+    pub velocities: Option<Array3<f64>>,
+    /// (frames, cells): a measured label of each cell.
+    pub labels: Option<Array2<i64>>,
+    /// What is around the cells.
+    pub boundary: Boundary,
+    /// Time between frames in `time_unit`.
+    pub frame_interval: f64,
+    /// Name of the unit of length.
+    pub length_unit: String,
+    /// Name of the unit of time.
+    pub time_unit: String,
+    /// The y direction in the files. In memory y is up in either case.
+    pub y_axis: YAxis,
+    /// Whether positions run on across the periodic boundary instead of re-entering the box.
+    pub unwrapped: bool,
+    /// Standard deviation of a position coordinate, where known.
+    pub position_noise: Option<Noise>,
+    /// Standard deviation of a velocity component, where known.
+    pub velocity_noise: Option<Noise>,
+    /// The files that were read, in reading order.
+    pub inputs: Vec<InputFile>,
+}
+
+/// What is around the cells.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Boundary {
+    /// A rectangular box that repeats.
+    Periodic {
+        /// Box lengths along x and y in the unit of length.
+        lengths: [f64; 2],
+    },
+    /// A field of view whose surroundings are not seen.
+    Open,
+}
+
+/// The direction of the stored y coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum YAxis {
+    /// Larger y is further up, as in mathematics.
+    #[default]
+    Up,
+    /// Larger y is further down, as in images.
+    Down,
+}
+
+impl DataSet {
+    /// Number of frames.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.positions.dim().0
+    }
+
+    /// Length of the cell axis, whether or not a cell is present in every frame.
+    #[must_use]
+    pub fn cells(&self) -> usize {
+        self.positions.dim().1
+    }
+
+    /// Checks every rule that a loaded data set obeys.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for no frames, no cells or arrays that disagree; [`Error::Value`] for
+    /// infinities, half-absent cells, two cells in one place, a box that cannot be right;
+    /// [`Error::Setting`] for lengths, intervals and noise out of range. Arrays are named
+    /// `positions.npy`, `velocities.npy` and `labels.npy`.
+    pub fn check(&self) -> Result<(), Error> {
+        self.check_settings().map_err(Error::Setting)?;
+        self.check_arrays(&validate::ArrayNames {
+            positions: Path::new("positions.npy"),
+            velocities: Path::new("velocities.npy"),
+            labels: Path::new("labels.npy"),
+        })
+    }
+
+    pub(crate) fn check_settings(&self) -> Result<(), SettingFault> {
+        self.boundary.check()?;
+        validate::positive("frame_interval", self.frame_interval)?;
+        for (key, noise) in [
+            ("position_noise", self.position_noise),
+            ("velocity_noise", self.velocity_noise),
+        ] {
+            if let Some(noise) = noise {
+                noise.check(key)?;
+            }
+        }
+        Ok(())
+    }
+}
+
+impl Boundary {
+    pub(crate) fn check(&self) -> Result<(), SettingFault> {
+        match self {
+            Self::Open => Ok(()),
+            Self::Periodic { lengths } => lengths
+                .iter()
+                .try_for_each(|&length| validate::positive("box length", length)),
+        }
+    }
+}
+
+impl YAxis {
+    /// Turns stored vectors into y-up vectors or back; the two directions are the same.
+    pub(crate) fn turn(self, vectors: &mut Array3<f64>) {
+        if self == Self::Down {
+            // 0 − y rather than −y, so that no negative zero appears.
+            let mut y = vectors.index_axis_mut(Axis(2), 1);
+            y.mapv_inplace(|value| 0.0 - value);
+        }
+    }
+
+    pub(crate) fn parse(text: &str) -> Result<Self, SettingFault> {
+        match text {
+            "up" => Ok(Self::Up),
+            "down" => Ok(Self::Down),
+            _ => Err(SettingFault::Unknown {
+                key: "y_axis",
+                found: text.to_owned(),
+                expected: "\"up\" or \"down\"",
+            }),
+        }
+    }
+}
+
+impl FromStr for YAxis {
+    type Err = Error;
+
+    fn from_str(text: &str) -> Result<Self, Error> {
+        Self::parse(text).map_err(Error::Setting)
+    }
+}
+
+impl fmt::Display for YAxis {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::Up => "up",
+            Self::Down => "down",
+        })
+    }
+}

@@ -1,0 +1,121 @@
+//! Faults of the file system, on the way in and on the way out.
+
+use std::io;
+
+/// Why an input file cannot be read.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum FileFault {
+    /// Nothing has this name.
+    #[error("no such file or folder")]
+    Missing,
+    /// A folder was found where a file is needed.
+    #[error("is a folder, a file is needed")]
+    IsFolder,
+    /// A file was found where a data set folder is needed.
+    #[error("is a file, a data set folder is needed")]
+    NotAFolder,
+    /// A pipe or a device, whose length cannot be known beforehand.
+    #[error("is not a regular file")]
+    NotRegular,
+    /// The operating system refused.
+    #[error("cannot be read: {0}")]
+    Read(io::Error),
+}
+
+impl FileFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        match self {
+            Self::Missing => Some(
+                "check the spelling and the current directory; a data set is a folder with \
+                 positions.npy and dataset.toml, or give its files one by one"
+                    .into(),
+            ),
+            Self::IsFolder => Some("name the file inside the folder".into()),
+            Self::NotAFolder => {
+                Some("to give a single array, use --positions FILE with --box or --open".into())
+            }
+            Self::NotRegular => Some("write the data to a file first".into()),
+            Self::Read(source) if source.kind() == io::ErrorKind::PermissionDenied => {
+                Some("you have no permission to read it".into())
+            }
+            Self::Read(_) => None,
+        }
+    }
+}
+
+/// Why a result cannot be written.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum OutputFault {
+    /// The output directory's name is empty.
+    #[error("the output directory has an empty name")]
+    Unnamed,
+    /// The output directory's name belongs to a file.
+    #[error("is a file, an output directory is needed")]
+    NotADirectory,
+    /// The output directory cannot be made.
+    #[error("output directory cannot be created: {0}")]
+    Create(io::Error),
+    /// The output directory exists but takes no files.
+    #[error("output directory is not writable: {0}")]
+    NotWritable(io::Error),
+    /// The name of a result is not a plain file name.
+    #[error("\"{name}\" is not a plain file name")]
+    InvalidName {
+        /// The name asked for.
+        name: String,
+    },
+    /// A folder is where a result should go.
+    #[error("is a folder, a result of this name cannot replace it")]
+    Occupied,
+    /// Writing failed.
+    #[error("cannot be written: {0}")]
+    Write(io::Error),
+    /// A finished file cannot be moved to its place.
+    #[error("cannot be moved into place after {done} of {total} results: {source}")]
+    Rename {
+        /// What the operating system said.
+        source: io::Error,
+        /// Results already in place.
+        done: usize,
+        /// Results in all.
+        total: usize,
+    },
+}
+
+impl OutputFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        match self {
+            Self::Unnamed => Some("use --out DIR; the current directory is \".\"".into()),
+            Self::NotADirectory => Some("choose another --out, or move that file away".into()),
+            Self::Create(source) | Self::NotWritable(source) => Some(refusal(source)),
+            Self::InvalidName { .. } => Some("results go directly into the directory".into()),
+            Self::Occupied => Some("move the folder away or choose another --out".into()),
+            Self::Write(source) => Some(refusal(source)),
+            Self::Rename { done: 0, .. } => {
+                Some("the earlier results are untouched; choose another --out".into())
+            }
+            Self::Rename { .. } => Some(
+                "the directory now mixes new and earlier results; run again with another --out"
+                    .into(),
+            ),
+        }
+    }
+}
+
+fn refusal(source: &io::Error) -> String {
+    match source.kind() {
+        io::ErrorKind::PermissionDenied => {
+            "choose an --out directory you may write to, or change its permissions"
+        }
+        io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
+            "free some space or choose an --out directory on another disk"
+        }
+        io::ErrorKind::ReadOnlyFilesystem => {
+            "this disk is read-only; choose an --out directory elsewhere"
+        }
+        _ => "choose another --out directory",
+    }
+    .into()
+}

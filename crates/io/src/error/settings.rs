@@ -1,0 +1,177 @@
+//! Faults of settings, of `dataset.toml`, and of frame selections.
+
+use std::path::PathBuf;
+
+/// Why a setting is not acceptable, wherever it was given.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SettingFault {
+    /// A number that must be finite and above zero.
+    #[error("{key} is {value}, it must be finite and above zero")]
+    NotPositive {
+        /// Name of the setting.
+        key: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A noise amplitude that must be finite and not negative.
+    #[error("{key} is {value}, it must be finite and not negative")]
+    Negative {
+        /// Name of the setting.
+        key: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A text that is none of the choices, or not of the form needed.
+    #[error("{key} is \"{found}\", expected {expected}")]
+    Unknown {
+        /// Name of the setting.
+        key: &'static str,
+        /// The text given.
+        found: String,
+        /// The choices, in words.
+        expected: &'static str,
+    },
+    /// Nothing says what the boundary is.
+    #[error("the boundary is not given{}", searched.as_ref()
+        .map(|path| format!(": neither by {} nor otherwise", path.display())).unwrap_or_default())]
+    MissingBoundary {
+        /// The settings file that was looked for, if a folder was given.
+        searched: Option<PathBuf>,
+    },
+    /// Periodic without a box.
+    #[error("boundary is \"periodic\" but no box is given")]
+    MissingBox,
+    /// A box without a periodic boundary.
+    #[error("a box is given but the boundary is {boundary}")]
+    BoxNotPeriodic {
+        /// The boundary given, in words.
+        boundary: &'static str,
+    },
+    /// Neither a folder nor a positions file.
+    #[error("no positions are given")]
+    MissingPositions,
+}
+
+impl SettingFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        let text = match self {
+            Self::NotPositive { .. } => return None,
+            Self::Negative { .. } => "leave it out where the noise is not known",
+            Self::Unknown { .. } => return None,
+            Self::MissingBoundary { .. } => {
+                "add boundary = \"open\" or boundary = \"periodic\" with box = [Lx, Ly] to \
+                 dataset.toml, or use --open or --box LX LY"
+            }
+            Self::MissingBox => "add box = [Lx, Ly] to dataset.toml, or use --box LX LY",
+            Self::BoxNotPeriodic { .. } => {
+                "set boundary = \"periodic\", or remove box if the field of view is open"
+            }
+            Self::MissingPositions => "give a data set folder or --positions FILE",
+        };
+        Some(text.into())
+    }
+}
+
+/// Why a `dataset.toml` cannot be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TomlFault {
+    /// Not TOML.
+    #[error("malformed TOML: {0}")]
+    Syntax(String),
+    /// Not UTF-8.
+    #[error("is not UTF-8 text")]
+    NotText,
+    /// A key nobody reads.
+    #[error("unknown key \"{key}\"")]
+    UnknownKey {
+        /// The key found.
+        key: String,
+        /// The keys known.
+        known: &'static [&'static str],
+    },
+    /// A value of the wrong kind.
+    #[error("{key} is {found}, expected {expected}")]
+    WrongType {
+        /// The key.
+        key: &'static str,
+        /// The kind found.
+        found: &'static str,
+        /// The kind expected, with an example.
+        expected: &'static str,
+    },
+    /// A value of the right kind that is not acceptable.
+    #[error("{0}")]
+    Setting(SettingFault),
+}
+
+impl TomlFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        match self {
+            Self::UnknownKey { known, .. } => Some(format!("the keys are {}", known.join(", "))),
+            Self::Syntax(_) => Some("write key = value; texts need quotation marks".into()),
+            Self::NotText => Some("save the file as UTF-8".into()),
+            Self::WrongType { .. } => None,
+            Self::Setting(fault) => fault.hint(),
+        }
+    }
+}
+
+/// Why a frame selection cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum SelectionFault {
+    /// Nothing was typed, or a part between commas is empty.
+    #[error("empty")]
+    Empty,
+    /// A part that is neither a number nor a range.
+    #[error("\"{part}\" is neither a frame nor a range of frames")]
+    NotANumber {
+        /// The part.
+        part: String,
+    },
+    /// A range that ends before or where it starts.
+    #[error("the range {start}..{end} holds no frame")]
+    Reversed {
+        /// First frame.
+        start: usize,
+        /// End, excluded.
+        end: usize,
+    },
+    /// A frame behind the last one.
+    #[error("frame {frame} does not exist, the data set has {total} frames")]
+    OutOfRange {
+        /// The first frame asked for that does not exist.
+        frame: usize,
+        /// Frames in the data set.
+        total: usize,
+    },
+    /// A frame asked for twice.
+    #[error("frame {frame} is named twice")]
+    Twice {
+        /// The frame.
+        frame: usize,
+    },
+}
+
+impl SelectionFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        Some(match self {
+            Self::Empty | Self::NotANumber { .. } => {
+                "write 6, 4..16 or 4,7,9; frames count from zero and the end is excluded".into()
+            }
+            Self::Reversed { start, end } if start == end => {
+                format!("the end is excluded; for frame {start} alone write {start}")
+            }
+            Self::Reversed { start, end } => {
+                format!("write the smaller number first: {end}..{start}; the end is excluded")
+            }
+            Self::OutOfRange { total, .. } => match total.checked_sub(1) {
+                Some(last) => format!("frames are 0 to {last}; a range may end at {total}"),
+                None => "the data set has no frames".into(),
+            },
+            Self::Twice { .. } => "name each frame once".into(),
+        })
+    }
+}

@@ -1,0 +1,110 @@
+//! Faults of tables of tracks.
+
+/// Why a table of tracks cannot be used.
+#[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum TableFault {
+    /// No bytes, or nothing but blank lines.
+    #[error("is empty, a table with a header line is needed")]
+    Empty,
+    /// A gzip stream that cannot be decompressed.
+    #[error("cannot be decompressed: {0}")]
+    Gzip(String),
+    /// A gzip stream that grows beyond reason.
+    #[error("decompresses to more than {limit} bytes")]
+    TooLong {
+        /// The most that is read.
+        limit: u64,
+    },
+    /// A header and nothing below it.
+    #[error("has a header but no data rows")]
+    NoRows,
+    /// Rows, but none belongs to a track.
+    #[error("none of its {spots} spots belongs to a track (column \"{column}\" has no numbers)")]
+    NoTracks {
+        /// Spots read.
+        spots: usize,
+        /// Column of the track.
+        column: String,
+    },
+    /// A column is not there.
+    #[error("no column for the {role}: looked for {}, found {}", looked.join(", "), found.join(", "))]
+    MissingColumn {
+        /// What the column is needed for.
+        role: &'static str,
+        /// The names looked for.
+        looked: Vec<String>,
+        /// The columns of the file.
+        found: Vec<String>,
+    },
+    /// A row of another length than the header.
+    #[error("has {found} fields, the header has {expected}")]
+    FieldCount {
+        /// Fields in this row.
+        found: u64,
+        /// Fields in the header.
+        expected: u64,
+    },
+    /// A field that is not the number it should be.
+    #[error("column \"{column}\" holds \"{text}\", {expected} is needed")]
+    NotANumber {
+        /// The column.
+        column: String,
+        /// The field.
+        text: String,
+        /// What is needed, in words.
+        expected: &'static str,
+    },
+    /// Frame numbers too far apart.
+    #[error("frames run from {first} to {last}, more than {limit} frames are not taken")]
+    TooManyFrames {
+        /// Smallest frame number.
+        first: i64,
+        /// Largest frame number.
+        last: i64,
+        /// The most frames taken.
+        limit: usize,
+    },
+    /// Too many tracks times frames.
+    #[error("{frames} frames of {tracks} tracks need {bytes} bytes, the limit is {limit}")]
+    TooLarge {
+        /// Frames.
+        frames: usize,
+        /// Tracks.
+        tracks: usize,
+        /// Bytes of the positions.
+        bytes: u64,
+        /// The most bytes taken.
+        limit: u64,
+    },
+    /// The table cannot be split into fields.
+    #[error("cannot be read as a table: {0}")]
+    Unreadable(String),
+}
+
+impl TableFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        let text = match self {
+            Self::Empty => "export the table again with its header line",
+            Self::Gzip(_) => "the file was probably cut while it was copied; copy it again",
+            Self::TooLong { .. } => "export fewer columns, or split the table",
+            Self::NoRows => "export the table again; was the track filter empty?",
+            Self::NoTracks { .. } => "link the spots to tracks before the export",
+            Self::MissingColumn { .. } => {
+                "name the columns, e.g. --track-column id --frame-column t; \
+                 for another table format use import tracks"
+            }
+            Self::FieldCount { .. } => "the row was probably cut; export the table again",
+            Self::NotANumber { text, .. } if text.contains(',') => {
+                "write decimal points, not decimal commas"
+            }
+            Self::NotANumber { .. } => "correct or remove this row",
+            Self::TooManyFrames { .. } => {
+                "is the frame column a time? name the column that counts images from zero"
+            }
+            Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
+            Self::Unreadable(_) => return None,
+        };
+        Some(text.into())
+    }
+}

@@ -1,0 +1,59 @@
+//! Reading whole input files and remembering which ones were read.
+
+use std::fs;
+use std::io::ErrorKind;
+use std::path::{Path, PathBuf};
+
+use sha2::{Digest, Sha256};
+
+use crate::error::{Error, FileFault};
+
+/// A file that went into a result, for the record.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct InputFile {
+    /// The path as given.
+    pub path: PathBuf,
+    /// SHA-256 of the bytes that were read, 64 lower-case hexadecimal digits.
+    pub sha256: String,
+}
+
+/// Reads a regular file and records it.
+///
+/// The sum is taken of the very bytes handed back, so the record stays true even if the file
+/// changes afterwards.
+pub(crate) fn read_input(path: &Path) -> Result<(Vec<u8>, InputFile), Error> {
+    let bytes = read_bytes(path)?;
+    let sha256 = Sha256::digest(&bytes)
+        .iter()
+        .map(|byte| format!("{byte:02x}"))
+        .collect();
+    let record = InputFile {
+        path: path.to_path_buf(),
+        sha256,
+    };
+    Ok((bytes, record))
+}
+
+/// Reads a regular file: a folder, a pipe or a device is refused, so reading always ends.
+pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    let failure = |fault| Error::File {
+        path: path.to_path_buf(),
+        fault,
+    };
+    let metadata = fs::metadata(path).map_err(|source| failure(file_fault(source)))?;
+    if metadata.is_dir() {
+        return Err(failure(FileFault::IsFolder));
+    }
+    if !metadata.is_file() {
+        return Err(failure(FileFault::NotRegular));
+    }
+    fs::read(path).map_err(|source| failure(file_fault(source)))
+}
+
+/// Sorts out the one case of an operating system's refusal that has a name of its own.
+pub(crate) fn file_fault(source: std::io::Error) -> FileFault {
+    match source.kind() {
+        ErrorKind::NotFound => FileFault::Missing,
+        _ => FileFault::Read(source),
+    }
+}

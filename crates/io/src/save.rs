@@ -1,0 +1,48 @@
+//! Saving a data set so that loading it gives it back.
+
+use ndarray::{Array3, ArrayView3};
+
+use crate::dataset::{DataSet, YAxis};
+use crate::error::Error;
+use crate::output::OutputDirectory;
+use crate::settings::render;
+
+impl DataSet {
+    /// Stages `positions.npy`, `velocities.npy` and `labels.npy` where there are any, and
+    /// `dataset.toml`.
+    ///
+    /// y is written in the direction that `y_axis` states, so loading the directory gives back
+    /// this data set, apart from `inputs`.
+    ///
+    /// # Errors
+    /// Those of [`DataSet::check`], so that nothing is written that could not be read again, and
+    /// [`Error::Output`] where a file cannot be written.
+    pub fn save(&self, out: &mut OutputDirectory) -> Result<(), Error> {
+        self.check()?;
+        write_vectors(out, "positions.npy", &self.positions, self.y_axis)?;
+        if let Some(velocities) = &self.velocities {
+            write_vectors(out, "velocities.npy", velocities, self.y_axis)?;
+        }
+        if let Some(labels) = &self.labels {
+            out.write_integers("labels.npy", labels.view())?;
+        }
+        out.write_text("dataset.toml", &render(self))
+    }
+}
+
+fn write_vectors(
+    out: &mut OutputDirectory,
+    name: &str,
+    vectors: &Array3<f64>,
+    y_axis: YAxis,
+) -> Result<(), Error> {
+    let mut write = |view: ArrayView3<'_, f64>| out.write_array(name, view);
+    match y_axis {
+        YAxis::Up => write(vectors.view()),
+        YAxis::Down => {
+            let mut turned = vectors.clone();
+            y_axis.turn(&mut turned);
+            write(turned.view())
+        }
+    }
+}

@@ -1,0 +1,272 @@
+//! `dataset.toml`: reading it with the line of every complaint, and writing it.
+
+use std::path::{Path, PathBuf};
+
+use toml::Spanned;
+use toml::de::{DeTable, DeValue};
+
+use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::error::{Error, SettingFault, TomlFault};
+use crate::noise::Noise;
+use crate::validate;
+
+const KEYS: &[&str] = &[
+    "boundary",
+    "box",
+    "frame_interval",
+    "length_unit",
+    "time_unit",
+    "y_axis",
+    "unwrapped",
+    "position_noise",
+    "velocity_noise",
+];
+
+/// What a `dataset.toml` says; everything is optional.
+#[derive(Debug, Default)]
+pub(crate) struct Settings {
+    path: PathBuf,
+    boundary: Option<(BoundaryName, u64)>,
+    lengths: Option<([f64; 2], u64)>,
+    pub(crate) frame_interval: Option<f64>,
+    pub(crate) length_unit: Option<String>,
+    pub(crate) time_unit: Option<String>,
+    pub(crate) y_axis: Option<YAxis>,
+    pub(crate) unwrapped: Option<bool>,
+    pub(crate) position_noise: Option<Noise>,
+    pub(crate) velocity_noise: Option<Noise>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum BoundaryName {
+    Periodic,
+    Open,
+}
+
+impl Settings {
+    pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
+        let failure = |line, fault| Error::Toml {
+            path: path.to_path_buf(),
+            line,
+            fault,
+        };
+        let text = std::str::from_utf8(bytes).map_err(|_| failure(None, TomlFault::NotText))?;
+        let line_of = |offset| line_number(text, offset);
+        let table = DeTable::parse(text).map_err(|error| {
+            let line = error.span().map(|span| line_of(span.start));
+            failure(line, TomlFault::Syntax(error.message().to_owned()))
+        })?;
+
+        let mut settings = Self {
+            path: path.to_path_buf(),
+            ..Self::default()
+        };
+        let mut entries: Vec<_> = table.get_ref().iter().collect();
+        // The table is sorted by key; complaints should come in reading order.
+        entries.sort_by_key(|(key, _)| key.span().start);
+        for (key, value) in entries {
+            let line = line_of(key.span().start);
+            settings
+                .take(key.get_ref(), value, line)
+                .map_err(|fault| failure(Some(line), fault))?;
+        }
+        Ok(settings)
+    }
+
+    fn take(
+        &mut self,
+        key: &str,
+        value: &Spanned<DeValue<'_>>,
+        line: u64,
+    ) -> Result<(), TomlFault> {
+        let value = value.get_ref();
+        match key {
+            "boundary" => self.boundary = Some((boundary(value)?, line)),
+            "box" => self.lengths = Some((lengths(value)?, line)),
+            "frame_interval" => self.frame_interval = Some(interval(value)?),
+            "length_unit" => self.length_unit = Some(text("length_unit", value)?.to_owned()),
+            "time_unit" => self.time_unit = Some(text("time_unit", value)?.to_owned()),
+            "y_axis" => {
+                let y_axis = YAxis::parse(text("y_axis", value)?);
+                self.y_axis = Some(y_axis.map_err(TomlFault::Setting)?);
+            }
+            "unwrapped" => self.unwrapped = Some(truth("unwrapped", value)?),
+            "position_noise" => self.position_noise = Some(noise("position_noise", value)?),
+            "velocity_noise" => self.velocity_noise = Some(noise("velocity_noise", value)?),
+            _ => {
+                return Err(TomlFault::UnknownKey {
+                    key: key.to_owned(),
+                    known: KEYS,
+                });
+            }
+        }
+        Ok(())
+    }
+
+    /// Puts `boundary` and `box` together.
+    pub(crate) fn boundary(&self) -> Result<Option<Boundary>, Error> {
+        let failure = |line, fault| Error::Toml {
+            path: self.path.clone(),
+            line: Some(line),
+            fault: TomlFault::Setting(fault),
+        };
+        match (self.boundary, self.lengths) {
+            (None, None) => Ok(None),
+            (Some((BoundaryName::Open, _)), None) => Ok(Some(Boundary::Open)),
+            (Some((BoundaryName::Periodic, _)), Some((lengths, _))) => {
+                Ok(Some(Boundary::Periodic { lengths }))
+            }
+            (Some((BoundaryName::Periodic, line)), None) => {
+                Err(failure(line, SettingFault::MissingBox))
+            }
+            (name, Some((_, line))) => {
+                let boundary = match name {
+                    Some(_) => "open",
+                    None => "not given",
+                };
+                Err(failure(line, SettingFault::BoxNotPeriodic { boundary }))
+            }
+        }
+    }
+}
+
+/// The text of the `dataset.toml` that describes a data set.
+pub(crate) fn render(data: &DataSet) -> String {
+    let quoted = |text: &str| toml::Value::from(text).to_string();
+    let number = |value: f64| toml::Value::from(value).to_string();
+    let mut lines = Vec::new();
+    match data.boundary {
+        Boundary::Open => lines.push("boundary = \"open\"".to_owned()),
+        Boundary::Periodic { lengths: [x, y] } => {
+            lines.push("boundary = \"periodic\"".to_owned());
+            lines.push(format!("box = [{}, {}]", number(x), number(y)));
+        }
+    }
+    lines.push(format!("frame_interval = {}", number(data.frame_interval)));
+    lines.push(format!("length_unit = {}", quoted(&data.length_unit)));
+    lines.push(format!("time_unit = {}", quoted(&data.time_unit)));
+    lines.push(format!("y_axis = \"{}\"", data.y_axis));
+    if data.unwrapped {
+        lines.push("unwrapped = true".to_owned());
+    }
+    for (key, noise) in [
+        ("position_noise", data.position_noise),
+        ("velocity_noise", data.velocity_noise),
+    ] {
+        match noise {
+            Some(Noise::Absolute(value)) => lines.push(format!("{key} = {}", number(value))),
+            Some(relative) => lines.push(format!("{key} = \"{relative}\"")),
+            None => {}
+        }
+    }
+    lines.push(String::new());
+    lines.join("\n")
+}
+
+fn boundary(value: &DeValue<'_>) -> Result<BoundaryName, TomlFault> {
+    match text("boundary", value)? {
+        "periodic" => Ok(BoundaryName::Periodic),
+        "open" => Ok(BoundaryName::Open),
+        found => Err(TomlFault::Setting(SettingFault::Unknown {
+            key: "boundary",
+            found: found.to_owned(),
+            expected: "\"periodic\" or \"open\"",
+        })),
+    }
+}
+
+fn lengths(value: &DeValue<'_>) -> Result<[f64; 2], TomlFault> {
+    let wrong = |found| TomlFault::WrongType {
+        key: "box",
+        found,
+        expected: "two lengths such as [20.0, 20.0]",
+    };
+    let DeValue::Array(items) = value else {
+        return Err(wrong(kind(value)));
+    };
+    let numbers: Vec<f64> = items
+        .iter()
+        .map(|item| number(item.get_ref()).ok_or_else(|| wrong("an array with other things")))
+        .collect::<Result<_, _>>()?;
+    let lengths = <[f64; 2]>::try_from(numbers).map_err(|_| wrong("an array of another length"))?;
+    let checked = Boundary::Periodic { lengths }.check();
+    checked.map_err(TomlFault::Setting)?;
+    Ok(lengths)
+}
+
+fn interval(value: &DeValue<'_>) -> Result<f64, TomlFault> {
+    let interval = number(value).ok_or_else(|| TomlFault::WrongType {
+        key: "frame_interval",
+        found: kind(value),
+        expected: "a number such as 10.0",
+    })?;
+    validate::positive("frame_interval", interval).map_err(TomlFault::Setting)?;
+    Ok(interval)
+}
+
+fn noise(key: &'static str, value: &DeValue<'_>) -> Result<Noise, TomlFault> {
+    let noise = match (value, number(value)) {
+        (DeValue::String(text), _) => Noise::parse(key, text),
+        (_, Some(value)) => {
+            let noise = Noise::Absolute(value);
+            noise.check(key).map(|()| noise)
+        }
+        (_, None) => {
+            return Err(TomlFault::WrongType {
+                key,
+                found: kind(value),
+                expected: "a number in data units, or a percentage such as \"2 %\"",
+            });
+        }
+    };
+    noise.map_err(TomlFault::Setting)
+}
+
+fn text<'a>(key: &'static str, value: &'a DeValue<'_>) -> Result<&'a str, TomlFault> {
+    match value {
+        DeValue::String(text) => Ok(text),
+        other => Err(TomlFault::WrongType {
+            key,
+            found: kind(other),
+            expected: "a text in quotation marks",
+        }),
+    }
+}
+
+fn truth(key: &'static str, value: &DeValue<'_>) -> Result<bool, TomlFault> {
+    match value {
+        DeValue::Boolean(truth) => Ok(*truth),
+        other => Err(TomlFault::WrongType {
+            key,
+            found: kind(other),
+            expected: "true or false",
+        }),
+    }
+}
+
+fn number(value: &DeValue<'_>) -> Option<f64> {
+    match value {
+        DeValue::Float(float) => float.as_str().parse().ok(),
+        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
+            .ok()
+            .map(|whole| whole as f64),
+        _ => None,
+    }
+}
+
+fn kind(value: &DeValue<'_>) -> &'static str {
+    match value {
+        DeValue::String(_) => "a text",
+        DeValue::Integer(_) | DeValue::Float(_) => "a number",
+        DeValue::Boolean(_) => "true or false",
+        DeValue::Datetime(_) => "a date",
+        DeValue::Array(_) => "an array",
+        DeValue::Table(_) => "a table",
+    }
+}
+
+/// The line, counted from 1, of a byte offset.
+fn line_number(text: &str, offset: usize) -> u64 {
+    let before = text.as_bytes().iter().take(offset);
+    1 + before.filter(|&&byte| byte == b'\n').count() as u64
+}

@@ -1,0 +1,215 @@
+//! From a folder, single files and flags to one checked data set.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use ndarray::{Array2, Axis, Ix2};
+
+use crate::array::{parse_integers, parse_vectors};
+use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::error::{Error, FileFault, SettingFault, ShapeFault};
+use crate::input::{InputFile, file_fault, read_input};
+use crate::noise::Noise;
+use crate::settings::Settings;
+use crate::validate::ArrayNames;
+
+/// Where a data set comes from. A field that is set wins over the folder and its `dataset.toml`.
+///
+/// ```no_run
+/// use voronudge_io::{Boundary, Source};
+/// let source = Source {
+///     folder: Some("my-movie".into()),
+///     boundary: Some(Boundary::Open),
+///     ..Source::default()
+/// };
+/// let data = source.load()?;
+/// println!("{} cells in {} frames", data.cells(), data.frames());
+/// # Ok::<(), voronudge_io::Error>(())
+/// ```
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct Source {
+    /// A folder with `positions.npy` and, each optional, `velocities.npy`, `labels.npy`,
+    /// `dataset.toml`.
+    pub folder: Option<PathBuf>,
+    /// The positions, (cells, 2) or (frames, cells, 2).
+    pub positions: Option<PathBuf>,
+    /// The velocities, in the shape of the positions.
+    pub velocities: Option<PathBuf>,
+    /// The labels, (cells,) or (frames, cells), integers.
+    pub labels: Option<PathBuf>,
+    /// What is around the cells. There is no default.
+    pub boundary: Option<Boundary>,
+    /// Time between frames; default 1.
+    pub frame_interval: Option<f64>,
+    /// Name of the unit of length; default `length`.
+    pub length_unit: Option<String>,
+    /// Name of the unit of time; default `time`.
+    pub time_unit: Option<String>,
+    /// The y direction in the files; default up.
+    pub y_axis: Option<YAxis>,
+    /// Whether positions run on across the periodic boundary; default no.
+    pub unwrapped: Option<bool>,
+    /// Standard deviation of a position coordinate.
+    pub position_noise: Option<Noise>,
+    /// Standard deviation of a velocity component.
+    pub velocity_noise: Option<Noise>,
+}
+
+impl Source {
+    /// Reads and checks the data set.
+    ///
+    /// The settings are settled first, so that a missing boundary is told before large arrays
+    /// are read. With `y_axis` down, y of positions and velocities is negated: in memory y is
+    /// up, also in a periodic box, where y then lies between −Ly and 0; wrapping is left to
+    /// whoever builds the box.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::Format`] and [`Error::Shape`] for files that are not what they
+    /// should be; [`Error::Toml`] and [`Error::Setting`] for missing or impossible settings;
+    /// [`Error::Value`] as listed at [`DataSet::check`].
+    pub fn load(&self) -> Result<DataSet, Error> {
+        let mut inputs = Vec::new();
+        let settings = self.read_settings(&mut inputs)?;
+        let boundary = match self.boundary {
+            Some(boundary) => boundary,
+            None => settings
+                .boundary()?
+                .ok_or_else(|| self.missing_boundary())?,
+        };
+        let positions_path = self
+            .file(self.positions.as_ref(), "positions.npy")
+            .ok_or(Error::Setting(SettingFault::MissingPositions))?;
+        let velocities_path = self.optional_file(self.velocities.as_ref(), "velocities.npy");
+        let labels_path = self.optional_file(self.labels.as_ref(), "labels.npy");
+
+        let mut data = DataSet {
+            positions: ndarray::Array3::zeros((0, 0, 2)),
+            velocities: None,
+            labels: None,
+            boundary,
+            frame_interval: self
+                .frame_interval
+                .or(settings.frame_interval)
+                .unwrap_or(1.0),
+            length_unit: first_text(&self.length_unit, settings.length_unit, "length"),
+            time_unit: first_text(&self.time_unit, settings.time_unit, "time"),
+            y_axis: self.y_axis.or(settings.y_axis).unwrap_or_default(),
+            unwrapped: self.unwrapped.or(settings.unwrapped).unwrap_or(false),
+            position_noise: self.position_noise.or(settings.position_noise),
+            velocity_noise: self.velocity_noise.or(settings.velocity_noise),
+            inputs,
+        };
+        data.check_settings().map_err(Error::Setting)?;
+
+        data.positions = read_vectors(&positions_path, &mut data.inputs)?;
+        if let Some(path) = &velocities_path {
+            data.velocities = Some(read_vectors(path, &mut data.inputs)?);
+        }
+        if let Some(path) = &labels_path {
+            data.labels = Some(read_labels(path, &mut data)?);
+        }
+        let unnamed = PathBuf::new();
+        data.check_arrays(&ArrayNames {
+            positions: &positions_path,
+            velocities: velocities_path.as_ref().unwrap_or(&unnamed),
+            labels: labels_path.as_ref().unwrap_or(&unnamed),
+        })?;
+
+        data.y_axis.turn(&mut data.positions);
+        if let Some(velocities) = &mut data.velocities {
+            data.y_axis.turn(velocities);
+        }
+        Ok(data)
+    }
+
+    fn read_settings(&self, inputs: &mut Vec<InputFile>) -> Result<Settings, Error> {
+        let Some(folder) = &self.folder else {
+            return Ok(Settings::default());
+        };
+        let failure = |fault| Error::File {
+            path: folder.clone(),
+            fault,
+        };
+        let metadata = fs::metadata(folder).map_err(|source| failure(file_fault(source)))?;
+        if !metadata.is_dir() {
+            return Err(failure(FileFault::NotAFolder));
+        }
+        let path = folder.join("dataset.toml");
+        if !is_there(&path) {
+            return Ok(Settings::default());
+        }
+        let (bytes, record) = read_input(&path)?;
+        inputs.push(record);
+        Settings::parse(&path, &bytes)
+    }
+
+    fn missing_boundary(&self) -> Error {
+        Error::Setting(SettingFault::MissingBoundary {
+            searched: self
+                .folder
+                .as_ref()
+                .map(|folder| folder.join("dataset.toml")),
+        })
+    }
+
+    fn file(&self, given: Option<&PathBuf>, name: &str) -> Option<PathBuf> {
+        let in_folder = || self.folder.as_ref().map(|folder| folder.join(name));
+        given.cloned().or_else(in_folder)
+    }
+
+    /// As `file`, but what was not named by the user need not exist.
+    fn optional_file(&self, given: Option<&PathBuf>, name: &str) -> Option<PathBuf> {
+        let path = self.file(given, name);
+        path.filter(|path| given.is_some() || is_there(path))
+    }
+}
+
+/// Whether anything has this name; a dangling link counts, so that it is not silently ignored.
+fn is_there(path: &Path) -> bool {
+    fs::symlink_metadata(path).is_ok()
+}
+
+fn first_text(given: &Option<String>, stored: Option<String>, default: &str) -> String {
+    let given = given.clone().or(stored);
+    given.unwrap_or_else(|| default.to_owned())
+}
+
+fn read_vectors(path: &Path, inputs: &mut Vec<InputFile>) -> Result<ndarray::Array3<f64>, Error> {
+    let (bytes, record) = read_input(path)?;
+    inputs.push(record);
+    parse_vectors(path, &bytes)
+}
+
+/// Labels of shape (cells,) hold in every frame.
+fn read_labels(path: &Path, data: &mut DataSet) -> Result<Array2<i64>, Error> {
+    let (bytes, record) = read_input(path)?;
+    data.inputs.push(record);
+    let labels = parse_integers(path, &bytes)?;
+    let found = labels.shape().to_vec();
+    let failure = |fault| Error::Shape {
+        path: path.to_path_buf(),
+        fault,
+    };
+    let (frames, cells) = (data.frames(), data.cells());
+    match found.as_slice() {
+        [count] if *count == cells => {
+            let one_row = labels.insert_axis(Axis(0));
+            let repeated = one_row.broadcast((frames, cells));
+            repeated.map(|view| view.to_owned())
+        }
+        [_, _] => labels.into_dimensionality::<Ix2>().ok(),
+        [_] => {
+            return Err(failure(ShapeFault::Mismatch {
+                found,
+                positions: data.positions.shape().to_vec(),
+            }));
+        }
+        _ => None,
+    }
+    .ok_or_else(|| {
+        failure(ShapeFault::Dimensions {
+            found,
+            expected: "(cells,) or (frames, cells)",
+        })
+    })
+}

@@ -1,0 +1,193 @@
+//! Which columns of a table matter, and what their fields say.
+
+use std::borrow::Cow;
+
+use csv::ByteRecord;
+
+use crate::error::TableFault;
+
+/// Names of the columns, where they are not to be recognised automatically.
+///
+/// A name is looked up as written, then ignoring case, blanks, hyphens and underscores.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct ColumnNames {
+    /// The column that says which track a spot belongs to.
+    pub track: Option<String>,
+    /// The column that counts images.
+    pub frame: Option<String>,
+    /// The x coordinate.
+    pub x: Option<String>,
+    /// The y coordinate.
+    pub y: Option<String>,
+}
+
+/// The kind of table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Layout {
+    TrackMate,
+    Tracks,
+}
+
+/// A spot that belongs to a track.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Spot {
+    pub(crate) track: i64,
+    pub(crate) frame: i64,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+}
+
+/// A column found in the header.
+struct Column {
+    index: usize,
+    name: String,
+}
+
+/// The four columns of a table that matter.
+pub(super) struct Columns {
+    track: Column,
+    frame: Column,
+    x: Column,
+    y: Column,
+}
+
+impl Columns {
+    pub(super) fn find(
+        header: &ByteRecord,
+        layout: Layout,
+        names: &ColumnNames,
+    ) -> Result<Self, TableFault> {
+        const X: &[&str] = &["x", "position_x", "pos_x", "x_position", "centroid_x"];
+        const Y: &[&str] = &["y", "position_y", "pos_y", "y_position", "centroid_y"];
+        let (track, frame, x, y): (&[&str], &[&str], &[&str], &[&str]) = match layout {
+            Layout::TrackMate => (
+                &["track_id"],
+                &["frame"],
+                &["position_x", "x"],
+                &["position_y", "y"],
+            ),
+            Layout::Tracks => (
+                &[
+                    "track_id",
+                    "track",
+                    "particle",
+                    "particle_id",
+                    "cell_id",
+                    "cell",
+                    "id",
+                ],
+                &["frame", "t", "time_index", "time_point"],
+                X,
+                Y,
+            ),
+        };
+        let found: Vec<String> = header
+            .iter()
+            .map(|field| {
+                let text = String::from_utf8_lossy(field);
+                text.trim_start_matches('\u{feff}').trim().to_owned()
+            })
+            .collect();
+        let find = |role, given: &Option<String>, known: &[&str]| {
+            let looked: Vec<String> = match given {
+                Some(name) => vec![name.clone()],
+                None => known.iter().map(|&name| name.to_owned()).collect(),
+            };
+            let index = looked.iter().find_map(|name| {
+                let exact = found.iter().position(|column| column == name);
+                let like = || found.iter().position(|column| plain(column) == plain(name));
+                exact.or_else(like)
+            });
+            match index {
+                Some(index) => Ok(Column {
+                    index,
+                    name: found[index].clone(),
+                }),
+                None => Err(TableFault::MissingColumn {
+                    role,
+                    looked,
+                    found: found.clone(),
+                }),
+            }
+        };
+        Ok(Self {
+            track: find("track", &names.track, track)?,
+            frame: find("frame", &names.frame, frame)?,
+            x: find("x coordinate", &names.x, x)?,
+            y: find("y coordinate", &names.y, y)?,
+        })
+    }
+
+    /// Whether a row repeats names or units rather than giving a spot.
+    pub(super) fn all_texts(&self, row: &ByteRecord) -> bool {
+        [&self.frame, &self.x, &self.y]
+            .iter()
+            .all(|column| column.text(row).parse::<f64>().is_err())
+    }
+
+    /// What a row has under x, where TrackMate's extra header rows put the unit of length.
+    pub(super) fn length_unit_text<'a>(&self, row: &'a ByteRecord) -> Cow<'a, str> {
+        self.x.text(row)
+    }
+
+    /// The name of the column of the track.
+    pub(super) fn track_name(self) -> String {
+        self.track.name
+    }
+
+    /// The spot of a row; `None` where it belongs to no track.
+    pub(super) fn spot(&self, row: &ByteRecord) -> Result<Option<Spot>, TableFault> {
+        const UNTRACKED: [&str; 6] = ["", "-", "none", "nan", "na", "null"];
+        let track = self.track.text(row).to_lowercase();
+        if UNTRACKED.contains(&track.as_str()) {
+            return Ok(None);
+        }
+        Ok(Some(Spot {
+            track: self.track.whole(row)?,
+            frame: self.frame.whole(row)?,
+            x: self.x.finite(row)?,
+            y: self.y.finite(row)?,
+        }))
+    }
+}
+
+impl Column {
+    fn text<'a>(&self, row: &'a ByteRecord) -> Cow<'a, str> {
+        String::from_utf8_lossy(row.get(self.index).unwrap_or_default().trim_ascii())
+    }
+
+    fn finite(&self, row: &ByteRecord) -> Result<f64, TableFault> {
+        let text = self.text(row);
+        let number = text.parse::<f64>().ok().filter(|value| value.is_finite());
+        number.ok_or_else(|| self.fault(&text, "a finite number"))
+    }
+
+    /// A whole number, possibly written as `12.0`.
+    fn whole(&self, row: &ByteRecord) -> Result<i64, TableFault> {
+        // Beyond this an f64 no longer holds every whole number.
+        const EXACT: f64 = 9_007_199_254_740_992.0;
+        let text = self.text(row);
+        let exact = |value: &f64| value.fract() == 0.0 && value.abs() < EXACT;
+        let from_real = || text.parse::<f64>().ok().filter(exact);
+        let number = text.parse().ok();
+        number
+            .or_else(|| from_real().map(|value| value as i64))
+            .ok_or_else(|| self.fault(&text, "a whole number"))
+    }
+
+    fn fault(&self, text: &str, expected: &'static str) -> TableFault {
+        TableFault::NotANumber {
+            column: self.name.clone(),
+            text: text.to_owned(),
+            expected,
+        }
+    }
+}
+
+/// A column name without what people write differently.
+fn plain(name: &str) -> String {
+    name.chars()
+        .filter(|letter| !matches!(letter, ' ' | '_' | '-'))
+        .flat_map(char::to_lowercase)
+        .collect()
+}

@@ -1,0 +1,219 @@
+//! Importing tracked spots: TrackMate's table and any table with track, frame, x and y.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
+
+use ndarray::Array3;
+
+use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::error::{Error, TableFault};
+use crate::input::read_input;
+use crate::table::{ColumnNames, Layout, Spot, SpotTable, read_spots};
+use crate::validate::{self, ArrayNames};
+
+/// The most frames between the first and the last spot.
+const FRAME_LIMIT: usize = 100_000;
+
+/// The most bytes that the positions may take.
+const SIZE_LIMIT: u64 = 2_000_000_000;
+
+/// What a table does not say about itself. The default leaves everything open.
+#[derive(Debug, Clone, Default, PartialEq)]
+pub struct ImportOptions {
+    /// Columns that are not to be recognised automatically.
+    pub columns: ColumnNames,
+    /// Length of one unit of the table (one pixel); coordinates are multiplied by it.
+    pub pixel_size: Option<f64>,
+    /// Name of the unit of length after that; default: without `pixel_size` the unit that
+    /// TrackMate's header rows name, else `length`.
+    pub length_unit: Option<String>,
+    /// Name of the unit of time; default `frame` where no interval is given, else `time`.
+    pub time_unit: Option<String>,
+    /// Time between frames; default 1.
+    pub frame_interval: Option<f64>,
+    /// The y direction of the table; default down, as images have it.
+    pub y_axis: Option<YAxis>,
+    /// What is around the cells; default open.
+    pub boundary: Option<Boundary>,
+}
+
+/// An imported data set and what became of the rows.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Import {
+    /// The data set; the cell axis is the tracks by ascending id.
+    pub dataset: DataSet,
+    /// The track id of each cell.
+    pub track_ids: Vec<i64>,
+    /// The counts to report.
+    pub summary: ImportSummary,
+}
+
+/// What became of the rows of a table.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct ImportSummary {
+    /// Frames from the first to the last one with a spot, empty ones included.
+    pub frames: usize,
+    /// The table's number of the first frame.
+    pub first_frame: i64,
+    /// Frames in between without any spot; all cells are absent there.
+    pub empty_frames: usize,
+    /// Tracks, which is cells.
+    pub tracks: usize,
+    /// Spots taken into the data set.
+    pub spots: usize,
+    /// Spots that belong to no track.
+    pub left_out_untracked: usize,
+    /// Further spots of a track in the same frame, as splitting tracks have; the first is kept.
+    pub left_out_duplicate: usize,
+}
+
+/// Imports the spots table that TrackMate exports, CSV or gzip-compressed CSV.
+///
+/// Needs the columns `TRACK_ID`, `FRAME` and `POSITION_X`, `POSITION_Y` (or `X`, `Y`) in any
+/// case. Up to three rows of labels and units below the header are skipped.
+///
+/// # Errors
+/// [`Error::File`] and [`Error::Table`], the latter with the line; [`Error::Setting`] for options
+/// out of range; [`Error::Value`] for two tracks in one place.
+pub fn import_trackmate(path: &Path, options: &ImportOptions) -> Result<Import, Error> {
+    import(path, options, Layout::TrackMate)
+}
+
+/// Imports any table with one row per spot, CSV or gzip-compressed CSV, separated by commas,
+/// semicolons or tabs.
+///
+/// Unless named in the options, columns are recognised by usual names: `track_id`, `track`,
+/// `particle`, `cell`, `id` …; `frame`, `t`, `time_index` …; `x`, `position_x`, `pos_x` … The
+/// earlier name wins where several are there.
+///
+/// # Errors
+/// As [`import_trackmate`].
+pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Error> {
+    import(path, options, Layout::Tracks)
+}
+
+fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
+    let scale = options.pixel_size.unwrap_or(1.0);
+    validate::positive("pixel_size", scale).map_err(Error::Setting)?;
+    let mut dataset = describe(options);
+    dataset.check_settings().map_err(Error::Setting)?;
+
+    let (bytes, record) = read_input(path)?;
+    dataset.inputs.push(record);
+    let table = read_spots(path, &bytes, layout, &options.columns)?;
+    if let (None, None, Some(unit)) = (&options.length_unit, options.pixel_size, &table.length_unit)
+    {
+        dataset.length_unit.clone_from(unit);
+    }
+    let tracks = Tracks::arrange(&table).map_err(|fault| Error::Table {
+        path: path.to_path_buf(),
+        line: None,
+        fault,
+    })?;
+
+    dataset.positions = tracks.positions * scale;
+    dataset.check_arrays(&ArrayNames {
+        positions: path,
+        velocities: path,
+        labels: path,
+    })?;
+    dataset.y_axis.turn(&mut dataset.positions);
+    Ok(Import {
+        dataset,
+        track_ids: tracks.ids,
+        summary: tracks.summary,
+    })
+}
+
+/// The data set as far as the options know it.
+fn describe(options: &ImportOptions) -> DataSet {
+    let time_unit = match options.frame_interval {
+        Some(_) => "time",
+        None => "frame",
+    };
+    let or =
+        |given: &Option<String>, default: &str| given.clone().unwrap_or_else(|| default.to_owned());
+    DataSet {
+        positions: Array3::zeros((0, 0, 2)),
+        velocities: None,
+        labels: None,
+        boundary: options.boundary.unwrap_or(Boundary::Open),
+        frame_interval: options.frame_interval.unwrap_or(1.0),
+        length_unit: or(&options.length_unit, "length"),
+        time_unit: or(&options.time_unit, time_unit),
+        y_axis: options.y_axis.unwrap_or(YAxis::Down),
+        unwrapped: false,
+        position_noise: None,
+        velocity_noise: None,
+        inputs: Vec::new(),
+    }
+}
+
+/// Spots arranged as (frames, tracks, 2), in the coordinates of the table.
+struct Tracks {
+    positions: Array3<f64>,
+    ids: Vec<i64>,
+    summary: ImportSummary,
+}
+
+impl Tracks {
+    fn arrange(table: &SpotTable) -> Result<Self, TableFault> {
+        let (first, frames) = frame_span(&table.spots)?;
+        let ids: BTreeSet<i64> = table.spots.iter().map(|spot| spot.track).collect();
+        let ids: Vec<i64> = ids.into_iter().collect();
+        let bytes = 16 * frames as u64 * ids.len() as u64;
+        if bytes > SIZE_LIMIT {
+            return Err(TableFault::TooLarge {
+                frames,
+                tracks: ids.len(),
+                bytes,
+                limit: SIZE_LIMIT,
+            });
+        }
+        let cells: BTreeMap<i64, usize> = ids.iter().copied().zip(0..).collect();
+        let mut positions = Array3::from_elem((frames, ids.len(), 2), f64::NAN);
+        let mut occupied = vec![0_usize; frames];
+        let mut duplicates = 0;
+        for spot in &table.spots {
+            let (frame, cell) = ((spot.frame - first) as usize, cells[&spot.track]);
+            if positions[[frame, cell, 0]].is_nan() {
+                positions[[frame, cell, 0]] = spot.x;
+                positions[[frame, cell, 1]] = spot.y;
+                occupied[frame] += 1;
+            } else {
+                duplicates += 1;
+            }
+        }
+        let summary = ImportSummary {
+            frames,
+            first_frame: first,
+            empty_frames: occupied.iter().filter(|&&spots| spots == 0).count(),
+            tracks: ids.len(),
+            spots: table.spots.len() - duplicates,
+            left_out_untracked: table.untracked,
+            left_out_duplicate: duplicates,
+        };
+        Ok(Self {
+            positions,
+            ids,
+            summary,
+        })
+    }
+}
+
+/// The smallest frame number and how many frames there are up to the largest.
+fn frame_span(spots: &[Spot]) -> Result<(i64, usize), TableFault> {
+    let frames = || spots.iter().map(|spot| spot.frame);
+    let (Some(first), Some(last)) = (frames().min(), frames().max()) else {
+        return Err(TableFault::NoRows);
+    };
+    let count = last.abs_diff(first).saturating_add(1);
+    match usize::try_from(count) {
+        Ok(count) if count <= FRAME_LIMIT => Ok((first, count)),
+        _ => Err(TableFault::TooManyFrames {
+            first,
+            last,
+            limit: FRAME_LIMIT,
+        }),
+    }
+}

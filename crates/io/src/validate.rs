@@ -1,0 +1,179 @@
+//! The rules that positions, velocities and labels obey.
+
+use std::path::Path;
+
+use ndarray::{Array3, ArrayView2, Axis};
+
+use crate::dataset::{Boundary, DataSet};
+use crate::error::{Error, SettingFault, ShapeFault, ValueFault};
+
+/// How far positions that were not unwrapped may reach, in box lengths.
+///
+/// Wrapped positions span less than one length; half a length more allows for cells that have
+/// moved on since they were last wrapped.
+const EXTENT_LIMIT: f64 = 1.5;
+
+/// The files the arrays of a data set came from, for messages.
+pub(crate) struct ArrayNames<'a> {
+    pub(crate) positions: &'a Path,
+    pub(crate) velocities: &'a Path,
+    pub(crate) labels: &'a Path,
+}
+
+impl DataSet {
+    pub(crate) fn check_arrays(&self, names: &ArrayNames<'_>) -> Result<(), Error> {
+        check_shape(names.positions, &self.positions)?;
+        check_vectors(names.positions, &self.positions)?;
+        check_distinct(names.positions, self)?;
+        check_extent(names.positions, self)?;
+        let mismatch = |path: &Path, found: &[usize]| Error::Shape {
+            path: path.to_path_buf(),
+            fault: ShapeFault::Mismatch {
+                found: found.to_vec(),
+                positions: self.positions.shape().to_vec(),
+            },
+        };
+        if let Some(velocities) = &self.velocities {
+            if velocities.dim() != self.positions.dim() {
+                return Err(mismatch(names.velocities, velocities.shape()));
+            }
+            check_vectors(names.velocities, velocities)?;
+        }
+        match &self.labels {
+            Some(labels) if labels.dim() != (self.frames(), self.cells()) => {
+                Err(mismatch(names.labels, labels.shape()))
+            }
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A setting that must be finite and above zero.
+pub(crate) fn positive(key: &'static str, value: f64) -> Result<(), SettingFault> {
+    if value.is_finite() && value > 0.0 {
+        Ok(())
+    } else {
+        Err(SettingFault::NotPositive { key, value })
+    }
+}
+
+fn check_shape(path: &Path, positions: &Array3<f64>) -> Result<(), Error> {
+    let found = || positions.shape().to_vec();
+    let (frames, cells, components) = positions.dim();
+    let fault = match (frames, cells, components) {
+        (0, ..) => ShapeFault::Nothing {
+            found: found(),
+            axis: "frames",
+        },
+        (_, 0, _) => ShapeFault::Nothing {
+            found: found(),
+            axis: "cells",
+        },
+        (.., 2) => return Ok(()),
+        _ => ShapeFault::NotPairs {
+            found: found(),
+            expected: "(frames, cells, 2)",
+        },
+    };
+    Err(Error::Shape {
+        path: path.to_path_buf(),
+        fault,
+    })
+}
+
+/// Every vector is finite or absent as a whole.
+fn check_vectors(path: &Path, vectors: &Array3<f64>) -> Result<(), Error> {
+    for (frame, rows) in vectors.outer_iter().enumerate() {
+        for (cell, row) in rows.outer_iter().enumerate() {
+            let (x, y) = (row[0], row[1]);
+            let fault = if x.is_infinite() || y.is_infinite() {
+                ValueFault::Infinite { frame, cell, x, y }
+            } else if x.is_nan() != y.is_nan() {
+                ValueFault::HalfAbsent { frame, cell, x, y }
+            } else {
+                continue;
+            };
+            return Err(value_error(path, fault));
+        }
+    }
+    Ok(())
+}
+
+/// No two cells of a frame are at exactly the same place.
+fn check_distinct(path: &Path, data: &DataSet) -> Result<(), Error> {
+    for (frame, rows) in data.positions.outer_iter().enumerate() {
+        if let Some((first, second)) = coincident(rows) {
+            let fault = ValueFault::Duplicate {
+                frame,
+                first,
+                second,
+                x: rows[[first, 0]],
+                y: rows[[first, 1]],
+            };
+            return Err(value_error(path, fault));
+        }
+    }
+    Ok(())
+}
+
+fn coincident(rows: ArrayView2<'_, f64>) -> Option<(usize, usize)> {
+    // Adding zero makes -0 and 0 the same for total_cmp.
+    let mut points: Vec<(f64, f64, usize)> = rows
+        .outer_iter()
+        .enumerate()
+        .filter(|(_, row)| !row[0].is_nan())
+        .map(|(cell, row)| (row[0] + 0.0, row[1] + 0.0, cell))
+        .collect();
+    points.sort_unstable_by(|a, b| {
+        let place = a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1));
+        place.then(a.2.cmp(&b.2))
+    });
+    points
+        .windows(2)
+        .find(|pair| pair[0].0 == pair[1].0 && pair[0].1 == pair[1].1)
+        .map(|pair| (pair[0].2, pair[1].2))
+}
+
+/// The cells of the first frame that has any fit into the periodic box, give or take.
+fn check_extent(path: &Path, data: &DataSet) -> Result<(), Error> {
+    let Boundary::Periodic { lengths } = data.boundary else {
+        return Ok(());
+    };
+    if data.unwrapped {
+        return Ok(());
+    }
+    let first = data
+        .positions
+        .outer_iter()
+        .enumerate()
+        .find(|(_, rows)| rows.iter().any(|value| !value.is_nan()));
+    let Some((frame, rows)) = first else {
+        return Ok(());
+    };
+    for (axis, (column, length)) in ['x', 'y']
+        .into_iter()
+        .zip(rows.axis_iter(Axis(1)).zip(lengths))
+    {
+        // min and max pass over NaN.
+        let smallest = column.fold(f64::INFINITY, |least, &value| least.min(value));
+        let largest = column.fold(f64::NEG_INFINITY, |most, &value| most.max(value));
+        let extent = largest - smallest;
+        if extent > EXTENT_LIMIT * length {
+            let fault = ValueFault::BoxTooSmall {
+                frame,
+                axis,
+                extent,
+                length,
+            };
+            return Err(value_error(path, fault));
+        }
+    }
+    Ok(())
+}
+
+fn value_error(path: &Path, fault: ValueFault) -> Error {
+    Error::Value {
+        path: path.to_path_buf(),
+        fault,
+    }
+}

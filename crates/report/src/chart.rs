@@ -1,0 +1,366 @@
+//! The frame of a chart: axes, ticks and labels drawn by plotters; marks are added on top as
+//! compact paths in the same coordinates.
+
+use std::ops::Range;
+
+use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
+use plotters::prelude::*;
+
+use crate::numbers::{superscript, tick_labels, ticks};
+use crate::svg::{PathData, Svg};
+
+/// Plotters counts in whole pixels: it draws this many times larger and is scaled down.
+const DETAIL: f64 = 8.0;
+/// Plotters divides font sizes by this before it writes them.
+const PLOTTERS_FONT: f64 = 1.24;
+
+/// How values are spread along an axis.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum AxisScale {
+    /// Evenly.
+    Linear,
+    /// By their logarithm; the range must be positive.
+    Logarithmic,
+}
+
+/// One axis of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Axis {
+    /// Label with unit.
+    pub label: String,
+    /// First and last value.
+    pub range: [f64; 2],
+    /// Spread of the values.
+    pub scale: AxisScale,
+    /// About how many ticks.
+    pub ticks: usize,
+}
+
+impl Axis {
+    /// A linear axis over exactly `range`.
+    #[must_use]
+    pub fn linear(label: &str, range: [f64; 2]) -> Self {
+        Self {
+            label: label.to_owned(),
+            range,
+            scale: AxisScale::Linear,
+            ticks: 6,
+        }
+    }
+
+    /// A logarithmic axis over exactly `range`.
+    #[must_use]
+    pub fn logarithmic(label: &str, range: [f64; 2]) -> Self {
+        Self {
+            label: label.to_owned(),
+            range,
+            scale: AxisScale::Logarithmic,
+            ticks: 6,
+        }
+    }
+
+    /// The axis without tick labels, for categories that are labelled otherwise.
+    #[must_use]
+    pub fn without_ticks(self) -> Self {
+        Self { ticks: 0, ..self }
+    }
+
+    /// Position of `value` between the ends of the axis, 0..1 inside.
+    #[must_use]
+    pub fn share(&self, value: f64) -> f64 {
+        let [low, high, at] = match self.scale {
+            AxisScale::Linear => [self.range[0], self.range[1], value],
+            AxisScale::Logarithmic => [self.range[0].log10(), self.range[1].log10(), value.log10()],
+        };
+        (at - low) / (high - low)
+    }
+
+    /// Whether `value` lies on the axis.
+    #[must_use]
+    pub fn contains(&self, value: f64) -> bool {
+        (-1e-9..=1.0 + 1e-9).contains(&self.share(value))
+    }
+
+    fn tick_positions(&self) -> Vec<f64> {
+        if self.ticks == 0 {
+            return Vec::new();
+        }
+        match self.scale {
+            AxisScale::Linear => ticks(self.range, self.ticks),
+            AxisScale::Logarithmic => logarithmic_ticks(self.range, self.ticks),
+        }
+    }
+
+    fn labels(&self, positions: &[f64]) -> Vec<String> {
+        match self.scale {
+            AxisScale::Linear => tick_labels(positions),
+            AxisScale::Logarithmic => positions.iter().map(|&at| power_label(at)).collect(),
+        }
+    }
+}
+
+/// Size and axes of a chart.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChartLayout<'a> {
+    /// What a screen reader says.
+    pub title: &'a str,
+    /// Nominal width and height in pixels.
+    pub size: [f64; 2],
+    /// Room for the tick labels and the label of the vertical axis.
+    pub left: f64,
+    /// Horizontal axis.
+    pub x: Axis,
+    /// Vertical axis.
+    pub y: Axis,
+}
+
+/// A chart with its axes drawn, ready for marks.
+#[derive(Debug, Clone)]
+pub struct Chart {
+    /// The picture to draw on.
+    pub svg: Svg,
+    x: Axis,
+    y: Axis,
+    plot: [[f64; 2]; 2],
+}
+
+impl Chart {
+    /// Draws the axes. `None` if a range is empty or not finite, or plotters refuses.
+    #[must_use]
+    pub fn new(layout: ChartLayout<'_>) -> Option<Self> {
+        let ChartLayout {
+            title,
+            size,
+            left,
+            x,
+            y,
+        } = layout;
+        let usable = |axis: &Axis| {
+            let ends = axis.range.map(|value| axis.share(value));
+            ends.iter().all(|end| end.is_finite()) && axis.range[0] < axis.range[1]
+        };
+        if !usable(&x) || !usable(&y) {
+            return None;
+        }
+        let mut axes = String::new();
+        let plot = draw_axes(&mut axes, (size, left), (&x, &y)).ok()?;
+        let mut svg = Svg::new(size, title);
+        let inner = axes.find('>').map_or("", |end| &axes[end + 1..]);
+        let inner = inner.trim_end().trim_end_matches("</svg>");
+        let inner = inner
+            .replace(r#" font-family="sans-serif""#, "")
+            .replace(r#" opacity="1""#, "");
+        svg.raw(&format!(
+            "<g transform=\"scale({})\">{inner}</g>\n",
+            1.0 / DETAIL
+        ));
+        Some(Self { svg, x, y, plot })
+    }
+
+    /// Pixel position of a point in axis coordinates.
+    #[must_use]
+    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+        let [[left, top], [right, bottom]] = self.plot;
+        [
+            left + self.x.share(x) * (right - left),
+            bottom + self.y.share(y) * (top - bottom),
+        ]
+    }
+
+    /// Upper left and lower right corner of the plotting area in pixels.
+    #[must_use]
+    pub fn plot(&self) -> [[f64; 2]; 2] {
+        self.plot
+    }
+
+    /// Whether a point lies within both axes.
+    #[must_use]
+    pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
+        self.x.contains(x) && self.y.contains(y)
+    }
+
+    /// Draws a line through points in axis coordinates, broken where one is not finite.
+    pub fn curve(&mut self, points: &[[f64; 2]], attributes: &str) {
+        let mut path = PathData::new();
+        let places: Vec<[f64; 2]> = points.iter().map(|&point| self.place(point)).collect();
+        for part in places.split(|place| !place.iter().all(|x| x.is_finite())) {
+            if part.len() > 1 {
+                path.line(part);
+            }
+        }
+        self.svg
+            .path(&path, &format!(r#"fill="none" {attributes}"#));
+    }
+
+    /// The finished picture.
+    #[must_use]
+    pub fn finish(self) -> String {
+        self.svg.finish()
+    }
+}
+
+/// An axis as plotters sees it, with our tick positions and labels.
+#[derive(Clone)]
+struct TickedAxis {
+    axis: Axis,
+    positions: Vec<f64>,
+    labels: Vec<String>,
+}
+
+impl TickedAxis {
+    fn new(axis: &Axis) -> Self {
+        let positions = axis.tick_positions();
+        let labels = axis.labels(&positions);
+        Self {
+            axis: axis.clone(),
+            positions,
+            labels,
+        }
+    }
+}
+
+impl Ranged for TickedAxis {
+    type FormatOption = NoDefaultFormatting;
+    type ValueType = f64;
+
+    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
+        (f64::from(from) + self.axis.share(*value) * f64::from(to - from)).round() as i32
+    }
+
+    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
+        self.positions.clone()
+    }
+
+    fn range(&self) -> Range<f64> {
+        self.axis.range[0]..self.axis.range[1]
+    }
+}
+
+impl ValueFormatter<f64> for TickedAxis {
+    fn format_ext(&self, value: &f64) -> String {
+        let index = self.positions.iter().position(|position| position == value);
+        index
+            .and_then(|index| self.labels.get(index))
+            .cloned()
+            .unwrap_or_default()
+    }
+}
+
+type DrawingFailed = DrawingAreaErrorKind<std::io::Error>;
+
+/// Draws the axes `DETAIL` times enlarged; returns the plotting area in nominal pixels.
+fn draw_axes(
+    target: &mut String,
+    (size, left): ([f64; 2], f64),
+    (x, y): (&Axis, &Axis),
+) -> Result<[[f64; 2]; 2], DrawingFailed> {
+    let large = |length: f64| (length * DETAIL).round() as u32;
+    let font = |nominal: f64| ("sans-serif", nominal * DETAIL * PLOTTERS_FONT);
+    let ink = RGBColor(0x22, 0x22, 0x22);
+    let root =
+        SVGBackend::with_string(target, (large(size[0]), large(size[1]))).into_drawing_area();
+    let mut chart = ChartBuilder::on(&root)
+        .margin_top(large(10.0))
+        .margin_right(large(14.0))
+        .x_label_area_size(large(if x.label.is_empty() { 24.0 } else { 44.0 }))
+        .y_label_area_size(large(left))
+        .build_cartesian_2d(TickedAxis::new(x), TickedAxis::new(y))?;
+    chart
+        .configure_mesh()
+        .bold_line_style(RGBColor(0xe8, 0xe8, 0xe8).stroke_width(large(0.8)))
+        .light_line_style(TRANSPARENT)
+        .axis_style(ink.stroke_width(large(0.9)))
+        .set_all_tick_mark_size(large(4.0))
+        .label_style(font(11.0).into_font().color(&ink))
+        .axis_desc_style(font(12.0).into_font().color(&ink))
+        .x_desc(x.label.as_str())
+        .y_desc(y.label.as_str())
+        .draw()?;
+    let (across, down) = chart.plotting_area().get_pixel_range();
+    root.present()?;
+    let small = |pixel: i32| f64::from(pixel) / DETAIL;
+    Ok([
+        [small(across.start), small(down.start)],
+        [small(across.end), small(down.end)],
+    ])
+}
+
+/// Powers of ten, thinned to `count`; with 2 and 5 times them where the range is short.
+fn logarithmic_ticks([low, high]: [f64; 2], count: usize) -> Vec<f64> {
+    let [first, last] = [low.log10().floor(), high.log10().ceil()];
+    let decades = last - first;
+    let step = (decades / count as f64).ceil().max(1.0) as usize;
+    let factors: &[f64] = if decades <= 2.0 {
+        &[1.0, 2.0, 5.0]
+    } else {
+        &[1.0]
+    };
+    (first as i32..=last as i32)
+        .step_by(step)
+        .flat_map(|power| factors.iter().map(move |factor| factor * 10f64.powi(power)))
+        .filter(|&tick| tick >= low * (1.0 - 1e-9) && tick <= high * (1.0 + 1e-9))
+        .collect()
+}
+
+fn power_label(value: f64) -> String {
+    if (1e-3..1e5).contains(&value) {
+        return crate::numbers::significant(value, 1);
+    }
+    let power = value.log10().floor() as i32;
+    match (value / 10f64.powi(power)).round() as i64 {
+        1 => format!("10{}", superscript(power)),
+        lead => format!("{lead}×10{}", superscript(power)),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn layout(range: [f64; 2]) -> ChartLayout<'static> {
+        let x = Axis::linear("distance (µm)", range);
+        let y = Axis::logarithmic("objective", [1e-3, 1e4]);
+        ChartLayout {
+            title: "test",
+            size: [400.0, 300.0],
+            left: 60.0,
+            x,
+            y,
+        }
+    }
+
+    #[test]
+    fn marks_and_axes_share_coordinates() {
+        let chart = Chart::new(layout([0.0, 10.0])).unwrap();
+        let [[left, top], [right, bottom]] = chart.plot();
+        let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
+        let corner = chart.place([0.0, 1e-3]);
+        assert!(close(corner[0], left) && close(corner[1], bottom));
+        let corner = chart.place([10.0, 1e4]);
+        assert!(close(corner[0], right) && close(corner[1], top));
+        let text = chart.finish();
+        assert!(text.contains("distance (µm)") && text.contains("objective"));
+        assert!(text.contains("10⁴") || text.contains("10000"));
+    }
+
+    #[test]
+    fn impossible_ranges_give_no_chart() {
+        for range in [
+            [0.0, f64::NAN],
+            [1.0, 1.0],
+            [f64::NEG_INFINITY, 0.0],
+            [2.0, 1.0],
+        ] {
+            assert!(Chart::new(layout(range)).is_none());
+        }
+    }
+
+    #[test]
+    fn logarithmic_ticks_are_round() {
+        assert_eq!(
+            logarithmic_ticks([0.9, 60.0], 6),
+            [1.0, 2.0, 5.0, 10.0, 20.0, 50.0]
+        );
+        assert_eq!(logarithmic_ticks([1e-3, 1e3], 3).len(), 4);
+    }
+}

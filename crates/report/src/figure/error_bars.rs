@@ -1,0 +1,142 @@
+//! Horizontal bars of the normalised error of several predictions.
+
+use super::no_data;
+use crate::chart::{Axis, Chart, ChartLayout};
+use crate::colour::BLUE;
+use crate::numbers::significant;
+use crate::svg::{Anchor, PathData, TextStyle};
+
+/// Bars end here however large the error is; the number tells.
+const LONGEST: f64 = 2.5;
+/// Height of a bar's row in pixels.
+const ROW: f64 = 34.0;
+
+/// One bar.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ErrorBar {
+    /// What was predicted and how.
+    pub label: String,
+    /// Normalised mean square error; 0 perfect, 1 predicts nothing.
+    pub nmse: f64,
+    /// Standard error, drawn as a whisker.
+    pub standard_error: Option<f64>,
+    /// How much weight the bar has.
+    pub emphasis: Emphasis,
+}
+
+/// How much weight a bar has.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Emphasis {
+    /// The number to quote.
+    Main,
+    /// For comparison.
+    Quiet,
+}
+
+/// NMSE bars with their numbers; a line at 1 marks a model that predicts nothing. Bars that are not
+/// finite are left out.
+#[must_use]
+pub fn error_bars(bars: &[ErrorBar]) -> String {
+    let title = "normalised mean square error";
+    let bars: Vec<&ErrorBar> = bars.iter().filter(|bar| bar.nmse.is_finite()).collect();
+    let longest = bars.iter().map(|bar| bar.nmse).fold(0.0, f64::max);
+    if bars.is_empty() {
+        return no_data(title);
+    }
+    let end = (longest * 1.12).clamp(1.15, LONGEST);
+    let count = bars.len() as f64;
+    let layout = ChartLayout {
+        title,
+        size: [440.0, 56.0 + 14.0 + ROW * count],
+        left: 158.0,
+        x: Axis::linear("NMSE (0: perfect, 1: predicts nothing)", [0.0, end]),
+        y: Axis::linear("", [0.0, count]).without_ticks(),
+    };
+    let Some(mut chart) = Chart::new(layout) else {
+        return no_data(title);
+    };
+    for (row, bar) in bars.iter().enumerate() {
+        draw_bar(&mut chart, bar, (count - row as f64 - 0.5, end));
+    }
+    let ends = [[1.0, 0.0], [1.0, count]];
+    chart.curve(
+        &ends,
+        r##"stroke="#222" stroke-width="1.2" stroke-dasharray="5 3""##,
+    );
+    chart.finish()
+}
+
+fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {
+    let fill = match bar.emphasis {
+        Emphasis::Main => BLUE,
+        Emphasis::Quiet => "#a9b8c4",
+    };
+    let reach = bar.nmse.clamp(0.0, end);
+    let mut path = PathData::new();
+    let [from, to] = [
+        chart.place([0.0, middle + 0.3]),
+        chart.place([reach, middle - 0.3]),
+    ];
+    path.rectangle(from, to);
+    chart.svg.path(&path, &format!(r#"fill="{fill}""#));
+    let half = bar
+        .standard_error
+        .filter(|half| half.is_finite())
+        .unwrap_or(0.0);
+    if half > 0.0 {
+        let whisker = [[reach - half, middle], [(reach + half).min(end), middle]];
+        chart.curve(&whisker, r##"stroke="#222" stroke-width="1.4""##);
+    }
+    let baseline = chart.place([0.0, middle])[1] + 4.0;
+    let left = chart.plot()[0][0];
+    chart.svg.text(
+        [left - 9.0, baseline],
+        &bar.label,
+        TextStyle::label(Anchor::End),
+    );
+    let mut number = significant(bar.nmse, 2);
+    if half > 0.0 {
+        number.push_str(&format!(" ± {}", significant(half, 1)));
+    }
+    if bar.nmse > end {
+        number.push_str(" ▸");
+    }
+    let tip = chart.place([(reach + half).min(end), middle])[0];
+    let right = chart.plot()[1][0];
+    let room = 6.0 * number.chars().count() as f64 + 12.0;
+    let (x, anchor, colour) = if tip + room < right {
+        (tip + 7.0, Anchor::Start, "#222")
+    } else {
+        (
+            chart.place([reach - half, middle])[0] - 7.0,
+            Anchor::End,
+            contrast(bar.emphasis),
+        )
+    };
+    // The line at 1 must not run through the number.
+    let backing = anchor == Anchor::Start && x < chart.place([1.0, middle])[0];
+    if backing {
+        let mut white = PathData::new();
+        white.rectangle(
+            [x - 2.0, baseline - 11.0],
+            [x + room - 12.0, baseline + 3.0],
+        );
+        chart.svg.path(&white, r##"fill="#fff""##);
+    }
+    chart.svg.text(
+        [x, baseline],
+        &number,
+        TextStyle {
+            size: TextStyle::LABEL,
+            colour,
+            anchor,
+        },
+    );
+}
+
+fn contrast(emphasis: Emphasis) -> &'static str {
+    match emphasis {
+        Emphasis::Main => "#fff",
+        Emphasis::Quiet => "#222",
+    }
+}

@@ -1,0 +1,37 @@
+//! One module per figure; each returns a stand-alone SVG as text.
+//!
+//! Figures never fail: numbers that are not finite are skipped, and where nothing is left to draw
+//! the figure says "no data".
+
+mod cell_map;
+mod error_bars;
+mod nudge_histogram;
+mod nudge_map;
+mod objective_trace;
+mod parameter_intervals;
+mod predicted_against_measured;
+mod velocity_map;
+
+pub use cell_map::{CellScalar, cell_map};
+pub use error_bars::{Emphasis, ErrorBar, error_bars};
+pub use nudge_histogram::{NudgeHistogram, nudge_histogram};
+pub use nudge_map::nudge_map;
+pub use objective_trace::{ObjectiveTrace, objective_trace};
+pub use parameter_intervals::{Estimate, ParameterRow, parameter_intervals};
+pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
+pub use velocity_map::{VelocityField, velocity_map};
+
+use crate::svg::{Anchor, Svg, TextStyle};
+
+/// The figure that stands in where there is nothing to draw.
+#[must_use]
+pub fn no_data(title: &str) -> String {
+    let mut svg = Svg::new([440.0, 120.0], title);
+    svg.raw(
+        "<rect x=\".5\" y=\".5\" width=\"439\" height=\"119\" fill=\"#fafafa\" stroke=\"#ccc\"/>\n",
+    );
+    let style = TextStyle::quiet(Anchor::Middle);
+    svg.text([220.0, 56.0], title, style);
+    svg.text([220.0, 76.0], "no data", style);
+    svg.finish()
+}

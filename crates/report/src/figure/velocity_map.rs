@@ -1,0 +1,84 @@
+//! Measured, predicted and residual velocities as arrows on one scale.
+
+use super::no_data;
+use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
+use crate::colour::{BLUE, INK, VERMILLION};
+use crate::map::{Map, Swatch};
+use crate::view::{CellView, FrameView, Units};
+
+/// Which velocities a map shows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum VelocityField {
+    /// As measured.
+    Measured,
+    /// As the fitted model gives them.
+    Predicted,
+    /// Measured minus predicted.
+    Residual,
+}
+
+impl VelocityField {
+    /// All of them, in the order of a figure's panels.
+    pub const ALL: [Self; 3] = [Self::Measured, Self::Predicted, Self::Residual];
+
+    /// Caption of the panel.
+    #[must_use]
+    pub fn caption(self) -> &'static str {
+        match self {
+            Self::Measured => "measured velocities",
+            Self::Predicted => "predicted velocities",
+            Self::Residual => "residual (measured − predicted)",
+        }
+    }
+
+    fn colour(self) -> &'static str {
+        match self {
+            Self::Measured => INK,
+            Self::Predicted => BLUE,
+            Self::Residual => VERMILLION,
+        }
+    }
+
+    fn of(self, cell: &CellView) -> Option<[f64; 2]> {
+        match self {
+            Self::Measured => cell.measured,
+            Self::Predicted => cell.predicted,
+            Self::Residual => cell.residual(),
+        }
+    }
+}
+
+/// Arrows of one velocity field over faint cell outlines. Give all panels the same `scale`
+/// ([`ArrowScale::velocities`]); cells without that velocity have no arrow.
+#[must_use]
+pub fn velocity_map(
+    frame: &FrameView,
+    field: VelocityField,
+    scale: Option<&ArrowScale>,
+    units: &Units,
+) -> String {
+    let caption = field.caption();
+    let known = frame.cells.iter().any(|cell| field.of(cell).is_some());
+    let (Some(mut map), Some(scale), true) = (Map::new(frame, caption), scale, known) else {
+        return no_data(caption);
+    };
+    map.outlines(frame);
+    let mut arrows = Arrows::default();
+    for cell in &frame.cells {
+        if let Some(velocity) = field.of(cell) {
+            arrows.push_on(&map.view, cell.centre, velocity, scale);
+        }
+    }
+    arrows.draw(&mut map.layer, field.colour());
+    let mut legend = map.with_legend(48.0);
+    legend.scale_bar(units);
+    let unit = units.velocity_text();
+    let mark = ReferenceMark {
+        unit: &unit,
+        remark: "",
+        colour: field.colour(),
+    };
+    legend.reference_arrow(190.0, scale, &mark);
+    legend.left_out(4.0, frame, Swatch::Grey);
+    legend.svg.finish()
+}

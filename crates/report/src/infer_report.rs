@@ -1,0 +1,257 @@
+//! `report.json` of the command `infer`.
+//!
+//! Field names are the interface that scripts use; [`INFER_SCHEMA`] describes them. Numbers that
+//! are not finite are written as `null`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::error::ReportError;
+use crate::view::Units;
+
+/// JSON Schema (draft 2020-12) of [`InferReport`].
+pub const INFER_SCHEMA: &str = include_str!("../schema/infer.schema.json");
+
+/// What every command reports about its run.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RunRecord {
+    /// Name of the command, for example `infer`.
+    pub command: String,
+    /// The command line as typed.
+    pub command_line: String,
+    /// Version of the program.
+    pub version: String,
+    /// Seed of all random numbers.
+    pub seed: u64,
+    /// Number of threads.
+    pub threads: usize,
+    /// Files read.
+    pub inputs: Vec<InputFile>,
+    /// Wall time in seconds.
+    pub wall_seconds: f64,
+    /// What the reader should know before using the numbers.
+    pub warnings: Vec<String>,
+}
+
+/// One file read.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct InputFile {
+    /// Path as given.
+    pub path: String,
+    /// SHA-256 of the content, hexadecimal.
+    pub sha256: String,
+}
+
+/// Everything `infer` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct InferReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
+    pub length_scale: Quantity,
+    /// Which cells were used.
+    pub cells: CellCounts,
+    /// The nudged estimate.
+    pub parameters: Parameters,
+    /// The estimate at the measured positions.
+    pub naive: NaiveParameters,
+    /// Normalised errors.
+    pub nmse: Nmse,
+    /// Measurement noise.
+    pub noise: Noise,
+    /// The nudges.
+    pub nudge: Nudge,
+    /// Eigenvalues and directions of the information matrix, stiffest first.
+    pub identifiability: Vec<EigenDirection>,
+    /// Course of the fit.
+    pub fit: Fit,
+}
+
+impl InferReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}
+
+/// A number with its unit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Quantity {
+    /// The number.
+    pub value: f64,
+    /// Its unit; empty if dimensionless.
+    pub unit: String,
+}
+
+/// Which cells took part.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CellCounts {
+    /// Indices of the frames used, zero-based.
+    pub frames: Vec<usize>,
+    /// Cells used, over all frames.
+    pub used: usize,
+    /// Cells left out, over all frames, by reason.
+    pub left_out: BTreeMap<String, usize>,
+}
+
+/// One parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Parameter {
+    /// Value.
+    pub value: f64,
+    /// 95 % interval; `null` for a parameter held fixed.
+    pub ci95: Option<[f64; 2]>,
+    /// Whether it was held fixed.
+    pub fixed: bool,
+    /// Unit; empty if dimensionless.
+    pub unit: String,
+}
+
+/// The parameters of the model and two combinations of them.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "the names of the file")]
+pub struct Parameters {
+    /// Area elasticity.
+    pub K_A: Parameter,
+    /// Perimeter elasticity.
+    pub K_P: Parameter,
+    /// Preferred perimeter.
+    pub P_0: Parameter,
+    /// Preferred area; never fitted, no velocity depends on it.
+    pub A_0: Parameter,
+    /// Chirality.
+    pub alpha: Parameter,
+    /// Chirality in units of a rate.
+    pub K_P_alpha: Parameter,
+    /// P_0/ℓ₀.
+    pub shape_index: Parameter,
+}
+
+/// The estimate without nudges; not finite (`null`) where it was not determined.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "the names of the file")]
+pub struct NaiveParameters {
+    /// Area elasticity.
+    pub K_A: f64,
+    /// Perimeter elasticity.
+    pub K_P: f64,
+    /// Preferred perimeter.
+    pub P_0: f64,
+    /// Chirality.
+    pub alpha: f64,
+    /// Chirality in units of a rate.
+    pub K_P_alpha: f64,
+    /// P_0/ℓ₀.
+    pub shape_index: f64,
+}
+
+/// Normalised mean square errors Σ‖v − v̂‖²/Σ‖v‖² over the cells used.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Nmse {
+    /// Naive parameters at the measured positions.
+    pub naive: f64,
+    /// Nudged parameters at the nudged positions (the fit's own data).
+    pub nudged: f64,
+    /// Nudged parameters at the measured positions.
+    pub un_nudged: f64,
+    /// Cells predicted from a fit that did not see their velocities.
+    pub cross_validated: Option<f64>,
+    /// Standard error of `cross_validated` over its folds.
+    pub cross_validated_standard_error: Option<f64>,
+    /// Whether a mean velocity was removed from the data.
+    pub mean_removed: MeanRemoved,
+}
+
+/// Which mean velocity was removed before the fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum MeanRemoved {
+    /// None.
+    None,
+    /// The mean over the used cells of each frame.
+    PerFrame,
+    /// The mean over the used cells of all frames.
+    Overall,
+}
+
+/// Measurement noise per component.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Noise {
+    /// Standard deviation of the positions, in units of length.
+    pub sigma_r: f64,
+    /// Standard deviation of the velocities, in units of length per time.
+    pub sigma_v: f64,
+    /// Where the numbers come from.
+    pub source: NoiseSource,
+}
+
+/// Where the noise levels come from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum NoiseSource {
+    /// Given on the command line.
+    Given,
+    /// Stated by the data set.
+    DataSet,
+    /// Estimated from these data.
+    Estimated,
+    /// Assumed for want of anything better.
+    Assumed,
+}
+
+/// The nudges as a whole.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Nudge {
+    /// Spring constant σ_v²/σ_r², in units of a rate squared.
+    pub k: f64,
+    /// Root mean square of the length of a nudge, in units of length.
+    pub rms: f64,
+    /// Effective number of parameters that the nudges use up.
+    pub degrees_of_freedom: f64,
+    /// Contacts between neighbours that the nudges changed (lost plus gained).
+    pub edges_changed: usize,
+}
+
+/// One direction in the space of parameters and how well the data determine it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EigenDirection {
+    /// Eigenvalue of the information matrix.
+    pub eigenvalue: f64,
+    /// Components of the unit vector by parameter.
+    pub direction: BTreeMap<String, f64>,
+}
+
+/// Course of the fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Fit {
+    /// How it ended.
+    pub status: FitStatus,
+    /// Number of iterations.
+    pub iterations: usize,
+    /// Penalised objective at the end, in units of the noise variance.
+    pub objective: f64,
+    /// The objective that a good fit is expected to reach (data minus parameters).
+    pub expected_objective: f64,
+    /// Objective at the start and after each iteration.
+    pub trace: Vec<f64>,
+}
+
+/// How a fit ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FitStatus {
+    /// At a minimum.
+    Converged,
+    /// At the limit of iterations, still descending.
+    IterationLimit,
+    /// Without a further descent although not at a minimum.
+    Stalled,
+}

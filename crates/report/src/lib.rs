@@ -1,0 +1,35 @@
+//! Figures, HTML pages and report files from results.
+//!
+//! This crate knows plain numbers only: no model, no fit, no files. The command line fills
+//! [`FrameView`] and [`InferReport`] and gets back text:
+//!
+//! - [`figure`]: one function per figure, each a stand-alone SVG. Charts stand on [`chart::Chart`]
+//!   (axes by plotters), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
+//! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
+//! - [`infer_report`]: what `report.json` holds, described by [`INFER_SCHEMA`].
+//!
+//! ```
+//! use voronudge_report::figure::{ErrorBar, Emphasis, error_bars};
+//! let bar = ErrorBar {
+//!     label: "cross-validated".into(), nmse: 0.31, standard_error: Some(0.02), emphasis: Emphasis::Main,
+//! };
+//! let svg = error_bars(&[bar]);
+//! assert!(svg.starts_with("<svg") && svg.contains("0.31 ± 0.02"));
+//! ```
+
+pub mod arrows;
+pub mod chart;
+pub mod colour;
+mod error;
+pub mod figure;
+pub mod infer_report;
+pub mod map;
+pub mod numbers;
+pub mod page;
+pub mod svg;
+mod view;
+
+pub use error::ReportError;
+pub use infer_report::{INFER_SCHEMA, InferReport};
+pub use page::InferPage;
+pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

@@ -1,0 +1,287 @@
+//! Pictures of the plane: equal aspect, clipped to the cells, a scale bar and a legend beneath.
+
+use crate::numbers::{nice_below, significant};
+use crate::svg::{Anchor, PathData, Svg, TextStyle};
+use crate::view::{CellView, FrameView, Units, is_finite};
+
+/// Nominal width of every map in pixels.
+pub const MAP_WIDTH: f64 = 440.0;
+/// Greatest nominal height of the mapped area in pixels.
+const MAX_HEIGHT: f64 = 560.0;
+/// Line distance of hatching in pixels.
+const HATCH: f64 = 4.0;
+
+/// The mapping from the tissue's plane (y up) to the picture (y down), the same in x and y.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Viewport {
+    corner: [f64; 2],
+    scale: f64,
+    size: [f64; 2],
+    spacing: f64,
+}
+
+impl Viewport {
+    /// The viewport that shows all cell centres and a margin of one cell; `None` without cells.
+    #[must_use]
+    pub fn around(frame: &FrameView) -> Option<Self> {
+        let centres = || {
+            frame
+                .cells
+                .iter()
+                .map(|cell| cell.centre)
+                .filter(|&at| is_finite(at))
+        };
+        let bounds = |axis: usize| {
+            let low = centres().map(|at| at[axis]).fold(f64::INFINITY, f64::min);
+            let high = centres()
+                .map(|at| at[axis])
+                .fold(f64::NEG_INFINITY, f64::max);
+            [low, high]
+        };
+        let [x, y] = [bounds(0), bounds(1)];
+        let extent = [x[1] - x[0], y[1] - y[0]];
+        if !is_finite(extent) {
+            return None;
+        }
+        let guess = (extent[0] * extent[1] / centres().count() as f64).sqrt();
+        let fallback = [guess, extent[0].max(extent[1]), 1.0];
+        let spacing = frame.spacing().or_else(|| {
+            fallback
+                .into_iter()
+                .find(|&length| length.is_finite() && length > 0.0)
+        })?;
+        let margin = 0.85 * spacing;
+        let [width, height] = extent.map(|length| length + 2.0 * margin);
+        let scale = (MAP_WIDTH / width).min(MAX_HEIGHT / height);
+        let corner = [x[0] - margin, y[1] + margin];
+        Some(Self {
+            corner,
+            scale,
+            size: [width * scale, height * scale],
+            spacing,
+        })
+    }
+
+    /// Place in the picture of a point of the plane.
+    #[must_use]
+    pub fn place(&self, point: [f64; 2]) -> [f64; 2] {
+        [
+            (point[0] - self.corner[0]) * self.scale,
+            (self.corner[1] - point[1]) * self.scale,
+        ]
+    }
+
+    /// Pixels per unit of length.
+    #[must_use]
+    pub fn scale(&self) -> f64 {
+        self.scale
+    }
+
+    /// Typical distance between cells, in units of length.
+    #[must_use]
+    pub fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
+    /// The placed polygon of a cell; `None` where it is not closed or is absurdly far away.
+    #[must_use]
+    pub fn polygon(&self, cell: &CellView) -> Option<Vec<[f64; 2]>> {
+        let reach = 4.0 * MAP_WIDTH;
+        let polygon: Vec<[f64; 2]> = cell
+            .polygon
+            .iter()
+            .map(|&vertex| self.place(vertex))
+            .collect();
+        let near = polygon.iter().all(|at| at.iter().all(|x| x.abs() < reach));
+        (polygon.len() >= 3 && near).then_some(polygon)
+    }
+}
+
+/// A map under construction: draw on `layer`, then [`Map::with_legend`].
+#[derive(Debug, Clone)]
+pub struct Map {
+    /// The mapping to use.
+    pub view: Viewport,
+    /// The drawing area, clipped to the viewport.
+    pub layer: Svg,
+    title: String,
+}
+
+impl Map {
+    /// An empty map of a frame; `None` if the frame has no cell with a finite position.
+    #[must_use]
+    pub fn new(frame: &FrameView, title: &str) -> Option<Self> {
+        let view = Viewport::around(frame)?;
+        let title = format!("{title}, {}", frame.label);
+        Some(Self {
+            view,
+            layer: Svg::new(view.size, &title),
+            title,
+        })
+    }
+
+    /// Draws faint outlines of all cells, those left out on grey, and the box.
+    pub fn outlines(&mut self, frame: &FrameView) {
+        let [mut used, mut left_out] = [PathData::new(), PathData::new()];
+        for cell in &frame.cells {
+            if let Some(polygon) = self.view.polygon(cell) {
+                if cell.is_used() {
+                    &mut used
+                } else {
+                    &mut left_out
+                }
+                .polygon(&polygon);
+            }
+        }
+        let stroke = r##"stroke="#c4c4c4" stroke-width=".6" stroke-linejoin="round""##;
+        self.layer
+            .path(&left_out, &format!(r##"fill="#ebebeb" {stroke}"##));
+        self.layer.path(&used, &format!(r#"fill="none" {stroke}"#));
+        self.boundary(frame);
+    }
+
+    /// Draws the outline of the periodic box, dashed, where the frame has one.
+    pub fn boundary(&mut self, frame: &FrameView) {
+        if let Some([low, high]) = frame.outline {
+            let mut path = PathData::new();
+            path.rectangle(self.view.place(low), self.view.place(high));
+            self.layer.path(
+                &path,
+                r##"fill="none" stroke="#666" stroke-dasharray="4 3""##,
+            );
+        }
+    }
+
+    /// Closes the drawing area and adds an empty legend strip of the given height beneath it.
+    #[must_use]
+    pub fn with_legend(self, height: f64) -> Legend {
+        let [width, map_height] = self.view.size;
+        let mut svg = Svg::new([MAP_WIDTH, map_height + height], &self.title);
+        let left = (MAP_WIDTH - width) / 2.0;
+        svg.nest([left, 0.0], &self.layer);
+        let mut border = PathData::new();
+        border.rectangle([left + 0.4, 0.4], [left + width - 0.4, map_height - 0.4]);
+        svg.path(&border, r##"fill="none" stroke="#bbb" stroke-width=".8""##);
+        Legend {
+            svg,
+            top: map_height,
+            scale: self.view.scale,
+        }
+    }
+}
+
+/// The strip beneath a map, with the whole picture it belongs to.
+#[derive(Debug, Clone)]
+pub struct Legend {
+    /// The whole picture.
+    pub svg: Svg,
+    /// Where the strip begins.
+    pub top: f64,
+    scale: f64,
+}
+
+impl Legend {
+    /// Pixels per unit of length of the map above.
+    #[must_use]
+    pub fn pixels_per_length(&self) -> f64 {
+        self.scale
+    }
+
+    /// Draws a scale bar of round length, at most a quarter of the map wide, at the left.
+    pub fn scale_bar(&mut self, units: &Units) {
+        let Some(length) = nice_below(0.25 * MAP_WIDTH / self.scale) else {
+            return;
+        };
+        let end = 4.0 + length * self.scale;
+        let y = self.top + 15.0;
+        let mut bar = PathData::new();
+        bar.line(&[[4.0, y - 4.0], [4.0, y + 4.0]]);
+        bar.line(&[[4.0, y], [end, y]]);
+        bar.line(&[[end, y - 4.0], [end, y + 4.0]]);
+        self.svg
+            .path(&bar, r##"fill="none" stroke="#222" stroke-width="1.6""##);
+        let label = format!("{} {}", significant(length, 1), units.length_text());
+        self.svg.text(
+            [end + 7.0, y + 4.0],
+            &label,
+            TextStyle::label(Anchor::Start),
+        );
+    }
+
+    /// Draws the entry for cells left out, on the second line at `x`, unless there are none.
+    pub fn left_out(&mut self, x: f64, frame: &FrameView, swatch: Swatch) {
+        let count = frame.left_out();
+        if count == 0 {
+            return;
+        }
+        let y = self.top + 32.0;
+        let corners = [[x, y], [x + 14.0, y], [x + 14.0, y + 11.0], [x, y + 11.0]];
+        let mut outline = PathData::new();
+        outline.polygon(&corners);
+        let fill = match swatch {
+            Swatch::Grey => "#ebebeb",
+            Swatch::Hatched => "none",
+        };
+        self.svg.path(
+            &outline,
+            &format!(r##"fill="{fill}" stroke="#999" stroke-width=".7""##),
+        );
+        if swatch == Swatch::Hatched {
+            let mut lines = PathData::new();
+            hatch(&mut lines, &corners);
+            self.svg.path(&lines, HATCH_STYLE);
+        }
+        let label = format!("left out ({count})");
+        self.svg
+            .text([x + 20.0, y + 9.5], &label, TextStyle::quiet(Anchor::Start));
+    }
+}
+
+/// How cells left out look.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Swatch {
+    /// Plain light grey.
+    Grey,
+    /// Diagonal lines.
+    Hatched,
+}
+
+/// Presentation attributes of hatch lines.
+pub const HATCH_STYLE: &str = r##"fill="none" stroke="#9a9a9a" stroke-width=".7""##;
+
+/// Adds diagonal lines across a convex polygon.
+pub fn hatch(path: &mut PathData, polygon: &[[f64; 2]]) {
+    let level = |at: [f64; 2]| at[0] + at[1];
+    let low = polygon
+        .iter()
+        .map(|&at| level(at))
+        .fold(f64::INFINITY, f64::min);
+    let high = polygon
+        .iter()
+        .map(|&at| level(at))
+        .fold(f64::NEG_INFINITY, f64::max);
+    if !(high - low).is_finite() || high - low > 4.0 * MAP_WIDTH {
+        return;
+    }
+    let mut line = (low / HATCH).ceil();
+    while line * HATCH < high {
+        let target = line * HATCH;
+        let ends: Vec<[f64; 2]> = (0..polygon.len())
+            .filter_map(|index| {
+                let [from, to] = [polygon[index], polygon[(index + 1) % polygon.len()]];
+                let [a, b] = [level(from) - target, level(to) - target];
+                ((a < 0.0) != (b < 0.0)).then(|| {
+                    let share = a / (a - b);
+                    [
+                        from[0] + share * (to[0] - from[0]),
+                        from[1] + share * (to[1] - from[1]),
+                    ]
+                })
+            })
+            .collect();
+        if let [from, to] = ends[..] {
+            path.line(&[from, to]);
+        }
+        line += 1.0;
+    }
+}

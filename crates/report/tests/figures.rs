@@ -1,0 +1,220 @@
+//! What figures must contain, must not contain, and how large they may be.
+
+mod sample;
+
+use voronudge_report::arrows::ArrowScale;
+use voronudge_report::colour::Palette;
+use voronudge_report::figure::{
+    CellScalar, Emphasis, ErrorBar, Estimate, NudgeHistogram, ObjectiveTrace, ParameterRow,
+    VelocityField, cell_map, error_bars, nudge_histogram, nudge_map, objective_trace,
+    parameter_intervals, predicted_against_measured, velocity_map, velocity_pairs,
+};
+use voronudge_report::{FrameView, Units};
+
+fn units() -> Units {
+    Units {
+        length: "um".into(),
+        time: "min".into(),
+    }
+}
+
+/// All figures of one frame.
+fn figures(frame: FrameView) -> Vec<(&'static str, String)> {
+    let frames = [frame];
+    let frame = &frames[0];
+    let units = units();
+    let velocities = ArrowScale::velocities(&frames);
+    let nudges = ArrowScale::nudges(&frames);
+    let pairs = velocity_pairs(&frames);
+    let signed = CellScalar {
+        values: frame.cells.iter().map(|cell| cell.nudge[0]).collect(),
+        label: "nudge along x (µm)".into(),
+        palette: Palette::Diverging { centre: 0.0 },
+        limits: None,
+    };
+    let velocity = |field| velocity_map(frame, field, velocities.as_ref(), &units);
+    vec![
+        (
+            "area",
+            cell_map(frame, &CellScalar::area_ratio(frame), &units),
+        ),
+        (
+            "shape",
+            cell_map(frame, &CellScalar::shape_index(frame), &units),
+        ),
+        ("signed", cell_map(frame, &signed, &units)),
+        ("measured", velocity(VelocityField::Measured)),
+        ("predicted", velocity(VelocityField::Predicted)),
+        ("residual", velocity(VelocityField::Residual)),
+        ("nudges", nudge_map(frame, nudges.as_ref(), &units)),
+        ("scatter", predicted_against_measured(&pairs, 0.12, &units)),
+        (
+            "histogram",
+            nudge_histogram(&NudgeHistogram::new(&frames, 11.0, 0.013)),
+        ),
+    ]
+}
+
+fn assert_sound(name: &str, svg: &str) {
+    assert!(
+        svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"),
+        "{name}"
+    );
+    assert!(svg.contains("viewBox"), "{name}");
+    let drawn = svg
+        .split(" d=\"")
+        .skip(1)
+        .filter_map(|rest| rest.split('"').next());
+    for path in drawn.chain([svg]) {
+        assert!(
+            !path.contains("NaN") && !path.contains("inf"),
+            "{name}: {path:.200}"
+        );
+    }
+    assert!(!svg.contains("<script") && !svg.contains("href"), "{name}");
+}
+
+#[test]
+fn maps_state_scale_and_unit() {
+    for (name, svg) in figures(sample::frame("frame 6", 20)) {
+        assert_sound(name, &svg);
+        let wanted: &[&str] = match name {
+            "area" => &["area / mean area", ">50 µm<", "left out (", "#440154"],
+            "shape" => &["shape index P/√A", ">50 µm<"],
+            "signed" => &["nudge along x (µm)", "#001261"],
+            "measured" | "predicted" | "residual" => &[">50 µm<", ">1 µm/min<", "left out ("],
+            "nudges" => &["drawn ×", ">0.2 µm, ", "contacts lost (2)", "gained (1)"],
+            "scatter" => &[
+                "measured velocity (µm/min)",
+                "predicted velocity (µm/min)",
+                "NMSE = 0.12",
+            ],
+            "histogram" => &["number of cells", "assumed noise"],
+            _ => &[],
+        };
+        for text in wanted {
+            assert!(svg.contains(text), "{name} lacks {text}");
+        }
+    }
+}
+
+#[test]
+fn the_three_velocity_maps_share_their_reference_arrow() {
+    let frames = [sample::frame("frame 6", 20)];
+    let scale = ArrowScale::velocities(&frames);
+    let reference = |field| {
+        let svg = velocity_map(&frames[0], field, scale.as_ref(), &units());
+        let place = svg.find(" µm/min</text>").unwrap();
+        svg[..place].rsplit("<text ").next().unwrap().to_owned()
+    };
+    let [measured, predicted, residual] = VelocityField::ALL.map(reference);
+    assert_eq!(measured, predicted);
+    assert_eq!(measured, residual);
+}
+
+#[test]
+fn a_map_of_1700_cells_stays_small() {
+    for (name, svg) in figures(sample::frame("frame 6", 41)) {
+        assert!(svg.len() < 300_000, "{name}: {} bytes", svg.len());
+    }
+}
+
+#[test]
+fn unknown_numbers_and_empty_frames_do_no_harm() {
+    let mut infinite = sample::frame("frame 6", 5);
+    for cell in &mut infinite.cells {
+        cell.area = f64::INFINITY;
+        cell.nudge = [f64::NAN; 2];
+    }
+    for frame in [sample::degenerate_frame(), FrameView::default(), infinite] {
+        for (name, svg) in figures(frame) {
+            assert_sound(name, &svg);
+        }
+    }
+    for (name, svg) in figures(FrameView::default()) {
+        assert!(svg.contains("no data"), "{name}");
+    }
+    let empty = ObjectiveTrace {
+        values: &[],
+        expected: Some(3.0),
+    };
+    for svg in [
+        error_bars(&[]),
+        parameter_intervals(&[]),
+        objective_trace(&empty),
+    ] {
+        assert!(svg.contains("no data"));
+    }
+}
+
+#[test]
+fn bars_mark_one_and_print_their_numbers() {
+    let bar = |label: &str, nmse: f64| ErrorBar {
+        label: label.into(),
+        nmse,
+        standard_error: Some(0.02),
+        emphasis: Emphasis::Quiet,
+    };
+    let svg = error_bars(&[
+        bar("naive fit", 41.0),
+        bar("nudged", 0.31),
+        bar("lost", f64::NAN),
+    ]);
+    assert_sound("bars", &svg);
+    for text in [
+        "naive fit",
+        "41 ± 0.02 ▸",
+        "0.31 ± 0.02",
+        "1: predicts nothing",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(!svg.contains("lost"));
+}
+
+#[test]
+fn intervals_have_symbols_units_and_naive_values() {
+    let row = |symbol: &str, value: f64, ci95: Option<[f64; 2]>, naive: f64| ParameterRow {
+        symbol: symbol.into(),
+        unit: "1/um^2".into(),
+        value,
+        ci95,
+        naive: Some(naive),
+        estimate: if ci95.is_some() {
+            Estimate::Fitted
+        } else {
+            Estimate::Fixed
+        },
+        meaning: String::new(),
+    };
+    let svg = parameter_intervals(&[
+        row("K_P α", 0.071, Some([0.068, 0.074]), -5.0),
+        row("P_0", 3.9, Some([f64::NAN, f64::INFINITY]), f64::NAN),
+        row("K_A", 0.1, None, 0.1),
+        row("lost", f64::NAN, None, 0.1),
+    ]);
+    assert_sound("intervals", &svg);
+    for text in [
+        ">P</tspan>",
+        "0.0710 1/µm²",
+        "−5.00",
+        "(fixed)",
+        "95 % interval",
+    ] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(!svg.contains("lost"));
+}
+
+#[test]
+fn the_trace_names_its_axes_and_expectation() {
+    let values = [30_000.0, f64::NAN, 900.0, 870.0];
+    let svg = objective_trace(&ObjectiveTrace {
+        values: &values,
+        expected: Some(856.0),
+    });
+    assert_sound("trace", &svg);
+    for text in ["iteration", "penalised objective", "expected 856", "1000"] {
+        assert!(svg.contains(text), "{text}");
+    }
+}

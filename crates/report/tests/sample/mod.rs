@@ -1,0 +1,287 @@
+//! Synthetic frames and reports, shared by the tests and the example.
+
+use std::collections::BTreeMap;
+
+use voronudge_report::infer_report::{
+    CellCounts, EigenDirection, Fit, FitStatus, InferReport, InputFile, MeanRemoved,
+    NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, Quantity, RunRecord,
+};
+use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Units};
+
+/// Distance between neighbouring cells in µm.
+const SPACING: f64 = 12.0;
+
+/// Uniform numbers in −1..1 that depend on their index only.
+fn noise(index: usize, stream: u64) -> f64 {
+    let mut state = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (stream << 17);
+    for _ in 0..3 {
+        state ^= state >> 30;
+        state = state.wrapping_mul(0xbf58_476d_1ce4_e5b9);
+        state ^= state >> 27;
+    }
+    (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+/// A honeycomb with jittered vertices, `side` × `side` cells, the rim left out.
+pub fn frame(label: &str, side: usize) -> FrameView {
+    let row_height = SPACING * 0.75f64.sqrt();
+    let cells = (0..side * side).map(|index| {
+        let (row, column) = (index / side, index % side);
+        let shift = if row % 2 == 0 { 0.0 } else { 0.5 };
+        let centre = [(column as f64 + shift) * SPACING, row as f64 * row_height];
+        let polygon: Vec<[f64; 2]> = (0..6)
+            .map(|corner| {
+                let angle = (corner as f64 + 0.5) * std::f64::consts::FRAC_PI_3;
+                let reach = SPACING / 3f64.sqrt();
+                jitter([
+                    centre[0] + reach * angle.cos(),
+                    centre[1] + reach * angle.sin(),
+                ])
+            })
+            .collect();
+        let rim = row == 0 || column == 0 || row + 1 == side || column + 1 == side;
+        let middle = side as f64 * SPACING / 2.0;
+        let swirl = [-(centre[1] - middle) / 90.0, (centre[0] - middle) / 90.0];
+        let predicted = [
+            swirl[0] + 0.5 * noise(index, 3),
+            swirl[1] + 0.5 * noise(index, 4),
+        ];
+        let measured = [
+            predicted[0] + 0.35 * noise(index, 5),
+            predicted[1] + 0.35 * noise(index, 6),
+        ];
+        let centre = [centre[0] + noise(index, 1), centre[1] + noise(index, 2)];
+        CellView {
+            centre,
+            area: area(&polygon),
+            perimeter: perimeter(&polygon),
+            polygon: if rim && index % 3 == 0 {
+                Vec::new()
+            } else {
+                polygon
+            },
+            status: if rim || index % 57 == 20 {
+                CellStatus::LeftOut
+            } else {
+                CellStatus::Used
+            },
+            measured: (index % 41 != 7).then_some(measured),
+            predicted: (!rim).then_some(predicted),
+            nudge: if rim {
+                [0.0; 2]
+            } else {
+                [0.2 * noise(index, 7), 0.2 * noise(index, 8)]
+            },
+        }
+    });
+    let cells: Vec<CellView> = cells.collect();
+    let edge = |from: usize, to: usize| [cells[from].centre, cells[to].centre];
+    let middle = cells.len() / 2 + side / 3;
+    let changed_edges = ChangedEdges {
+        lost: vec![
+            edge(middle, middle + 1),
+            edge(middle + 3 * side, middle + 3 * side + 1),
+        ],
+        gained: vec![edge(middle - side, middle + side)],
+    };
+    FrameView {
+        label: label.to_owned(),
+        cells,
+        changed_edges,
+        outline: None,
+    }
+}
+
+/// A few cells with everything that can be unknown unknown.
+pub fn degenerate_frame() -> FrameView {
+    let cell = |x: f64, nudge: f64| CellView {
+        centre: [x, 0.5 * x],
+        polygon: vec![[x, 0.0], [f64::NAN, 1.0], [x + 1.0, f64::INFINITY]],
+        area: f64::NAN,
+        perimeter: 4.0,
+        status: CellStatus::Used,
+        measured: Some([f64::NAN, 0.1]),
+        predicted: Some([0.1, f64::INFINITY]),
+        nudge: [nudge, 0.0],
+    };
+    FrameView {
+        label: "frame <0>".to_owned(),
+        cells: vec![cell(0.0, f64::NAN), cell(2.0, 0.0), cell(f64::NAN, 1.0)],
+        changed_edges: ChangedEdges {
+            lost: vec![[[0.0, f64::NAN], [1.0, 1.0]]],
+            gained: vec![],
+        },
+        outline: None,
+    }
+}
+
+/// A page around a report and frames.
+pub fn page<'a>(report: &'a InferReport, frames: &'a [FrameView]) -> InferPage<'a> {
+    InferPage {
+        title: "embryo <3>",
+        headline: "The chiral Voronoi model explains 69 % of the motion, and the tissue turns \
+                   counter-clockwise (K_P α = 0.071 ± 0.003 per minute).",
+        summary: &[],
+        report,
+        frames,
+    }
+}
+
+/// A filled report.
+pub fn report() -> InferReport {
+    let fitted = |value: f64, half: f64, unit: &str| Parameter {
+        value,
+        ci95: Some([value - half, value + half]),
+        fixed: false,
+        unit: unit.to_owned(),
+    };
+    let held = |value: f64, unit: &str| Parameter {
+        value,
+        ci95: None,
+        fixed: true,
+        unit: unit.into(),
+    };
+    let direction = |eigenvalue: f64, components: [f64; 4]| EigenDirection {
+        eigenvalue,
+        direction: ["K_A", "K_P", "K_P_P_0", "K_P_alpha"]
+            .into_iter()
+            .map(String::from)
+            .zip(components)
+            .collect(),
+    };
+    InferReport {
+        run: RunRecord {
+            command: "infer".into(),
+            command_line: "voronudge infer embryo3 --frames 6,7 --fix K_A=0.1 --out <fit>".into(),
+            version: "0.1.0".into(),
+            seed: 1,
+            threads: 2,
+            inputs: vec![InputFile {
+                path: "embryo3/positions.npy".into(),
+                sha256: "0f".repeat(32),
+            }],
+            wall_seconds: 12.43,
+            warnings: vec![
+                "The position noise was estimated from these data; if you know it, say so with \
+                 --position-noise."
+                    .into(),
+            ],
+        },
+        units: Units {
+            length: "um".into(),
+            time: "min".into(),
+        },
+        length_scale: Quantity {
+            value: 11.17,
+            unit: "um".into(),
+        },
+        cells: CellCounts {
+            frames: vec![6, 7],
+            used: 636,
+            left_out: BTreeMap::from([("open_polygon".into(), 152), ("no_velocity".into(), 12)]),
+        },
+        parameters: Parameters {
+            K_A: held(0.0008, "1/(um^2*min)"),
+            K_P: fitted(0.021, 0.0057, "1/min"),
+            P_0: fitted(44.4, 1.6, "um"),
+            A_0: held(124.8, "um^2"),
+            alpha: fitted(3.4, 0.9, ""),
+            K_P_alpha: fitted(0.0714, 0.0031, "1/min"),
+            shape_index: fitted(3.97, 0.14, ""),
+        },
+        naive: NaiveParameters {
+            K_A: f64::NAN,
+            K_P: 0.012,
+            P_0: 37.9,
+            alpha: -0.5,
+            K_P_alpha: -0.006,
+            shape_index: 3.4,
+        },
+        nmse: Nmse {
+            naive: 0.87,
+            nudged: 0.12,
+            un_nudged: 0.36,
+            cross_validated: Some(0.31),
+            cross_validated_standard_error: Some(0.02),
+            mean_removed: MeanRemoved::PerFrame,
+        },
+        noise: Noise {
+            sigma_r: 0.14,
+            sigma_v: 0.09,
+            source: NoiseSource::Estimated,
+        },
+        nudge: Nudge {
+            k: 0.41,
+            rms: 0.16,
+            degrees_of_freedom: 412.0,
+            edges_changed: 3,
+        },
+        identifiability: vec![
+            direction(8.1e4, [0.01, -0.05, 0.12, 0.99]),
+            direction(310.0, [0.02, 0.26, -0.95, 0.13]),
+            direction(12.0, [0.15, -0.95, -0.26, -0.02]),
+            direction(0.04, [0.99, 0.15, 0.05, 0.0]),
+        ],
+        fit: Fit {
+            status: FitStatus::Converged,
+            iterations: 17,
+            objective: 871.0,
+            expected_objective: 856.0,
+            trace: (0..18)
+                .map(|step| 870.0 + 29_000.0 * (-0.7 * f64::from(step)).exp())
+                .collect(),
+        },
+    }
+}
+
+/// A report in which nothing is known.
+pub fn degenerate_report() -> InferReport {
+    let mut report = report();
+    report.run.warnings = vec!["only 2 cells <script>alert(1)</script> were usable".into()];
+    report.cells = CellCounts {
+        frames: vec![0],
+        used: 2,
+        left_out: BTreeMap::new(),
+    };
+    for parameter in [
+        &mut report.parameters.K_P,
+        &mut report.parameters.alpha,
+        &mut report.parameters.K_P_alpha,
+    ] {
+        parameter.value = f64::NAN;
+        parameter.ci95 = Some([f64::NEG_INFINITY, f64::INFINITY]);
+    }
+    report.nmse.naive = 41.0;
+    report.nmse.nudged = f64::NAN;
+    report.nmse.un_nudged = 1.03;
+    report.nmse.cross_validated = None;
+    report.noise.sigma_r = f64::NAN;
+    report.identifiability.clear();
+    report.fit.status = FitStatus::Stalled;
+    report.fit.trace = vec![f64::NAN, -1.0];
+    report
+}
+
+/// Moves a vertex by an amount that depends on its place only, so that neighbours agree.
+fn jitter(vertex: [f64; 2]) -> [f64; 2] {
+    let key = ((vertex[0] * 2.0).round() as i64 * 7919 + (vertex[1] * 2.0).round() as i64) as usize;
+    [
+        vertex[0] + 1.7 * noise(key, 9),
+        vertex[1] + 1.7 * noise(key, 10),
+    ]
+}
+
+fn area(polygon: &[[f64; 2]]) -> f64 {
+    let twice: f64 = sides(polygon).map(|[a, b]| a[0] * b[1] - b[0] * a[1]).sum();
+    twice / 2.0
+}
+
+fn perimeter(polygon: &[[f64; 2]]) -> f64 {
+    sides(polygon)
+        .map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]))
+        .sum()
+}
+
+fn sides(polygon: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {
+    (0..polygon.len()).map(|index| [polygon[index], polygon[(index + 1) % polygon.len()]])
+}
