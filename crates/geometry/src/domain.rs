@@ -90,12 +90,7 @@ impl PeriodicBox {
 impl Domain {
     /// Displacement from cell `from` to the image of cell `to` that is `image` lattice vectors away.
     #[inline]
-    pub fn displacement<S: Scalar>(
-        &self,
-        from: Vector<S>,
-        to: Vector<S>,
-        image: [i16; 2],
-    ) -> Vector<S> {
+    pub fn displacement<S: Scalar>(&self, from: Vector<S>, to: Vector<S>, image: [i16; 2]) -> Vector<S> {
         let d = to - from;
         match self {
             Self::Periodic(cell) if image != [0, 0] => {
@@ -122,11 +117,7 @@ mod tests {
     #[test]
     fn wrapping_lands_in_the_box_and_differs_by_a_lattice_vector() {
         let cell = PeriodicBox::sheared([3.0, 2.0], 0.7).unwrap();
-        for r in [
-            Vector::new(-0.1, 5.3),
-            Vector::new(7.0, -4.1),
-            Vector::new(0.0, 0.0),
-        ] {
+        for r in [Vector::new(-0.1, 5.3), Vector::new(7.0, -4.1), Vector::new(0.0, 0.0)] {
             let w = cell.wrap(r);
             assert!((0.0..3.0).contains(&w.x) && (0.0..2.0).contains(&w.y), "{w}");
             assert!((r - w - cell.translation(cell.image(r))).norm() < 1e-14);

@@ -79,14 +79,20 @@ impl Error {
             Self::BoxSide { .. } | Self::BoxOffset { .. } => {
                 "give the side lengths of the periodic box in the unit of the positions"
             }
-            Self::Position { .. } => "mark absent cells by NaN in both coordinates, and give positions near the origin",
+            Self::Position { .. } => {
+                "mark absent cells by NaN in both coordinates, and give positions near the origin"
+            }
             Self::TooFewCells { .. } => "give more cells, or a periodic box",
             Self::DuplicateCells { .. } => {
                 "remove one of the two; in a periodic box two positions may coincide after wrapping, which a box that is \
                  too small causes"
             }
-            Self::Collinear { .. } => "cells on a line have no Voronoi polygons; check that x and y are different columns",
-            Self::Inconsistent { .. } => "several cells lie on one circle to rounding precision; move them by a tiny random amount",
+            Self::Collinear { .. } => {
+                "cells on a line have no Voronoi polygons; check that x and y are different columns"
+            }
+            Self::Inconsistent { .. } => {
+                "several cells lie on one circle to rounding precision; move them by a tiny random amount"
+            }
             Self::TooManyCells { .. } => "split the data",
         })
     }

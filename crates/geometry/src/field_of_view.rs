@@ -45,10 +45,8 @@ impl FieldOfView {
             .iter()
             .enumerate()
             .map(|(cell, &own_visibility)| {
-                let neighbours_count = tessellation
-                    .neighbours(cell)
-                    .iter()
-                    .all(|&j| own[j as usize] == Visibility::Counted);
+                let neighbours_count =
+                    tessellation.neighbours(cell).iter().all(|&j| own[j as usize] == Visibility::Counted);
                 match own_visibility {
                     Visibility::Counted if !neighbours_count => Visibility::NextToRim,
                     other => other,

@@ -21,7 +21,7 @@
 //! let mut polygon = CellPolygon::<f64>::default();
 //! polygon.fill(&tessellation, &positions, 5);
 //! assert_eq!(polygon.len(), 6);
-//! assert!((polygon.area() - dx * dy).abs() < 1e-14);
+//! assert!((polygon.shape().area - dx * dy).abs() < 1e-14);
 //! # Ok::<(), voronudge_geometry::Error>(())
 //! ```
 
@@ -37,7 +37,7 @@ mod tessellation;
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
 pub use field_of_view::{FieldOfView, Visibility};
-pub use plane::{Vector, circumcentre, cross, dot, quarter_turn};
-pub use polygon::{CellPolygon, areas, perimeters};
+pub use plane::{Corner, Vector, circumcentre, cross, dot, quarter_turn, side_direction};
+pub use polygon::{CellPolygon, Shape, areas, perimeters};
 pub use scalar::{Scalar, lift};
 pub use tessellation::{Tessellation, Triangle};

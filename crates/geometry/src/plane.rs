@@ -23,7 +23,7 @@ pub fn quarter_turn<S: Scalar>(a: Vector<S>) -> Vector<S> {
     Vector::new(-a.y, a.x)
 }
 
-/// Circumcentre `c` of the triangle (0, a, b), from `a·c = a²/2`, `b·c = b²/2`:
+/// Circumcentre `c` of the triangle (0, a, b) from `a·c = a²/2`, `b·c = b²/2`:
 ///
 /// `c = ẑ × (a b² − b a²) / (2 a × b)`
 ///
@@ -36,10 +36,49 @@ pub fn quarter_turn<S: Scalar>(a: Vector<S>) -> Vector<S> {
 /// ```
 #[inline]
 pub fn circumcentre<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
-    let (a2, b2) = (dot(a, a), dot(b, b));
-    let scale = (cross(a, b) * 2.0).recip();
-    Vector::new(
-        (b.y * a2 - a.y * b2) * scale,
-        (a.x * b2 - b.x * a2) * scale,
-    )
+    Corner::new(a, b).centre
+}
+
+/// The triangle (0, a, b) of a cell and two consecutive neighbours, counter-clockwise, with its circumcentre.
+#[derive(Debug, Clone, Copy)]
+pub struct Corner<S> {
+    /// First neighbour, relative to the cell.
+    pub a: Vector<S>,
+    /// Second neighbour, relative to the cell.
+    pub b: Vector<S>,
+    /// Circumcentre, relative to the cell: the Voronoi vertex.
+    pub centre: Vector<S>,
+    /// `1 / (a × b)`
+    inverse_cross: S,
+}
+
+impl<S: Scalar> Corner<S> {
+    /// See [`circumcentre`].
+    #[inline]
+    pub fn new(a: Vector<S>, b: Vector<S>) -> Self {
+        let (a2, b2) = (dot(a, a), dot(b, b));
+        let inverse_cross = cross(a, b).recip();
+        let half = inverse_cross * 0.5;
+        let centre = Vector::new((b.y * a2 - a.y * b2) * half, (a.x * b2 - b.x * a2) * half);
+        Self { a, b, centre, inverse_cross }
+    }
+
+    /// Forces on the two neighbours that a force `f` on the vertex transmits: `fᵀ ∂c/∂a` and `fᵀ ∂c/∂b`.
+    ///
+    /// Differentiating `a·c = a²/2`, `b·c = b²/2` gives `∂c/∂a = −(ẑ×b)/(a×b) ⊗ (a − c)` and
+    /// `∂c/∂b = (ẑ×a)/(a×b) ⊗ (b − c)`. The rest of `f` acts on the cell itself.
+    #[inline]
+    pub fn transmit(&self, f: Vector<S>) -> [Vector<S>; 2] {
+        let (on_a, on_b) = (cross(f, self.b) * self.inverse_cross, cross(self.a, f) * self.inverse_cross);
+        [(self.a - self.centre) * on_a, (self.b - self.centre) * on_b]
+    }
+}
+
+/// Unit vector along the side that faces a neighbour at `d`, counter-clockwise about the cell: `ẑ × d / |d|`.
+///
+/// A Voronoi side is perpendicular to the line between the centres. Its direction taken from the centres stays smooth
+/// where the side shrinks to nothing.
+#[inline]
+pub fn side_direction<S: Scalar>(d: Vector<S>) -> Vector<S> {
+    quarter_turn(d) * dot(d, d).sqrt().recip()
 }

@@ -1,7 +1,16 @@
-//! One cell: its ring, its polygon, and the maps between vertices and centres.
+//! One cell: its ring and its Voronoi polygon.
 
-use crate::{Scalar, Tessellation, Vector, circumcentre, cross, dot, quarter_turn};
+use crate::{Corner, Scalar, Tessellation, Vector, cross, dot, quarter_turn, side_direction};
 use rayon::prelude::*;
+
+/// The size and shape of a cell, as far as forces usually depend on it.
+#[derive(Debug, Clone, Copy)]
+pub struct Shape<S> {
+    /// Area `A = ½ Σ c_{m−1} × c_m`.
+    pub area: S,
+    /// Perimeter `P = Σ ℓ_m`.
+    pub perimeter: S,
+}
 
 /// The Voronoi polygon of one cell, in coordinates relative to the cell's centre.
 ///
@@ -11,25 +20,19 @@ use rayon::prelude::*;
 #[derive(Debug, Clone)]
 pub struct CellPolygon<S> {
     ring: Vec<Vector<S>>,
-    vertices: Vec<Vector<S>>,
-    /// 1 / (d_m × d_{m+1})
-    inverse_cross: Vec<S>,
-    tangents: Vec<Vector<S>>,
-    lengths: Vec<S>,
-    area: S,
-    perimeter: S,
+    corners: Vec<Corner<S>>,
+    directions: Vec<Vector<S>>,
+    shape: Shape<S>,
 }
 
 impl<S: Scalar> Default for CellPolygon<S> {
     fn default() -> Self {
+        let zero = S::constant(0.0);
         Self {
             ring: Vec::new(),
-            vertices: Vec::new(),
-            inverse_cross: Vec::new(),
-            tangents: Vec::new(),
-            lengths: Vec::new(),
-            area: S::constant(0.0),
-            perimeter: S::constant(0.0),
+            corners: Vec::new(),
+            directions: Vec::new(),
+            shape: Shape { area: zero, perimeter: zero },
         }
     }
 }
@@ -40,34 +43,30 @@ impl<S: Scalar> CellPolygon<S> {
         self.fill_ring(tessellation.ring(cell).map(|h| tessellation.displacement(positions, cell, h)));
     }
 
-    /// Takes the positions of the neighbours relative to the cell, counter-clockwise.
+    /// Takes the positions of the neighbours relative to the cell, counter-clockwise, at least three.
     pub fn fill_ring(&mut self, displacements: impl Iterator<Item = Vector<S>>) {
         self.ring.clear();
         self.ring.extend(displacements);
-        let sides = self.ring.len();
-        self.vertices.clear();
-        self.inverse_cross.clear();
-        self.tangents.clear();
-        self.lengths.clear();
-        for m in 0..sides {
-            let (a, b) = (self.ring[m], self.ring[if m + 1 == sides { 0 } else { m + 1 }]);
-            self.inverse_cross.push(cross(a, b).recip());
-            self.vertices.push(circumcentre(a, b));
-        }
-        let (mut perimeter, mut twice_area) = (S::constant(0.0), S::constant(0.0));
-        for m in 0..sides {
-            let (c, previous) = (self.vertices[m], self.vertices[if m == 0 { sides - 1 } else { m - 1 }]);
-            // The side is perpendicular to the line between the centres. Its direction from the centres, and its length
-            // as a projection, stay smooth where the side shrinks to zero.
-            let tangent = quarter_turn(self.ring[m]) * dot(self.ring[m], self.ring[m]).sqrt().recip();
-            let length = dot(c - previous, tangent);
+        let ring = self.ring.as_slice();
+        self.corners.clear();
+        self.directions.clear();
+        let zero = S::constant(0.0);
+        self.shape = Shape { area: zero, perimeter: zero };
+        let (Some(&first), Some(&last)) = (ring.first(), ring.last()) else {
+            return;
+        };
+        self.corners.extend(ring.windows(2).map(|pair| Corner::new(pair[0], pair[1])));
+        self.corners.push(Corner::new(last, first));
+        self.directions.extend(ring.iter().map(|&d| side_direction(d)));
+        let (mut perimeter, mut twice_area) = (zero, zero);
+        let mut previous = self.corners[ring.len() - 1].centre;
+        for (corner, &direction) in self.corners.iter().zip(&self.directions) {
+            let c = corner.centre;
             twice_area += cross(previous, c);
-            perimeter += length;
-            self.tangents.push(tangent);
-            self.lengths.push(length);
+            perimeter += dot(c - previous, direction);
+            previous = c;
         }
-        self.perimeter = perimeter;
-        self.area = twice_area * 0.5;
+        self.shape = Shape { area: twice_area * 0.5, perimeter };
     }
 
     /// Number of sides, of vertices and of neighbours.
@@ -80,14 +79,10 @@ impl<S: Scalar> CellPolygon<S> {
         self.ring.is_empty()
     }
 
-    /// Area `A = ½ Σ c_{m−1} × c_m`.
-    pub fn area(&self) -> S {
-        self.area
-    }
-
-    /// Perimeter `P = Σ ℓ_m`.
-    pub fn perimeter(&self) -> S {
-        self.perimeter
+    /// Area and perimeter.
+    #[inline]
+    pub fn shape(&self) -> Shape<S> {
+        self.shape
     }
 
     /// Neighbours' positions relative to the cell.
@@ -95,47 +90,46 @@ impl<S: Scalar> CellPolygon<S> {
         &self.ring
     }
 
-    /// Voronoi vertices relative to the cell.
-    pub fn vertices(&self) -> &[Vector<S>] {
-        &self.vertices
+    /// The triangles of the cell with each two consecutive neighbours; their circumcentres are the Voronoi vertices.
+    #[inline]
+    pub fn corners(&self) -> &[Corner<S>] {
+        &self.corners
+    }
+
+    /// Voronoi vertices relative to the cell, counter-clockwise.
+    pub fn vertices(&self) -> impl Iterator<Item = Vector<S>> {
+        self.corners.iter().map(|corner| corner.centre)
     }
 
     /// Signed lengths of the sides: negative only where the topology is not that of the positions.
-    pub fn side_lengths(&self) -> &[S] {
-        &self.lengths
+    pub fn side_lengths(&self) -> impl Iterator<Item = S> {
+        let previous = self.corners.iter().cycle().skip(self.len().max(1) - 1);
+        (self.corners.iter().zip(previous))
+            .zip(&self.directions)
+            .map(|((corner, previous), &direction)| dot(corner.centre - previous.centre, direction))
     }
 
-    /// Unit vectors along the sides, counter-clockwise.
-    pub fn tangents(&self) -> &[Vector<S>] {
-        &self.tangents
-    }
-
+    #[inline]
     fn following(&self, m: usize) -> usize {
         if m + 1 == self.len() { 0 } else { m + 1 }
     }
 
-    /// Gradient of the area with respect to vertex `m`: `−½ ẑ × (c_{m+1} − c_{m−1})`.
+    #[inline]
+    fn preceding(&self, m: usize) -> usize {
+        if m == 0 { self.len() - 1 } else { m - 1 }
+    }
+
+    /// Gradient of the area with respect to vertex `m`: `½ ẑ × (c_{m−1} − c_{m+1})`.
     #[inline]
     pub fn area_gradient(&self, m: usize) -> Vector<S> {
-        let previous = self.vertices[if m == 0 { self.len() - 1 } else { m - 1 }];
-        quarter_turn(previous - self.vertices[self.following(m)]) * S::constant(0.5)
+        let (previous, next) = (self.corners[self.preceding(m)], self.corners[self.following(m)]);
+        quarter_turn(previous.centre - next.centre) * S::constant(0.5)
     }
 
-    /// Gradient of the perimeter with respect to vertex `m`: `t_m − t_{m+1}`.
+    /// Gradient of the perimeter with respect to vertex `m`: `t_m − t_{m+1}` with unit vectors `t` along the sides.
     #[inline]
     pub fn perimeter_gradient(&self, m: usize) -> Vector<S> {
-        self.tangents[m] - self.tangents[self.following(m)]
-    }
-
-    /// Forces on the neighbours that a force `f` on vertex `m` transmits: `fᵀ ∂c/∂r` for neighbours `m` and `m + 1`.
-    ///
-    /// Differentiating `a·c = a²/2`, `b·c = b²/2` gives `∂c/∂a = −(ẑ×b)/(a×b) ⊗ (a − c)` and
-    /// `∂c/∂b = (ẑ×a)/(a×b) ⊗ (b − c)`. The rest of `f` acts on the cell itself.
-    #[inline]
-    pub fn transmit(&self, m: usize, f: Vector<S>) -> [Vector<S>; 2] {
-        let (a, b, c) = (self.ring[m], self.ring[self.following(m)], self.vertices[m]);
-        let s = self.inverse_cross[m];
-        [(a - c) * (cross(f, b) * s), (b - c) * (cross(a, f) * s)]
+        self.directions[m] - self.directions[self.following(m)]
     }
 }
 
@@ -161,10 +155,10 @@ fn per_cell(
 
 /// Area of every cell; NaN for cells on the hull of an open field.
 pub fn areas(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
-    per_cell(tessellation, positions, CellPolygon::area)
+    per_cell(tessellation, positions, |polygon| polygon.shape().area)
 }
 
 /// Perimeter of every cell; NaN for cells on the hull of an open field.
 pub fn perimeters(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
-    per_cell(tessellation, positions, CellPolygon::perimeter)
+    per_cell(tessellation, positions, |polygon| polygon.shape().perimeter)
 }

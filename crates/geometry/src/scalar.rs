@@ -22,8 +22,5 @@ impl<T: DualNumCopy<Primitive = f64>> Scalar for T {}
 
 /// Positions as constants of another scalar: the values are kept, the derivatives are zero.
 pub fn lift<S: Scalar>(positions: &[Vector<f64>]) -> Vec<Vector<S>> {
-    positions
-        .iter()
-        .map(|r| Vector::new(S::constant(r.x), S::constant(r.y)))
-        .collect()
+    positions.iter().map(|r| Vector::new(S::constant(r.x), S::constant(r.y))).collect()
 }

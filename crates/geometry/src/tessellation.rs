@@ -120,14 +120,8 @@ impl Tessellation {
 
     /// Displacement from `cell` to the neighbour that its half-edge `h` points at.
     #[inline]
-    pub fn displacement<S: Scalar>(
-        &self,
-        positions: &[Vector<S>],
-        cell: usize,
-        h: usize,
-    ) -> Vector<S> {
-        self.domain
-            .displacement(positions[cell], positions[self.neighbour(h)], self.image[h])
+    pub fn displacement<S: Scalar>(&self, positions: &[Vector<S>], cell: usize, h: usize) -> Vector<S> {
+        self.domain.displacement(positions[cell], positions[self.neighbour(h)], self.image[h])
     }
 
     /// The Delaunay triangles (Voronoi vertices), each once. Two per cell in a periodic box.
@@ -171,11 +165,7 @@ impl Tessellation {
             .filter(|&(_, h)| h < self.twin(h))
             .map(|(cell, h)| {
                 let (from, to, image) = (cell as u32, self.neighbour[h], self.image[h]);
-                if from <= to {
-                    (from, to, image)
-                } else {
-                    (to, from, [-image[0], -image[1]])
-                }
+                if from <= to { (from, to, image) } else { (to, from, [-image[0], -image[1]]) }
             })
             .collect();
         edges.sort_unstable();

@@ -1,1 +1,43 @@
-//! model
+//! The chiral Voronoi model of a tissue: a sum of force terms, each a one-ring element.
+//!
+//! ```text
+//! E   = Σ_i [ K_A/2 (A_i − A_0)² − K_P P_0 P_i + K_P/2 P_i² ]
+//! f_v = −∂E/∂r_v + α ẑ × ∂E_C/∂r_v                   force on a Voronoi vertex
+//! v_i = Σ_{v∋i} f_v · ∂r_v/∂r_i                       velocity of a cell centre
+//! ```
+//!
+//! The contribution of one cell depends on the cell and its ring of neighbours only, acts on them only, and sums to
+//! zero. The velocity field is therefore assembled from elements, and so are the stress and the exact sparse Jacobian.
+//! Velocities are linear in the coefficients of the terms.
+//!
+//! ```
+//! use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+//! use voronudge_model::{Model, Parameters, velocities};
+//!
+//! let positions: Vec<_> = (0..36)
+//!     .map(|i| Vector::new((i % 6) as f64 + 0.3 * (i as f64).sin(), (i / 6) as f64 + 0.3 * (2.0 * i as f64).cos()))
+//!     .collect();
+//! let domain = Domain::Periodic(PeriodicBox::new([6.0, 6.0])?);
+//! let tessellation = Tessellation::new(&positions, domain)?;
+//! let model = Model::chiral_voronoi(&Parameters { chirality: 0.5, ..Parameters::default() });
+//! let v = velocities(&tessellation, &positions, &model);
+//! let momentum: Vector<f64> = v.iter().sum();
+//! assert!(momentum.norm() < 1e-12);
+//! # Ok::<(), voronudge_geometry::Error>(())
+//! ```
+
+mod assembly;
+mod element;
+mod element_jacobian;
+pub mod gradient_check;
+mod jacobian;
+mod parameters;
+mod stress;
+mod term;
+
+pub use assembly::{HalfEdgeForces, columns, velocities};
+pub use element::VertexForces;
+pub use jacobian::{BlockMatrix, jacobian};
+pub use parameters::{Model, PARAMETER_NAMES, Parameters, WeightedTerm, base_terms, parameter_derivatives};
+pub use stress::stress;
+pub use term::{Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, Term};

@@ -26,26 +26,23 @@ impl ArrowScale {
         let predicted = || quantile(cells().filter_map(|cell| cell.predicted).map(length), 0.95);
         let speed = measured.filter(|&speed| speed > 0.0).or_else(predicted)?;
         let stretch = 1.3 * typical_spacing(frames)? / speed;
-        stretch.is_finite().then_some(Self {
-            stretch,
-            reference: nice_below(speed)?,
-        })
+        stretch.is_finite().then_some(Self { stretch, reference: nice_below(2.0 * speed)? })
     }
 
     /// The scale at which the 95th percentile of the nudges of used cells is 0.4 to 0.9 cell
     /// spacings long, a round magnification. `None` where no cell is nudged.
     #[must_use]
     pub fn nudges(frames: &[FrameView]) -> Option<Self> {
-        let cells = frames
-            .iter()
-            .flat_map(|frame| &frame.cells)
-            .filter(|cell| cell.is_used());
+        let cells = frames.iter().flat_map(|frame| &frame.cells).filter(|cell| cell.is_used());
         let size = quantile(cells.map(|cell| length(cell.nudge)), 0.95)?;
-        let stretch = nice_below(0.9 * typical_spacing(frames)? / size)?;
-        Some(Self {
-            stretch,
-            reference: nice_below(size)?,
-        })
+        let most = 0.9 * typical_spacing(frames)? / size;
+        // One digit is round enough for a magnification: 40 rather than 20.
+        let power = 10f64.powf(most.log10().floor());
+        let stretch = (most / power + 1e-9).floor() * power;
+        if !stretch.is_finite() {
+            return None;
+        }
+        Some(Self { stretch, reference: nice_below(2.0 * size)? })
     }
 }
 
@@ -78,18 +75,9 @@ impl Arrows {
     }
 
     /// Adds the arrow of `vector` (y up) at `centre`, on a map.
-    pub fn push_on(
-        &mut self,
-        view: &Viewport,
-        centre: [f64; 2],
-        vector: [f64; 2],
-        scale: &ArrowScale,
-    ) {
+    pub fn push_on(&mut self, view: &Viewport, centre: [f64; 2], vector: [f64; 2], scale: &ArrowScale) {
         let pixels = scale.stretch * view.scale();
-        self.push(
-            view.place(centre),
-            [vector[0] * pixels, -vector[1] * pixels],
-        );
+        self.push(view.place(centre), [vector[0] * pixels, -vector[1] * pixels]);
     }
 
     /// Draws them.
@@ -110,17 +98,8 @@ impl Legend {
         let mut arrows = Arrows::default();
         arrows.push([x, y], [pixels, 0.0]);
         arrows.draw(&mut self.svg, mark.colour);
-        let label = format!(
-            "{} {}{}",
-            significant(scale.reference, 1),
-            mark.unit,
-            mark.remark
-        );
-        self.svg.text(
-            [x + pixels + 7.0, y + 4.0],
-            &label,
-            TextStyle::label(Anchor::Start),
-        );
+        let label = format!("{} {}{}", significant(scale.reference, 1), mark.unit, mark.remark);
+        self.svg.text([x + pixels + 7.0, y + 4.0], &label, TextStyle::label(Anchor::Start));
     }
 }
 
@@ -137,10 +116,5 @@ pub struct ReferenceMark<'a> {
 
 fn typical_spacing(frames: &[FrameView]) -> Option<f64> {
     let stated = quantile(frames.iter().filter_map(FrameView::spacing), 0.5);
-    stated.or_else(|| {
-        frames
-            .iter()
-            .find_map(Viewport::around)
-            .map(|view| view.spacing())
-    })
+    stated.or_else(|| frames.iter().find_map(Viewport::around).map(|view| view.spacing()))
 }

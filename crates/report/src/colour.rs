@@ -58,10 +58,7 @@ impl ColourScale {
     /// centre for a diverging palette); `None` if no value is finite.
     #[must_use]
     pub fn robust(values: impl IntoIterator<Item = f64>, palette: Palette) -> Option<Self> {
-        let finite: Vec<f64> = values
-            .into_iter()
-            .filter(|value| value.is_finite())
-            .collect();
+        let finite: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
         let low = quantile(finite.iter().copied(), 0.02)?;
         let high = quantile(finite.iter().copied(), 0.98)?;
         let extent = [
@@ -75,16 +72,10 @@ impl ColourScale {
                 [centre - reach, centre + reach]
             }
         };
-        let width = (high - low)
-            .max(1e-6 * low.abs().max(high.abs()))
-            .max(1e-12);
+        let width = (high - low).max(1e-6 * low.abs().max(high.abs())).max(1e-12);
         let middle = low + (high - low) / 2.0;
         let limits = [middle - width / 2.0, middle + width / 2.0];
-        Some(Self {
-            palette,
-            limits,
-            extent,
-        })
+        Some(Self { palette, limits, extent })
     }
 
     /// The same scale with limits set by hand, for figures that are to be compared.
@@ -103,10 +94,7 @@ impl ColourScale {
     #[must_use]
     pub fn extended(&self) -> [bool; 2] {
         let slack = (self.limits[1] - self.limits[0]) * 1e-9;
-        [
-            self.extent[0] < self.limits[0] - slack,
-            self.extent[1] > self.limits[1] + slack,
-        ]
+        [self.extent[0] < self.limits[0] - slack, self.extent[1] > self.limits[1] + slack]
     }
 
     /// The colour class of a value, `0..LEVELS`; `None` where it is not finite.
@@ -114,9 +102,7 @@ impl ColourScale {
     pub fn level(&self, value: f64) -> Option<usize> {
         let [low, high] = self.limits;
         let share = ((value - low) / (high - low)).clamp(0.0, 1.0);
-        share
-            .is_finite()
-            .then(|| ((share * Self::LEVELS as f64) as usize).min(Self::LEVELS - 1))
+        share.is_finite().then(|| ((share * Self::LEVELS as f64) as usize).min(Self::LEVELS - 1))
     }
 
     /// The colour of a class, as `#rrggbb`.
@@ -163,8 +149,7 @@ mod tests {
 
     #[test]
     fn diverging_scales_are_symmetric() {
-        let scale =
-            ColourScale::robust([-1.0, 0.0, 3.0], Palette::Diverging { centre: 0.0 }).unwrap();
+        let scale = ColourScale::robust([-1.0, 0.0, 3.0], Palette::Diverging { centre: 0.0 }).unwrap();
         assert!((scale.limits()[0] + scale.limits()[1]).abs() < 1e-12);
     }
 

@@ -5,9 +5,9 @@ use crate::svg::{Anchor, PathData, Svg, TextStyle};
 use crate::view::{CellView, FrameView, Units, is_finite};
 
 /// Nominal width of every map in pixels.
-pub const MAP_WIDTH: f64 = 440.0;
+pub const MAP_WIDTH: f64 = 380.0;
 /// Greatest nominal height of the mapped area in pixels.
-const MAX_HEIGHT: f64 = 560.0;
+const MAX_HEIGHT: f64 = 480.0;
 /// Line distance of hatching in pixels.
 const HATCH: f64 = 4.0;
 
@@ -24,18 +24,10 @@ impl Viewport {
     /// The viewport that shows all cell centres and a margin of one cell; `None` without cells.
     #[must_use]
     pub fn around(frame: &FrameView) -> Option<Self> {
-        let centres = || {
-            frame
-                .cells
-                .iter()
-                .map(|cell| cell.centre)
-                .filter(|&at| is_finite(at))
-        };
+        let centres = || frame.cells.iter().map(|cell| cell.centre).filter(|&at| is_finite(at));
         let bounds = |axis: usize| {
             let low = centres().map(|at| at[axis]).fold(f64::INFINITY, f64::min);
-            let high = centres()
-                .map(|at| at[axis])
-                .fold(f64::NEG_INFINITY, f64::max);
+            let high = centres().map(|at| at[axis]).fold(f64::NEG_INFINITY, f64::max);
             [low, high]
         };
         let [x, y] = [bounds(0), bounds(1)];
@@ -45,30 +37,20 @@ impl Viewport {
         }
         let guess = (extent[0] * extent[1] / centres().count() as f64).sqrt();
         let fallback = [guess, extent[0].max(extent[1]), 1.0];
-        let spacing = frame.spacing().or_else(|| {
-            fallback
-                .into_iter()
-                .find(|&length| length.is_finite() && length > 0.0)
-        })?;
+        let spacing = frame
+            .spacing()
+            .or_else(|| fallback.into_iter().find(|&length| length.is_finite() && length > 0.0))?;
         let margin = 0.85 * spacing;
         let [width, height] = extent.map(|length| length + 2.0 * margin);
         let scale = (MAP_WIDTH / width).min(MAX_HEIGHT / height);
         let corner = [x[0] - margin, y[1] + margin];
-        Some(Self {
-            corner,
-            scale,
-            size: [width * scale, height * scale],
-            spacing,
-        })
+        Some(Self { corner, scale, size: [width * scale, height * scale], spacing })
     }
 
     /// Place in the picture of a point of the plane.
     #[must_use]
     pub fn place(&self, point: [f64; 2]) -> [f64; 2] {
-        [
-            (point[0] - self.corner[0]) * self.scale,
-            (self.corner[1] - point[1]) * self.scale,
-        ]
+        [(point[0] - self.corner[0]) * self.scale, (self.corner[1] - point[1]) * self.scale]
     }
 
     /// Pixels per unit of length.
@@ -87,11 +69,7 @@ impl Viewport {
     #[must_use]
     pub fn polygon(&self, cell: &CellView) -> Option<Vec<[f64; 2]>> {
         let reach = 4.0 * MAP_WIDTH;
-        let polygon: Vec<[f64; 2]> = cell
-            .polygon
-            .iter()
-            .map(|&vertex| self.place(vertex))
-            .collect();
+        let polygon: Vec<[f64; 2]> = cell.polygon.iter().map(|&vertex| self.place(vertex)).collect();
         let near = polygon.iter().all(|at| at.iter().all(|x| x.abs() < reach));
         (polygon.len() >= 3 && near).then_some(polygon)
     }
@@ -113,11 +91,7 @@ impl Map {
     pub fn new(frame: &FrameView, title: &str) -> Option<Self> {
         let view = Viewport::around(frame)?;
         let title = format!("{title}, {}", frame.label);
-        Some(Self {
-            view,
-            layer: Svg::new(view.size, &title),
-            title,
-        })
+        Some(Self { view, layer: Svg::new(view.size, &title), title })
     }
 
     /// Draws faint outlines of all cells, those left out on grey, and the box.
@@ -125,17 +99,11 @@ impl Map {
         let [mut used, mut left_out] = [PathData::new(), PathData::new()];
         for cell in &frame.cells {
             if let Some(polygon) = self.view.polygon(cell) {
-                if cell.is_used() {
-                    &mut used
-                } else {
-                    &mut left_out
-                }
-                .polygon(&polygon);
+                if cell.is_used() { &mut used } else { &mut left_out }.polygon(&polygon);
             }
         }
         let stroke = r##"stroke="#c4c4c4" stroke-width=".6" stroke-linejoin="round""##;
-        self.layer
-            .path(&left_out, &format!(r##"fill="#ebebeb" {stroke}"##));
+        self.layer.path(&left_out, &format!(r##"fill="#ebebeb" {stroke}"##));
         self.layer.path(&used, &format!(r#"fill="none" {stroke}"#));
         self.boundary(frame);
     }
@@ -145,10 +113,7 @@ impl Map {
         if let Some([low, high]) = frame.outline {
             let mut path = PathData::new();
             path.rectangle(self.view.place(low), self.view.place(high));
-            self.layer.path(
-                &path,
-                r##"fill="none" stroke="#666" stroke-dasharray="4 3""##,
-            );
+            self.layer.path(&path, r##"fill="none" stroke="#666" stroke-dasharray="4 3""##);
         }
     }
 
@@ -162,11 +127,7 @@ impl Map {
         let mut border = PathData::new();
         border.rectangle([left + 0.4, 0.4], [left + width - 0.4, map_height - 0.4]);
         svg.path(&border, r##"fill="none" stroke="#bbb" stroke-width=".8""##);
-        Legend {
-            svg,
-            top: map_height,
-            scale: self.view.scale,
-        }
+        Legend { svg, top: map_height, scale: self.view.scale }
     }
 }
 
@@ -198,14 +159,9 @@ impl Legend {
         bar.line(&[[4.0, y - 4.0], [4.0, y + 4.0]]);
         bar.line(&[[4.0, y], [end, y]]);
         bar.line(&[[end, y - 4.0], [end, y + 4.0]]);
-        self.svg
-            .path(&bar, r##"fill="none" stroke="#222" stroke-width="1.6""##);
+        self.svg.path(&bar, r##"fill="none" stroke="#222" stroke-width="1.6""##);
         let label = format!("{} {}", significant(length, 1), units.length_text());
-        self.svg.text(
-            [end + 7.0, y + 4.0],
-            &label,
-            TextStyle::label(Anchor::Start),
-        );
+        self.svg.text([end + 7.0, y + 4.0], &label, TextStyle::label(Anchor::Start));
     }
 
     /// Draws the entry for cells left out, on the second line at `x`, unless there are none.
@@ -222,18 +178,14 @@ impl Legend {
             Swatch::Grey => "#ebebeb",
             Swatch::Hatched => "none",
         };
-        self.svg.path(
-            &outline,
-            &format!(r##"fill="{fill}" stroke="#999" stroke-width=".7""##),
-        );
+        self.svg.path(&outline, &format!(r##"fill="{fill}" stroke="#999" stroke-width=".7""##));
         if swatch == Swatch::Hatched {
             let mut lines = PathData::new();
             hatch(&mut lines, &corners);
             self.svg.path(&lines, HATCH_STYLE);
         }
         let label = format!("left out ({count})");
-        self.svg
-            .text([x + 20.0, y + 9.5], &label, TextStyle::quiet(Anchor::Start));
+        self.svg.text([x + 20.0, y + 9.5], &label, TextStyle::quiet(Anchor::Start));
     }
 }
 
@@ -252,14 +204,8 @@ pub const HATCH_STYLE: &str = r##"fill="none" stroke="#9a9a9a" stroke-width=".7"
 /// Adds diagonal lines across a convex polygon.
 pub fn hatch(path: &mut PathData, polygon: &[[f64; 2]]) {
     let level = |at: [f64; 2]| at[0] + at[1];
-    let low = polygon
-        .iter()
-        .map(|&at| level(at))
-        .fold(f64::INFINITY, f64::min);
-    let high = polygon
-        .iter()
-        .map(|&at| level(at))
-        .fold(f64::NEG_INFINITY, f64::max);
+    let low = polygon.iter().map(|&at| level(at)).fold(f64::INFINITY, f64::min);
+    let high = polygon.iter().map(|&at| level(at)).fold(f64::NEG_INFINITY, f64::max);
     if !(high - low).is_finite() || high - low > 4.0 * MAP_WIDTH {
         return;
     }
@@ -272,10 +218,7 @@ pub fn hatch(path: &mut PathData, polygon: &[[f64; 2]]) {
                 let [a, b] = [level(from) - target, level(to) - target];
                 ((a < 0.0) != (b < 0.0)).then(|| {
                     let share = a / (a - b);
-                    [
-                        from[0] + share * (to[0] - from[0]),
-                        from[1] + share * (to[1] - from[1]),
-                    ]
+                    [from[0] + share * (to[0] - from[0]), from[1] + share * (to[1] - from[1])]
                 })
             })
             .collect();

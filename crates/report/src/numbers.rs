@@ -43,32 +43,45 @@ pub fn significant(value: f64, digits: usize) -> String {
 #[must_use]
 pub fn with_interval(value: f64, interval: [f64; 2]) -> [String; 3] {
     let half = (interval[1] - interval[0]).abs() / 2.0;
-    let largest = interval
-        .map(f64::abs)
-        .into_iter()
-        .fold(value.abs(), f64::max);
+    let largest = interval.map(f64::abs).into_iter().fold(value.abs(), f64::max);
     if !half.is_finite() || half == 0.0 || !(1e-4..1e6).contains(&largest) {
         return [value, interval[0], interval[1]].map(|number| significant(number, 4));
     }
     let decimals = (1 - exponent_of(half)).clamp(0, 8);
-    [value, interval[0], interval[1]].map(|number| {
-        if number.is_finite() {
-            fixed(number, decimals)
-        } else {
-            NO_VALUE.to_owned()
-        }
-    })
+    [value, interval[0], interval[1]]
+        .map(|number| if number.is_finite() { fixed(number, decimals) } else { NO_VALUE.to_owned() })
 }
 
-/// A unit as it is printed: `um` becomes µm, `^2` becomes ², `*` becomes a dot.
+/// `value` with at most six significant digits and no trailing zeros, for numbers that were given
+/// rather than measured.
+///
+/// ```
+/// use voronudge_report::numbers::as_given;
+/// assert_eq!(as_given(0.1), "0.1");
+/// assert_eq!(as_given(20.0), "20");
+/// ```
+#[must_use]
+pub fn as_given(value: f64) -> String {
+    let text = significant(value, 6);
+    match text.split_once('×') {
+        Some((mantissa, power)) => format!("{}×{power}", without_trailing_zeros(mantissa)),
+        None => without_trailing_zeros(&text).to_owned(),
+    }
+}
+
+/// A unit as it is printed: `um` becomes µm, `^2` becomes ², `*` becomes a dot, and a mere
+/// denominator gets negative powers.
 ///
 /// ```
 /// use voronudge_report::numbers::unit_text;
 /// assert_eq!(unit_text("um/min"), "µm/min");
-/// assert_eq!(unit_text("1/(um^2*h)"), "1/(µm²·h)");
+/// assert_eq!(unit_text("1/(um^2*h)"), "µm⁻² h⁻¹");
 /// ```
 #[must_use]
 pub fn unit_text(unit: &str) -> String {
+    if let Some(powers) = unit.strip_prefix("1/").and_then(negative_powers) {
+        return powers;
+    }
     let mut text = String::with_capacity(unit.len());
     let mut word = String::new();
     for letter in unit.chars() {
@@ -81,13 +94,7 @@ pub fn unit_text(unit: &str) -> String {
         }
     }
     text.push_str(unit_word(&word));
-    for (typed, printed) in [
-        ("^-1", "⁻¹"),
-        ("^-2", "⁻²"),
-        ("^2", "²"),
-        ("^3", "³"),
-        ("*", "·"),
-    ] {
+    for (typed, printed) in [("^-1", "⁻¹"), ("^-2", "⁻²"), ("^2", "²"), ("^3", "³"), ("*", "·")] {
         text = text.replace(typed, printed);
     }
     text
@@ -133,9 +140,7 @@ pub fn ticks(range: [f64; 2], count: usize) -> Vec<f64> {
     let first = (low / step - 1e-9).ceil();
     let last = (high / step + 1e-9).floor();
     let number = (last - first).max(-1.0) as usize + 1;
-    (0..number.min(100))
-        .map(|index| (first + index as f64) * step)
-        .collect()
+    (0..number.min(100)).map(|index| (first + index as f64) * step).collect()
 }
 
 /// Labels for equally spaced `positions`, all with the same decimals.
@@ -146,32 +151,14 @@ pub fn tick_labels(positions: &[f64]) -> Vec<String> {
         [only] => only.abs(),
         [] => return Vec::new(),
     };
-    let largest = positions
-        .iter()
-        .fold(0.0f64, |most, position| most.max(position.abs()));
+    let largest = positions.iter().fold(0.0f64, |most, position| most.max(position.abs()));
     if largest >= 1e6 || (largest > 0.0 && largest < 1e-4) {
-        return positions
-            .iter()
-            .map(|&position| significant(position, 2))
-            .collect();
+        return positions.iter().map(|&position| significant(position, 2)).collect();
     }
-    let decimals = if step > 0.0 {
-        (-exponent_of(step)).max(0)
-    } else {
-        0
-    };
+    let decimals = if step > 0.0 { (-exponent_of(step)).max(0) } else { 0 };
     positions
         .iter()
-        .map(|&position| {
-            fixed(
-                if position.abs() < step * 1e-9 {
-                    0.0
-                } else {
-                    position
-                },
-                decimals,
-            )
-        })
+        .map(|&position| fixed(if position.abs() < step * 1e-9 { 0.0 } else { position }, decimals))
         .collect()
 }
 
@@ -179,10 +166,7 @@ pub fn tick_labels(positions: &[f64]) -> Vec<String> {
 /// there are none.
 #[must_use]
 pub fn quantile(values: impl IntoIterator<Item = f64>, fraction: f64) -> Option<f64> {
-    let mut finite: Vec<f64> = values
-        .into_iter()
-        .filter(|value| value.is_finite())
-        .collect();
+    let mut finite: Vec<f64> = values.into_iter().filter(|value| value.is_finite()).collect();
     finite.sort_by(f64::total_cmp);
     let last = finite.len().checked_sub(1)?;
     let place = fraction.clamp(0.0, 1.0) * last as f64;
@@ -213,6 +197,26 @@ pub fn superscript(exponent: i32) -> String {
         .collect()
 }
 
+fn without_trailing_zeros(text: &str) -> &str {
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
+}
+
+/// The factors of a denominator such as `(um^2*h)` with negative powers.
+fn negative_powers(denominator: &str) -> Option<String> {
+    let inner = match denominator.strip_prefix('(') {
+        Some(rest) => rest.strip_suffix(')')?,
+        None => denominator,
+    };
+    let factors = inner.split('*').map(|factor| {
+        let (word, power) = factor.split_once('^').unwrap_or((factor, "1"));
+        let power: i32 = power.trim().parse().ok().filter(|&power| power > 0)?;
+        let word = word.trim();
+        let is_word = !word.is_empty() && word.chars().all(char::is_alphabetic);
+        is_word.then(|| format!("{}{}", unit_word(word), superscript(-power)))
+    });
+    Some(factors.collect::<Option<Vec<_>>>()?.join(" "))
+}
+
 fn unit_word(word: &str) -> &str {
     match word {
         "um" | "micron" | "microns" => "µm",
@@ -223,11 +227,7 @@ fn unit_word(word: &str) -> &str {
 /// ⌊log₁₀ |x|⌋ of a positive finite number, safe at the powers of ten.
 fn exponent_of(value: f64) -> i32 {
     let exponent = value.abs().log10().floor() as i32;
-    if 10f64.powi(exponent + 1) <= value.abs() * (1.0 + 1e-12) {
-        exponent + 1
-    } else {
-        exponent
-    }
+    if 10f64.powi(exponent + 1) <= value.abs() * (1.0 + 1e-12) { exponent + 1 } else { exponent }
 }
 
 fn fixed(value: f64, decimals: i32) -> String {
@@ -255,24 +255,11 @@ mod tests {
 
     #[test]
     fn ticks_stay_inside_and_are_few() {
-        for range in [
-            [0.0, 1.0],
-            [-3.2, 7.9],
-            [1e-9, 3e-9],
-            [-0.001, 0.0],
-            [99.0, 100.0],
-        ] {
+        for range in [[0.0, 1.0], [-3.2, 7.9], [1e-9, 3e-9], [-0.001, 0.0], [99.0, 100.0]] {
             let positions = ticks(range, 5);
-            assert!(
-                (2..=6).contains(&positions.len()),
-                "{range:?}: {positions:?}"
-            );
+            assert!((2..=6).contains(&positions.len()), "{range:?}: {positions:?}");
             let slack = (range[1] - range[0]) * 1e-6;
-            assert!(
-                positions
-                    .iter()
-                    .all(|&x| x >= range[0] - slack && x <= range[1] + slack)
-            );
+            assert!(positions.iter().all(|&x| x >= range[0] - slack && x <= range[1] + slack));
         }
         assert!(ticks([1.0, 1.0], 5).is_empty());
         assert!(ticks([f64::NAN, 1.0], 5).is_empty());
@@ -286,19 +273,13 @@ mod tests {
 
     #[test]
     fn quantiles_skip_what_is_not_finite() {
-        assert_eq!(
-            quantile([f64::NAN, 1.0, 3.0, f64::INFINITY], 0.5),
-            Some(2.0)
-        );
+        assert_eq!(quantile([f64::NAN, 1.0, 3.0, f64::INFINITY], 0.5), Some(2.0));
         assert_eq!(quantile([f64::NAN], 0.5), None);
     }
 
     #[test]
     fn intervals_decide_the_digits() {
-        assert_eq!(
-            with_interval(0.5, [f64::NAN, 1.0]),
-            ["0.5000", "–", "1.000"]
-        );
+        assert_eq!(with_interval(0.5, [f64::NAN, 1.0]), ["0.5000", "–", "1.000"]);
         assert_eq!(with_interval(12.0, [-8.0, 32.0]), ["12", "−8", "32"]);
     }
 }

@@ -31,21 +31,13 @@ impl TextStyle {
     /// Dark text of label size.
     #[must_use]
     pub fn label(anchor: Anchor) -> Self {
-        Self {
-            size: Self::LABEL,
-            colour: "#222",
-            anchor,
-        }
+        Self { size: Self::LABEL, colour: "#222", anchor }
     }
 
     /// Grey text of label size.
     #[must_use]
     pub fn quiet(anchor: Anchor) -> Self {
-        Self {
-            size: Self::LABEL,
-            colour: "#666",
-            anchor,
-        }
+        Self { size: Self::LABEL, colour: "#666", anchor }
     }
 }
 
@@ -64,11 +56,7 @@ impl Svg {
     /// An empty picture of the given nominal width and height; `title` is what a screen reader says.
     #[must_use]
     pub fn new(size: [f64; 2], title: &str) -> Self {
-        Self {
-            size,
-            title: title.to_owned(),
-            body: String::new(),
-        }
+        Self { size, title: title.to_owned(), body: String::new() }
     }
 
     /// Nominal width and height.
@@ -184,11 +172,7 @@ impl PathData {
     }
 
     fn trace(&mut self, points: &[[f64; 2]]) -> bool {
-        let Some(places) = points
-            .iter()
-            .map(|&point| tenths(point))
-            .collect::<Option<Vec<_>>>()
-        else {
+        let Some(places) = points.iter().map(|&point| tenths(point)).collect::<Option<Vec<_>>>() else {
             return false;
         };
         if places.is_empty() {
@@ -230,13 +214,8 @@ pub fn subscripts(text: &str, markup: SubscriptMarkup) -> String {
     let mut rest = text;
     while let Some((before, after)) = rest.split_once('_') {
         result.push_str(&escape(before));
-        let braced = after
-            .strip_prefix('{')
-            .and_then(|inner| inner.split_once('}'));
-        let first = after
-            .chars()
-            .next()
-            .filter(|letter| letter.is_alphanumeric());
+        let braced = after.strip_prefix('{').and_then(|inner| inner.split_once('}'));
+        let first = after.chars().next().filter(|letter| letter.is_alphanumeric());
         let (index, remainder) = match (braced, first) {
             (Some(parts), _) => parts,
             (None, Some(letter)) => after.split_at(letter.len_utf8()),
@@ -314,13 +293,7 @@ mod tests {
 
     #[test]
     fn subscripts_are_set_and_text_is_escaped() {
-        assert_eq!(
-            subscripts("K_P α < 1", SubscriptMarkup::Html),
-            "K<sub>P</sub> α &lt; 1"
-        );
-        assert_eq!(
-            subscripts("x_{ab}c_", SubscriptMarkup::Html),
-            "x<sub>ab</sub>c_"
-        );
+        assert_eq!(subscripts("K_P α < 1", SubscriptMarkup::Html), "K<sub>P</sub> α &lt; 1");
+        assert_eq!(subscripts("x_{ab}c_", SubscriptMarkup::Html), "x<sub>ab</sub>c_");
     }
 }

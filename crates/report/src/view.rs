@@ -115,21 +115,14 @@ impl FrameView {
             let cells = self.cells.iter().filter(move |cell| all || cell.is_used());
             crate::numbers::quantile(cells.map(|cell| cell.area.sqrt()), 0.5)
         };
-        roots(false)
-            .or_else(|| roots(true))
-            .filter(|&spacing| spacing > 0.0)
+        roots(false).or_else(|| roots(true)).filter(|&spacing| spacing > 0.0)
     }
 
     /// Mean area of the used cells; not finite where there is none.
     #[must_use]
     pub fn mean_area(&self) -> f64 {
-        let used = self
-            .cells
-            .iter()
-            .filter(|cell| cell.is_used() && cell.area.is_finite());
-        let (sum, count) = used.fold((0.0, 0.0), |(sum, count), cell| {
-            (sum + cell.area, count + 1.0)
-        });
+        let used = self.cells.iter().filter(|cell| cell.is_used() && cell.area.is_finite());
+        let (sum, count) = used.fold((0.0, 0.0), |(sum, count), cell| (sum + cell.area, count + 1.0));
         sum / count
     }
 

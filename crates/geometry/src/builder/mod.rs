@@ -74,7 +74,11 @@ fn open(tessellation: &mut Tessellation, positions: &[Vector<f64>]) -> Result<()
     assemble(tessellation, cells, &[Rings::of_all(&delaunay)])
 }
 
-fn periodic(tessellation: &mut Tessellation, positions: &[Vector<f64>], cell_box: &PeriodicBox) -> Result<(), Error> {
+fn periodic(
+    tessellation: &mut Tessellation,
+    positions: &[Vector<f64>],
+    cell_box: &PeriodicBox,
+) -> Result<(), Error> {
     let cells = positions.len();
     if cells == 0 {
         return Err(Error::TooFewCells { found: 0, required: 1 });
@@ -96,7 +100,8 @@ fn periodic(tessellation: &mut Tessellation, positions: &[Vector<f64>], cell_box
             })
             .collect();
         let tiling = Tiling::new(&wrapped, cell_box);
-        let rings: Option<Vec<Rings>> = (0..tiling.len()).into_par_iter().map(|tile| tiling.rings(tile)).collect();
+        let rings: Option<Vec<Rings>> =
+            (0..tiling.len()).into_par_iter().map(|tile| tiling.rings(tile)).collect();
         outcome = assemble(tessellation, cells, &rings.ok_or_else(|| duplicate(&wrapped))?);
         if outcome.is_ok() {
             rings::refer_to_given_positions(tessellation, &images);
@@ -138,13 +143,13 @@ fn duplicate(positions: &[Vector<f64>]) -> Error {
         let (a, b) = (positions[i], positions[j]);
         a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(&j))
     });
-    order
-        .windows(2)
-        .find(|w| point(positions[w[0]]) == point(positions[w[1]]))
-        .map_or(Error::Inconsistent { cells: positions.len(), cell: 0 }, |w| Error::DuplicateCells {
+    order.windows(2).find(|w| point(positions[w[0]]) == point(positions[w[1]])).map_or(
+        Error::Inconsistent { cells: positions.len(), cell: 0 },
+        |w| Error::DuplicateCells {
             first: w[0].min(w[1]),
             second: w[0].max(w[1]),
             x: positions[w[0]].x,
             y: positions[w[0]].y,
-        })
+        },
+    )
 }

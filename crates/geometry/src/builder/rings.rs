@@ -86,8 +86,7 @@ impl Scratch {
             let to = edge.to();
             let site = to.data();
             self.sides.push((site.cell, site.image));
-            self.displacements
-                .push(Vector::new(site.position.x - origin.x, site.position.y - origin.y));
+            self.displacements.push(Vector::new(site.position.x - origin.x, site.position.y - origin.y));
             // The face to the left of an edge is the corner between it and the next edge.
             if edge.is_outer_edge() {
                 self.gap = Some(self.sides.len());

@@ -5,7 +5,7 @@ use super::{Role, Site, point, triangulate};
 use crate::{PeriodicBox, Vector};
 
 /// Cells per tile: large enough that the strip around it is a small part, small enough for the caches.
-const CELLS_PER_TILE: f64 = 800.0;
+const CELLS_PER_TILE: f64 = 700.0;
 
 /// First width of the strip around a tile, in units of √(area per cell). The circumcircles of a tissue fit; where one
 /// does not, the strip of that tile is widened until it does.
@@ -107,10 +107,7 @@ impl<'a> Tiling<'a> {
             0 => -lengths[axis] * 1e-6,
             k => lengths[axis] * k as f64 / self.tiles[axis] as f64,
         };
-        Rectangle {
-            low: [edge(0, at[0]), edge(1, at[1])],
-            high: [edge(0, at[0] + 1), edge(1, at[1] + 1)],
-        }
+        Rectangle { low: [edge(0, at[0]), edge(1, at[1])], high: [edge(0, at[0] + 1), edge(1, at[1] + 1)] }
     }
 
     fn bin_at(&self, r: Vector<f64>) -> usize {
@@ -126,7 +123,8 @@ impl<'a> Tiling<'a> {
     /// All cells and images within the surroundings; those of the tile itself are its own.
     fn gather(&self, region: &Rectangle, surroundings: &Rectangle) -> Vec<Site> {
         let lengths = self.cell_box.lengths();
-        let expected = (surroundings.high[0] - surroundings.low[0]) * (surroundings.high[1] - surroundings.low[1])
+        let expected = (surroundings.high[0] - surroundings.low[0])
+            * (surroundings.high[1] - surroundings.low[1])
             / (self.spacing * self.spacing);
         let mut sites = Vec::with_capacity((expected * 1.1) as usize + 16);
         // Images whose box overlaps the surroundings.

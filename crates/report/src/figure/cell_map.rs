@@ -8,7 +8,7 @@ use crate::svg::{Anchor, PathData, TextStyle};
 use crate::view::{FrameView, Units};
 
 /// Left and right end of the colour bar in pixels.
-const BAR: [f64; 2] = [190.0, MAP_WIDTH - 16.0];
+const BAR: [f64; 2] = [156.0, MAP_WIDTH - 16.0];
 
 /// One number per cell and how to show it.
 #[derive(Debug, Clone)]
@@ -53,18 +53,12 @@ impl CellScalar {
 /// values lie beyond it.
 #[must_use]
 pub fn cell_map(frame: &FrameView, scalar: &CellScalar, units: &Units) -> String {
-    let used = frame
-        .cells
-        .iter()
-        .zip(&scalar.values)
-        .filter(|(cell, _)| cell.is_used());
+    let used = frame.cells.iter().zip(&scalar.values).filter(|(cell, _)| cell.is_used());
     let colours = ColourScale::robust(used.map(|(_, &value)| value), scalar.palette);
     let (Some(mut map), Some(colours)) = (Map::new(frame, &scalar.label), colours) else {
         return no_data(&scalar.label);
     };
-    let colours = scalar
-        .limits
-        .map_or(colours, |limits| colours.with_limits(limits));
+    let colours = scalar.limits.map_or(colours, |limits| colours.with_limits(limits));
     draw_cells(&mut map, frame, (scalar, &colours));
     map.boundary(frame);
     let mut legend = map.with_legend(54.0);
@@ -92,10 +86,7 @@ fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&CellScalar,
         }
     }
     map.layer.path(&hatching, HATCH_STYLE);
-    map.layer.path(
-        &outlines,
-        r##"fill="none" stroke="#b5b5b5" stroke-width=".6""##,
-    );
+    map.layer.path(&outlines, r##"fill="none" stroke="#b5b5b5" stroke-width=".6""##);
     for (level, path) in classes.iter().enumerate() {
         let fill = colours.colour(level);
         map.layer.path(
@@ -114,22 +105,17 @@ fn colour_bar(legend: &mut Legend, colours: &ColourScale, label: &str) {
         let mut cell = PathData::new();
         // Half a pixel of overlap hides the seams between the classes.
         cell.rectangle([x, top], [(x + width + 0.5).min(right), bottom]);
-        legend
-            .svg
-            .path(&cell, &format!(r#"fill="{}""#, colours.colour(level)));
+        legend.svg.path(&cell, &format!(r#"fill="{}""#, colours.colour(level)));
     }
     let middle = (top + bottom) / 2.0;
     let [below, above] = colours.extended();
-    for (is_extended, x, tip, level) in [
-        (below, left, left - 9.0, 0),
-        (above, right, right + 9.0, ColourScale::LEVELS - 1),
-    ] {
+    for (is_extended, x, tip, level) in
+        [(below, left, left - 9.0, 0), (above, right, right + 9.0, ColourScale::LEVELS - 1)]
+    {
         if is_extended {
             let mut triangle = PathData::new();
             triangle.polygon(&[[x, top], [tip, middle], [x, bottom]]);
-            legend
-                .svg
-                .path(&triangle, &format!(r#"fill="{}""#, colours.colour(level)));
+            legend.svg.path(&triangle, &format!(r#"fill="{}""#, colours.colour(level)));
         }
     }
     let [low, high] = colours.limits();
@@ -138,12 +124,8 @@ fn colour_bar(legend: &mut Legend, colours: &ColourScale, label: &str) {
         let x = left + (position - low) / (high - low) * (right - left);
         let mut tick = PathData::new();
         tick.line(&[[x, bottom], [x, bottom + 3.5]]);
-        legend
-            .svg
-            .path(&tick, r##"fill="none" stroke="#222" stroke-width=".8""##);
-        legend
-            .svg
-            .text([x, bottom + 14.5], &text, TextStyle::label(Anchor::Middle));
+        legend.svg.path(&tick, r##"fill="none" stroke="#222" stroke-width=".8""##);
+        legend.svg.text([x, bottom + 14.5], &text, TextStyle::label(Anchor::Middle));
     }
     let at = [(left + right) / 2.0, bottom + 29.0];
     legend.svg.text(at, label, TextStyle::label(Anchor::Middle));

@@ -55,14 +55,15 @@ pub fn error_bars(bars: &[ErrorBar]) -> String {
     let Some(mut chart) = Chart::new(layout) else {
         return no_data(title);
     };
+    let middle = |row: usize| count - row as f64 - 0.5;
     for (row, bar) in bars.iter().enumerate() {
-        draw_bar(&mut chart, bar, (count - row as f64 - 0.5, end));
+        draw_bar(&mut chart, bar, (middle(row), end));
     }
     let ends = [[1.0, 0.0], [1.0, count]];
-    chart.curve(
-        &ends,
-        r##"stroke="#222" stroke-width="1.2" stroke-dasharray="5 3""##,
-    );
+    chart.curve(&ends, r##"stroke="#222" stroke-width="1.2" stroke-dasharray="5 3""##);
+    for (row, bar) in bars.iter().enumerate() {
+        draw_number(&mut chart, bar, (middle(row), end));
+    }
     chart.finish()
 }
 
@@ -73,27 +74,23 @@ fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {
     };
     let reach = bar.nmse.clamp(0.0, end);
     let mut path = PathData::new();
-    let [from, to] = [
-        chart.place([0.0, middle + 0.3]),
-        chart.place([reach, middle - 0.3]),
-    ];
+    let [from, to] = [chart.place([0.0, middle + 0.3]), chart.place([reach, middle - 0.3])];
     path.rectangle(from, to);
     chart.svg.path(&path, &format!(r#"fill="{fill}""#));
-    let half = bar
-        .standard_error
-        .filter(|half| half.is_finite())
-        .unwrap_or(0.0);
+    let half = whisker(bar);
     if half > 0.0 {
-        let whisker = [[reach - half, middle], [(reach + half).min(end), middle]];
-        chart.curve(&whisker, r##"stroke="#222" stroke-width="1.4""##);
+        let ends = [[reach - half, middle], [(reach + half).min(end), middle]];
+        chart.curve(&ends, r##"stroke="#222" stroke-width="1.4""##);
     }
-    let baseline = chart.place([0.0, middle])[1] + 4.0;
-    let left = chart.plot()[0][0];
-    chart.svg.text(
-        [left - 9.0, baseline],
-        &bar.label,
-        TextStyle::label(Anchor::End),
-    );
+    let at = [chart.plot()[0][0] - 9.0, chart.place([0.0, middle])[1] + 4.0];
+    chart.svg.text(at, &bar.label, TextStyle::label(Anchor::End));
+}
+
+/// Prints the number behind the bar, or inside it where there is no room or the line at 1 is in the
+/// way.
+fn draw_number(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {
+    let reach = bar.nmse.clamp(0.0, end);
+    let half = whisker(bar);
     let mut number = significant(bar.nmse, 2);
     if half > 0.0 {
         number.push_str(&format!(" ± {}", significant(half, 1)));
@@ -101,37 +98,23 @@ fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {
     if bar.nmse > end {
         number.push_str(" ▸");
     }
-    let tip = chart.place([(reach + half).min(end), middle])[0];
-    let right = chart.plot()[1][0];
-    let room = 6.0 * number.chars().count() as f64 + 12.0;
-    let (x, anchor, colour) = if tip + room < right {
-        (tip + 7.0, Anchor::Start, "#222")
+    let baseline = chart.place([0.0, middle])[1] + 4.0;
+    let [[left, _], [right, _]] = chart.plot();
+    let width = 6.3 * number.chars().count() as f64;
+    let outside = chart.place([(reach + half).min(end), middle])[0] + 7.0;
+    let inside = chart.place([reach - half, middle])[0] - 7.0;
+    let one = chart.place([1.0, middle])[0];
+    let is_blocked = outside + width > right || (outside - 4.0..outside + width + 4.0).contains(&one);
+    let (x, anchor, colour) = if is_blocked && inside - width > left {
+        (inside, Anchor::End, contrast(bar.emphasis))
     } else {
-        (
-            chart.place([reach - half, middle])[0] - 7.0,
-            Anchor::End,
-            contrast(bar.emphasis),
-        )
+        (outside, Anchor::Start, "#222")
     };
-    // The line at 1 must not run through the number.
-    let backing = anchor == Anchor::Start && x < chart.place([1.0, middle])[0];
-    if backing {
-        let mut white = PathData::new();
-        white.rectangle(
-            [x - 2.0, baseline - 11.0],
-            [x + room - 12.0, baseline + 3.0],
-        );
-        chart.svg.path(&white, r##"fill="#fff""##);
-    }
-    chart.svg.text(
-        [x, baseline],
-        &number,
-        TextStyle {
-            size: TextStyle::LABEL,
-            colour,
-            anchor,
-        },
-    );
+    chart.svg.text([x, baseline], &number, TextStyle { size: TextStyle::LABEL, colour, anchor });
+}
+
+fn whisker(bar: &ErrorBar) -> f64 {
+    bar.standard_error.filter(|half| half.is_finite() && *half > 0.0).unwrap_or(0.0)
 }
 
 fn contrast(emphasis: Emphasis) -> &'static str {

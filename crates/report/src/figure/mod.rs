@@ -27,9 +27,7 @@ use crate::svg::{Anchor, Svg, TextStyle};
 #[must_use]
 pub fn no_data(title: &str) -> String {
     let mut svg = Svg::new([440.0, 120.0], title);
-    svg.raw(
-        "<rect x=\".5\" y=\".5\" width=\"439\" height=\"119\" fill=\"#fafafa\" stroke=\"#ccc\"/>\n",
-    );
+    svg.raw("<rect x=\".5\" y=\".5\" width=\"439\" height=\"119\" fill=\"#fafafa\" stroke=\"#ccc\"/>\n");
     let style = TextStyle::quiet(Anchor::Middle);
     svg.text([220.0, 56.0], title, style);
     svg.text([220.0, 76.0], "no data", style);

@@ -20,16 +20,8 @@ impl NudgeHistogram {
     /// The nudges of the used cells of some frames.
     #[must_use]
     pub fn new(frames: &[FrameView], length_scale: f64, sigma_r: f64) -> Self {
-        let cells = frames
-            .iter()
-            .flat_map(|frame| &frame.cells)
-            .filter(|cell| cell.is_used());
-        Self {
-            sizes: cells
-                .map(|cell| length(cell.nudge) / length_scale)
-                .collect(),
-            sigma_r,
-        }
+        let cells = frames.iter().flat_map(|frame| &frame.cells).filter(|cell| cell.is_used());
+        Self { sizes: cells.map(|cell| length(cell.nudge) / length_scale).collect(), sigma_r }
     }
 }
 
@@ -38,18 +30,10 @@ impl NudgeHistogram {
 #[must_use]
 pub fn nudge_histogram(histogram: &NudgeHistogram) -> String {
     let title = "size of the nudges";
-    let finite = || {
-        histogram
-            .sizes
-            .iter()
-            .copied()
-            .filter(|size| size.is_finite())
-    };
+    let finite = || histogram.sizes.iter().copied().filter(|size| size.is_finite());
     let count = finite().count() as f64;
     let sigma = Some(histogram.sigma_r).filter(|sigma| sigma.is_finite() && *sigma > 0.0);
-    let typical = quantile(finite(), 0.99)
-        .unwrap_or(0.0)
-        .max(sigma.map_or(0.0, |s| 3.4 * s));
+    let typical = quantile(finite(), 0.99).unwrap_or(0.0).max(sigma.map_or(0.0, |s| 3.4 * s));
     let Some(width) = nice_below(typical / 14.0).filter(|_| count > 0.0) else {
         return no_data(title);
     };
@@ -66,14 +50,9 @@ pub fn nudge_histogram(histogram: &NudgeHistogram) -> String {
     let curve: Vec<[f64; 2]> = sigma.map_or_else(Vec::new, |sigma| {
         let density = |x: f64| x / (sigma * sigma) * (-x * x / (2.0 * sigma * sigma)).exp();
         let at = |step: usize| end * step as f64 / 150.0;
-        (0..=150)
-            .map(|step| [at(step), count * width * density(at(step))])
-            .collect()
+        (0..=150).map(|step| [at(step), count * width * density(at(step))]).collect()
     });
-    let heights = counts
-        .iter()
-        .copied()
-        .chain(curve.iter().map(|point| point[1]));
+    let heights = counts.iter().copied().chain(curve.iter().map(|point| point[1]));
     let highest = heights.fold(1.0, f64::max);
     let layout = ChartLayout {
         title,
@@ -92,21 +71,12 @@ pub fn nudge_histogram(histogram: &NudgeHistogram) -> String {
 
 fn draw(chart: &mut Chart, (counts, width): (&[f64], f64), curve: &[[f64; 2]]) {
     let mut bars = PathData::new();
-    for (bin, &number) in counts
-        .iter()
-        .enumerate()
-        .filter(|(_, number)| **number > 0.0)
-    {
+    for (bin, &number) in counts.iter().enumerate().filter(|(_, number)| **number > 0.0) {
         let low = bin as f64 * width;
         bars.rectangle(chart.place([low, number]), chart.place([low + width, 0.0]));
     }
-    chart
-        .svg
-        .path(&bars, r##"fill="#9db4c6" stroke="#fff" stroke-width=".8""##);
-    chart.curve(
-        curve,
-        &format!(r#"stroke="{VERMILLION}" stroke-width="1.8""#),
-    );
+    chart.svg.path(&bars, r##"fill="#9db4c6" stroke="#fff" stroke-width=".8""##);
+    chart.curve(curve, &format!(r#"stroke="{VERMILLION}" stroke-width="1.8""#));
 }
 
 fn legend(chart: &mut Chart, sigma: Option<f64>, beyond: usize) {
@@ -118,10 +88,7 @@ fn legend(chart: &mut Chart, sigma: Option<f64>, beyond: usize) {
     };
     if let Some(sigma) = sigma {
         let text = format!("— assumed noise, σ_r = {} ℓ₀", significant(sigma, 2));
-        let style = TextStyle {
-            colour: VERMILLION,
-            ..TextStyle::label(Anchor::End)
-        };
+        let style = TextStyle { colour: VERMILLION, ..TextStyle::label(Anchor::End) };
         entry(chart, &text, style);
     }
     if beyond > 0 {

@@ -36,26 +36,20 @@ pub fn nudge_map(frame: &FrameView, scale: Option<&ArrowScale>, units: &Units) -
         Some(scale) => {
             let remark = format!(", nudges drawn ×{}", significant(scale.stretch, 1));
             let unit = units.length_text();
-            let mark = ReferenceMark {
-                unit: &unit,
-                remark: &remark,
-                colour: INK,
-            };
-            legend.reference_arrow(190.0, scale, &mark);
+            let mark = ReferenceMark { unit: &unit, remark: &remark, colour: INK };
+            legend.reference_arrow(160.0, scale, &mark);
         }
         None => {
-            let at = [190.0, legend.top + 19.0];
-            legend
-                .svg
-                .text(at, "no cell is nudged", TextStyle::quiet(Anchor::Start));
+            let at = [160.0, legend.top + 19.0];
+            legend.svg.text(at, "no cell is nudged", TextStyle::quiet(Anchor::Start));
         }
     }
     legend.left_out(4.0, frame, Swatch::Grey);
     if !edges.lost.is_empty() || !edges.gained.is_empty() {
         let lost = format!("contacts lost ({})", edges.lost.len());
-        edge_entry(&mut legend, 146.0, (&lost, VERMILLION, LOST));
+        edge_entry(&mut legend, 122.0, (&lost, VERMILLION, LOST));
         let gained = format!("gained ({})", edges.gained.len());
-        edge_entry(&mut legend, 312.0, (&gained, BLUE, GAINED));
+        edge_entry(&mut legend, 278.0, (&gained, BLUE, GAINED));
     }
     legend.svg.finish()
 }
@@ -65,21 +59,13 @@ fn draw_edges(map: &mut Map, edges: &[Segment], (colour, style): (&str, &str)) {
     for edge in edges {
         path.line(&edge.map(|end| map.view.place(end)));
     }
-    map.layer.path(
-        &path,
-        &format!(r#"fill="none" stroke="{colour}" opacity=".8" {style}"#),
-    );
+    map.layer.path(&path, &format!(r#"fill="none" stroke="{colour}" opacity=".8" {style}"#));
 }
 
 fn edge_entry(legend: &mut Legend, x: f64, (label, colour, style): (&str, &str, &str)) {
     let y = legend.top + 37.5;
     let mut line = PathData::new();
     line.line(&[[x, y], [x + 18.0, y]]);
-    legend.svg.path(
-        &line,
-        &format!(r#"fill="none" stroke="{colour}" opacity=".8" {style}"#),
-    );
-    legend
-        .svg
-        .text([x + 25.0, y + 4.0], label, TextStyle::quiet(Anchor::Start));
+    legend.svg.path(&line, &format!(r#"fill="none" stroke="{colour}" opacity=".8" {style}"#));
+    legend.svg.text([x + 25.0, y + 4.0], label, TextStyle::quiet(Anchor::Start));
 }

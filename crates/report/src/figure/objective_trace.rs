@@ -47,30 +47,22 @@ pub fn objective_trace(trace: &ObjectiveTrace<'_>) -> String {
     let Some(mut chart) = Chart::new(layout) else {
         return no_data(title);
     };
-    let [[_, _], [right, _]] = chart.plot();
+    let [[left, _], _] = chart.plot();
     if let Some(expected) = expected {
         let ends = [[-0.02 * last, expected], [1.02 * last, expected]];
-        chart.curve(
-            &ends,
-            &format!(r#"stroke="{GREY}" stroke-width="1.2" stroke-dasharray="5 3""#),
-        );
-        let at = [right - 6.0, chart.place([0.0, expected])[1] - 5.0];
+        chart.curve(&ends, &format!(r#"stroke="{GREY}" stroke-width="1.2" stroke-dasharray="5 3""#));
+        let at = [left + 8.0, chart.place([0.0, expected])[1] - 5.0];
         let label = format!("expected {}", significant(expected, 3));
-        chart.svg.text(at, &label, TextStyle::quiet(Anchor::End));
+        chart.svg.text(at, &label, TextStyle::quiet(Anchor::Start));
     }
-    chart.curve(
-        &points,
-        &format!(r#"stroke="{BLUE}" stroke-width="1.6" stroke-linejoin="round""#),
-    );
+    chart.curve(&points, &format!(r#"stroke="{BLUE}" stroke-width="1.6" stroke-linejoin="round""#));
     if points.len() <= 60 {
         let mut dots = PathData::new();
         for &point in &points {
             dots.dot(chart.place(point));
         }
         let style = r#"fill="none" stroke-width="4.5" stroke-linecap="round""#;
-        chart
-            .svg
-            .path(&dots, &format!(r#"stroke="{BLUE}" {style}"#));
+        chart.svg.path(&dots, &format!(r#"stroke="{BLUE}" {style}"#));
     }
     chart.finish()
 }

@@ -24,17 +24,9 @@ pub struct VelocityPair {
 /// The pairs of the used cells of some frames.
 #[must_use]
 pub fn velocity_pairs(frames: &[FrameView]) -> Vec<VelocityPair> {
-    let cells = frames
-        .iter()
-        .flat_map(|frame| &frame.cells)
-        .filter(|cell| cell.is_used());
+    let cells = frames.iter().flat_map(|frame| &frame.cells).filter(|cell| cell.is_used());
     cells
-        .filter_map(|cell| {
-            Some(VelocityPair {
-                measured: cell.measured?,
-                predicted: cell.predicted?,
-            })
-        })
+        .filter_map(|cell| Some(VelocityPair { measured: cell.measured?, predicted: cell.predicted? }))
         .collect()
 }
 
@@ -50,9 +42,7 @@ pub fn predicted_against_measured(pairs: &[VelocityPair], nmse: f64, units: &Uni
             .map(move |pair| [pair.measured[axis], pair.predicted[axis]])
             .filter(|&point| is_finite(point))
     };
-    let sizes = components(0)
-        .chain(components(1))
-        .map(|[a, b]| a.abs().max(b.abs()));
+    let sizes = components(0).chain(components(1)).map(|[a, b]| a.abs().max(b.abs()));
     let Some(reach) = quantile(sizes, 0.995).filter(|&reach| reach > 0.0) else {
         return no_data(title);
     };
@@ -60,24 +50,12 @@ pub fn predicted_against_measured(pairs: &[VelocityPair], nmse: f64, units: &Uni
     let unit = units.velocity_text();
     let x = Axis::linear(&format!("measured velocity ({unit})"), range);
     let y = Axis::linear(&format!("predicted velocity ({unit})"), range);
-    let layout = ChartLayout {
-        title,
-        size: [440.0, 430.0],
-        left: 62.0,
-        x,
-        y,
-    };
+    let layout = ChartLayout { title, size: [440.0, 430.0], left: 62.0, x, y };
     let Some(mut chart) = Chart::new(layout) else {
         return no_data(title);
     };
-    chart.curve(
-        &[[range[0]; 2], [range[1]; 2]],
-        r##"stroke="#666" stroke-dasharray="5 3""##,
-    );
-    let outside = draw_marks(
-        &mut chart,
-        [components(0).collect(), components(1).collect()],
-    );
+    chart.curve(&[[range[0]; 2], [range[1]; 2]], r##"stroke="#666" stroke-dasharray="5 3""##);
+    let outside = draw_marks(&mut chart, [components(0).collect(), components(1).collect()]);
     annotate(&mut chart, nmse, outside);
     chart.finish()
 }
@@ -116,9 +94,7 @@ fn push_mark(path: &mut PathData, axis: usize, at: [f64; 2]) {
 fn mark_style(axis: usize) -> String {
     if axis == 0 {
         let width = 2.0 * MARK;
-        format!(
-            r#"fill="none" stroke="{BLUE}" stroke-width="{width}" stroke-linecap="round" opacity=".5""#
-        )
+        format!(r#"fill="none" stroke="{BLUE}" stroke-width="{width}" stroke-linecap="round" opacity=".5""#)
     } else {
         format!(r#"fill="{VERMILLION}" opacity=".5""#)
     }
@@ -131,22 +107,12 @@ fn annotate(chart: &mut Chart, nmse: f64, outside: usize) {
         let mut mark = PathData::new();
         push_mark(&mut mark, axis, [left + 14.0, y - 4.0]);
         chart.svg.path(&mark, &mark_style(axis));
-        chart
-            .svg
-            .text([left + 24.0, y], label, TextStyle::label(Anchor::Start));
+        chart.svg.text([left + 24.0, y], label, TextStyle::label(Anchor::Start));
     }
     let text = format!("NMSE = {}", significant(nmse, 2));
-    chart.svg.text(
-        [right - 10.0, bottom - 12.0],
-        &text,
-        TextStyle::label(Anchor::End),
-    );
+    chart.svg.text([right - 10.0, bottom - 12.0], &text, TextStyle::label(Anchor::End));
     if outside > 0 {
         let text = format!("{outside} points outside the axes");
-        chart.svg.text(
-            [right - 10.0, bottom - 28.0],
-            &text,
-            TextStyle::quiet(Anchor::End),
-        );
+        chart.svg.text([right - 10.0, bottom - 28.0], &text, TextStyle::quiet(Anchor::End));
     }
 }

@@ -73,12 +73,8 @@ pub fn velocity_map(
     let mut legend = map.with_legend(48.0);
     legend.scale_bar(units);
     let unit = units.velocity_text();
-    let mark = ReferenceMark {
-        unit: &unit,
-        remark: "",
-        colour: field.colour(),
-    };
-    legend.reference_arrow(190.0, scale, &mark);
+    let mark = ReferenceMark { unit: &unit, remark: "", colour: field.colour() };
+    legend.reference_arrow(160.0, scale, &mark);
     legend.left_out(4.0, frame, Swatch::Grey);
     legend.svg.finish()
 }

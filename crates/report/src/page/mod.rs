@@ -3,7 +3,9 @@
 //! A page is a template that extends `base.html` and a context of plain data. Text is escaped;
 //! figures ([`Figure`]) and symbols are the only markup that passes.
 
+mod directions;
 mod infer;
+mod parameter_table;
 
 pub use infer::InferPage;
 
@@ -33,10 +35,7 @@ impl Figure {
     /// A figure and its caption.
     #[must_use]
     pub fn new(svg: String, caption: &str) -> Self {
-        Self {
-            svg,
-            caption: caption.to_owned(),
-        }
+        Self { svg, caption: caption.to_owned() }
     }
 }
 
@@ -56,8 +55,28 @@ pub struct Card {
 pub struct Panel {
     /// Name of the tab.
     pub label: String,
-    /// The figures in rows.
-    pub rows: Vec<Vec<Figure>>,
+    /// The figures, row by row.
+    pub figures: Vec<Figure>,
+    /// How many figures stand side by side where there is room.
+    pub columns: Columns,
+}
+
+/// How many figures stand side by side where there is room.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum Columns {
+    /// Two, for maps of many cells.
+    Two,
+    /// Three.
+    Three,
+}
+
+impl Columns {
+    /// The layout at which the maps of `cells` cells stay legible.
+    #[must_use]
+    pub fn for_cells(cells: usize) -> Self {
+        if cells > 700 { Self::Two } else { Self::Three }
+    }
 }
 
 /// What every page has, whatever the command.
@@ -100,18 +119,13 @@ pub fn render(template: Template, context: &impl Serialize) -> Result<String, Re
         environment.add_template("base.html", BASE)?;
         environment.add_template("macros.html", MACROS)?;
         environment.add_template(template.name, template.source)?;
-        environment
-            .get_template(template.name)?
-            .render(minijinja::context! {
-                page => Value::from_serialize(context),
-                style => Value::from_safe_string(STYLE.to_owned()),
-                script => Value::from_safe_string(SCRIPT.to_owned()),
-            })
+        environment.get_template(template.name)?.render(minijinja::context! {
+            page => Value::from_serialize(context),
+            style => Value::from_safe_string(STYLE.to_owned()),
+            script => Value::from_safe_string(SCRIPT.to_owned()),
+        })
     };
-    fill().map_err(|source| ReportError::Template {
-        template: template.name,
-        source,
-    })
+    fill().map_err(|source| ReportError::Template { template: template.name, source })
 }
 
 /// Escaped text with subscripts as markup.
@@ -130,10 +144,7 @@ mod tests {
 
     #[test]
     fn a_faulty_template_is_an_error_with_its_name() {
-        let template = Template {
-            name: "broken.html",
-            source: "{{ page.missing.deeper }}",
-        };
+        let template = Template { name: "broken.html", source: "{{ page.missing.deeper }}" };
         let error = render(template, &1.0).unwrap_err();
         assert!(error.to_string().contains("broken.html"));
     }

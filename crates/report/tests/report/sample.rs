@@ -1,10 +1,10 @@
-//! Synthetic frames and reports, shared by the tests and the example.
+//! Synthetic frames and reports, for the tests and the example.
 
 use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
-    CellCounts, EigenDirection, Fit, FitStatus, InferReport, InputFile, MeanRemoved,
-    NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, Quantity, RunRecord,
+    CellCounts, EigenDirection, Fit, FitStatus, InferReport, InputFile, MeanRemoved, NaiveParameters, Nmse,
+    Noise, NoiseSource, Nudge, Parameter, Parameters, Quantity, RunRecord,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Units};
 
@@ -33,63 +33,34 @@ pub fn frame(label: &str, side: usize) -> FrameView {
             .map(|corner| {
                 let angle = (corner as f64 + 0.5) * std::f64::consts::FRAC_PI_3;
                 let reach = SPACING / 3f64.sqrt();
-                jitter([
-                    centre[0] + reach * angle.cos(),
-                    centre[1] + reach * angle.sin(),
-                ])
+                jitter([centre[0] + reach * angle.cos(), centre[1] + reach * angle.sin()])
             })
             .collect();
         let rim = row == 0 || column == 0 || row + 1 == side || column + 1 == side;
         let middle = side as f64 * SPACING / 2.0;
         let swirl = [-(centre[1] - middle) / 90.0, (centre[0] - middle) / 90.0];
-        let predicted = [
-            swirl[0] + 0.5 * noise(index, 3),
-            swirl[1] + 0.5 * noise(index, 4),
-        ];
-        let measured = [
-            predicted[0] + 0.35 * noise(index, 5),
-            predicted[1] + 0.35 * noise(index, 6),
-        ];
+        let predicted = [swirl[0] + 0.5 * noise(index, 3), swirl[1] + 0.5 * noise(index, 4)];
+        let measured = [predicted[0] + 0.35 * noise(index, 5), predicted[1] + 0.35 * noise(index, 6)];
         let centre = [centre[0] + noise(index, 1), centre[1] + noise(index, 2)];
         CellView {
             centre,
             area: area(&polygon),
             perimeter: perimeter(&polygon),
-            polygon: if rim && index % 3 == 0 {
-                Vec::new()
-            } else {
-                polygon
-            },
-            status: if rim || index % 57 == 20 {
-                CellStatus::LeftOut
-            } else {
-                CellStatus::Used
-            },
+            polygon: if rim && index % 3 == 0 { Vec::new() } else { polygon },
+            status: if rim || index % 57 == 20 { CellStatus::LeftOut } else { CellStatus::Used },
             measured: (index % 41 != 7).then_some(measured),
             predicted: (!rim).then_some(predicted),
-            nudge: if rim {
-                [0.0; 2]
-            } else {
-                [0.2 * noise(index, 7), 0.2 * noise(index, 8)]
-            },
+            nudge: if rim { [0.0; 2] } else { [0.2 * noise(index, 7), 0.2 * noise(index, 8)] },
         }
     });
     let cells: Vec<CellView> = cells.collect();
     let edge = |from: usize, to: usize| [cells[from].centre, cells[to].centre];
     let middle = cells.len() / 2 + side / 3;
     let changed_edges = ChangedEdges {
-        lost: vec![
-            edge(middle, middle + 1),
-            edge(middle + 3 * side, middle + 3 * side + 1),
-        ],
+        lost: vec![edge(middle, middle + 1), edge(middle + 3 * side, middle + 3 * side + 1)],
         gained: vec![edge(middle - side, middle + side)],
     };
-    FrameView {
-        label: label.to_owned(),
-        cells,
-        changed_edges,
-        outline: None,
-    }
+    FrameView { label: label.to_owned(), cells, changed_edges, outline: None }
 }
 
 /// A few cells with everything that can be unknown unknown.
@@ -107,10 +78,7 @@ pub fn degenerate_frame() -> FrameView {
     FrameView {
         label: "frame <0>".to_owned(),
         cells: vec![cell(0.0, f64::NAN), cell(2.0, 0.0), cell(f64::NAN, 1.0)],
-        changed_edges: ChangedEdges {
-            lost: vec![[[0.0, f64::NAN], [1.0, 1.0]]],
-            gained: vec![],
-        },
+        changed_edges: ChangedEdges { lost: vec![[[0.0, f64::NAN], [1.0, 1.0]]], gained: vec![] },
         outline: None,
     }
 }
@@ -119,8 +87,7 @@ pub fn degenerate_frame() -> FrameView {
 pub fn page<'a>(report: &'a InferReport, frames: &'a [FrameView]) -> InferPage<'a> {
     InferPage {
         title: "embryo <3>",
-        headline: "The chiral Voronoi model explains 69 % of the motion, and the tissue turns \
-                   counter-clockwise (K_P α = 0.071 ± 0.003 per minute).",
+        headline: "The chiral Voronoi model explains 69 % of the motion; chirality is part of it.",
         summary: &[],
         report,
         frames,
@@ -135,12 +102,7 @@ pub fn report() -> InferReport {
         fixed: false,
         unit: unit.to_owned(),
     };
-    let held = |value: f64, unit: &str| Parameter {
-        value,
-        ci95: None,
-        fixed: true,
-        unit: unit.into(),
-    };
+    let held = |value: f64, unit: &str| Parameter { value, ci95: None, fixed: true, unit: unit.into() };
     let direction = |eigenvalue: f64, components: [f64; 4]| EigenDirection {
         eigenvalue,
         direction: ["K_A", "K_P", "K_P_P_0", "K_P_alpha"]
@@ -156,10 +118,7 @@ pub fn report() -> InferReport {
             version: "0.1.0".into(),
             seed: 1,
             threads: 2,
-            inputs: vec![InputFile {
-                path: "embryo3/positions.npy".into(),
-                sha256: "0f".repeat(32),
-            }],
+            inputs: vec![InputFile { path: "embryo3/positions.npy".into(), sha256: "0f".repeat(32) }],
             wall_seconds: 12.43,
             warnings: vec![
                 "The position noise was estimated from these data; if you know it, say so with \
@@ -167,14 +126,8 @@ pub fn report() -> InferReport {
                     .into(),
             ],
         },
-        units: Units {
-            length: "um".into(),
-            time: "min".into(),
-        },
-        length_scale: Quantity {
-            value: 11.17,
-            unit: "um".into(),
-        },
+        units: Units { length: "um".into(), time: "min".into() },
+        length_scale: Quantity { value: 11.17, unit: "um".into() },
         cells: CellCounts {
             frames: vec![6, 7],
             used: 636,
@@ -205,17 +158,8 @@ pub fn report() -> InferReport {
             cross_validated_standard_error: Some(0.02),
             mean_removed: MeanRemoved::PerFrame,
         },
-        noise: Noise {
-            sigma_r: 0.14,
-            sigma_v: 0.09,
-            source: NoiseSource::Estimated,
-        },
-        nudge: Nudge {
-            k: 0.41,
-            rms: 0.16,
-            degrees_of_freedom: 412.0,
-            edges_changed: 3,
-        },
+        noise: Noise { sigma_r: 0.14, sigma_v: 0.09, source: NoiseSource::Estimated },
+        nudge: Nudge { k: 0.41, rms: 0.16, degrees_of_freedom: 412.0, edges_changed: 3 },
         identifiability: vec![
             direction(8.1e4, [0.01, -0.05, 0.12, 0.99]),
             direction(310.0, [0.02, 0.26, -0.95, 0.13]),
@@ -227,9 +171,7 @@ pub fn report() -> InferReport {
             iterations: 17,
             objective: 871.0,
             expected_objective: 856.0,
-            trace: (0..18)
-                .map(|step| 870.0 + 29_000.0 * (-0.7 * f64::from(step)).exp())
-                .collect(),
+            trace: (0..18).map(|step| 870.0 + 29_000.0 * (-0.7 * f64::from(step)).exp()).collect(),
         },
     }
 }
@@ -238,16 +180,10 @@ pub fn report() -> InferReport {
 pub fn degenerate_report() -> InferReport {
     let mut report = report();
     report.run.warnings = vec!["only 2 cells <script>alert(1)</script> were usable".into()];
-    report.cells = CellCounts {
-        frames: vec![0],
-        used: 2,
-        left_out: BTreeMap::new(),
-    };
-    for parameter in [
-        &mut report.parameters.K_P,
-        &mut report.parameters.alpha,
-        &mut report.parameters.K_P_alpha,
-    ] {
+    report.cells = CellCounts { frames: vec![0], used: 2, left_out: BTreeMap::new() };
+    for parameter in
+        [&mut report.parameters.K_P, &mut report.parameters.alpha, &mut report.parameters.K_P_alpha]
+    {
         parameter.value = f64::NAN;
         parameter.ci95 = Some([f64::NEG_INFINITY, f64::INFINITY]);
     }
@@ -265,10 +201,7 @@ pub fn degenerate_report() -> InferReport {
 /// Moves a vertex by an amount that depends on its place only, so that neighbours agree.
 fn jitter(vertex: [f64; 2]) -> [f64; 2] {
     let key = ((vertex[0] * 2.0).round() as i64 * 7919 + (vertex[1] * 2.0).round() as i64) as usize;
-    [
-        vertex[0] + 1.7 * noise(key, 9),
-        vertex[1] + 1.7 * noise(key, 10),
-    ]
+    [vertex[0] + 1.7 * noise(key, 9), vertex[1] + 1.7 * noise(key, 10)]
 }
 
 fn area(polygon: &[[f64; 2]]) -> f64 {
@@ -277,9 +210,7 @@ fn area(polygon: &[[f64; 2]]) -> f64 {
 }
 
 fn perimeter(polygon: &[[f64; 2]]) -> f64 {
-    sides(polygon)
-        .map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1]))
-        .sum()
+    sides(polygon).map(|[a, b]| (b[0] - a[0]).hypot(b[1] - a[1])).sum()
 }
 
 fn sides(polygon: &[[f64; 2]]) -> impl Iterator<Item = [[f64; 2]; 2]> + '_ {

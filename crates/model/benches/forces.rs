@@ -1,0 +1,46 @@
+//! Forces, columns and the sparse Jacobian at a given tessellation.
+//!
+//! `RAYON_NUM_THREADS=1 cargo bench -p voronudge-model` for figures per cell on one core.
+
+use divan::{Bencher, counter::ItemsCount};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge_model::{HalfEdgeForces, Model, Parameters, jacobian};
+
+fn main() {
+    divan::main();
+}
+
+/// A jittered square lattice of `side²` cells at unit density, and the base model.
+fn tissue(side: usize) -> (Vec<Vector<f64>>, Tessellation, Model<f64>) {
+    let mut rng = Pcg64Mcg::seed_from_u64(7);
+    let positions: Vec<_> = (0..side * side)
+        .map(|i| {
+            let mut at = |k: usize| k as f64 + rng.random_range(0.2..0.8);
+            Vector::new(at(i % side), at(i / side))
+        })
+        .collect();
+    let cell_box = PeriodicBox::new([side as f64; 2]).expect("a positive box");
+    let tessellation = Tessellation::new(&positions, Domain::Periodic(cell_box)).expect("distinct cells");
+    let parameters = Parameters { chirality: 1.0, ..Parameters::default() };
+    (positions, tessellation, Model::chiral_voronoi(&parameters))
+}
+
+#[divan::bench(args = [10, 100, 1000])]
+fn velocities(bencher: Bencher, side: usize) {
+    let (positions, tessellation, model) = tissue(side);
+    let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
+    bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
+        forces.evaluate(&tessellation, divan::black_box(&positions), &model);
+        forces.gather(&tessellation, &mut v);
+    });
+}
+
+#[divan::bench(args = [10, 100, 1000], max_time = 20)]
+fn sparse_jacobian(bencher: Bencher, side: usize) {
+    let (positions, tessellation, model) = tissue(side);
+    bencher
+        .counter(ItemsCount::new(positions.len()))
+        .bench_local(|| jacobian(&tessellation, divan::black_box(&positions), &model));
+}

@@ -1,0 +1,80 @@
+//! One cell's element: forces on its vertices, handed on to the centres of its neighbours.
+
+use crate::{ForceTerm, WeightedTerm};
+use voronudge_geometry::{CellPolygon, Scalar, Shape, Vector, quarter_turn};
+
+/// The forces that a cell exerts on its vertices, as multiples of the gradients of its area and perimeter.
+#[derive(Debug, Clone, Copy)]
+pub struct VertexForces<S> {
+    /// Multiple of `∂A/∂r_v`: a pressure.
+    pub area: S,
+    /// Multiple of `∂P/∂r_v`: minus a tension.
+    pub perimeter: S,
+    /// Multiple of `ẑ × ∂P/∂r_v`: a torque of the cortex.
+    pub turned_perimeter: S,
+}
+
+impl<S: Scalar> VertexForces<S> {
+    /// The sum over terms for a cell of the given shape.
+    #[inline]
+    pub fn of(terms: &[WeightedTerm<S>], shape: Shape<S>) -> Self {
+        let zero = S::constant(0.0);
+        let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
+        for weighted in terms {
+            weighted.term.act(shape, weighted.coefficient, &mut forces);
+        }
+        forces
+    }
+
+    /// Adds `factor · ∂A/∂r_v` to every vertex.
+    #[inline]
+    pub fn along_area_gradient(&mut self, factor: S) {
+        self.area += factor;
+    }
+
+    /// Adds `factor · ∂P/∂r_v` to every vertex.
+    #[inline]
+    pub fn along_perimeter_gradient(&mut self, factor: S) {
+        self.perimeter += factor;
+    }
+
+    /// Adds `factor · ẑ × ∂P/∂r_v` to every vertex.
+    #[inline]
+    pub fn along_turned_perimeter_gradient(&mut self, factor: S) {
+        self.turned_perimeter += factor;
+    }
+
+    /// The force on a vertex with the given gradients of the cell's area and perimeter.
+    #[inline]
+    pub fn on_vertex(&self, area_gradient: Vector<S>, perimeter_gradient: Vector<S>) -> Vector<S> {
+        let turned = quarter_turn(perimeter_gradient);
+        Vector::new(
+            area_gradient.x * self.area
+                + perimeter_gradient.x * self.perimeter
+                + turned.x * self.turned_perimeter,
+            area_gradient.y * self.area
+                + perimeter_gradient.y * self.perimeter
+                + turned.y * self.turned_perimeter,
+        )
+    }
+
+    /// Writes the force on each neighbour of the cell, one for each side. The force on the cell itself is minus their
+    /// sum.
+    #[inline]
+    pub fn on_ring(&self, polygon: &CellPolygon<S>, ring_forces: &mut [Vector<S>]) {
+        let sides = polygon.len();
+        let mut carried = None;
+        for (m, corner) in polygon.corners().iter().enumerate() {
+            let force = self.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
+            let [on_this, on_next] = corner.transmit(force);
+            ring_forces[m] = match carried {
+                Some(carried) => on_this + carried,
+                None => on_this,
+            };
+            carried = Some(on_next);
+        }
+        if let (Some(carried), true) = (carried, sides > 0) {
+            ring_forces[0] += carried;
+        }
+    }
+}

@@ -1,0 +1,30 @@
+use super::{ForceTerm, Parity};
+use crate::VertexForces;
+use voronudge_geometry::{Scalar, Shape};
+
+/// Adhesion, coefficient `K_P P_0`: `E_B = −P`, so a vertex feels `+∂P/∂r_v`.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Adhesion;
+
+impl ForceTerm for Adhesion {
+    fn name(&self) -> &'static str {
+        "adhesion"
+    }
+
+    fn formula(&self) -> &'static str {
+        "∂P/∂r_v"
+    }
+
+    fn parity(&self) -> Parity {
+        Parity::Achiral
+    }
+
+    #[inline]
+    fn act<S: Scalar>(&self, _shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+        forces.along_perimeter_gradient(coefficient);
+    }
+
+    fn energy<S: Scalar>(&self, shape: Shape<S>) -> Option<S> {
+        Some(-shape.perimeter)
+    }
+}

@@ -1,0 +1,90 @@
+//! The rows of the parameter table: symbols, meanings, digits.
+
+use serde::Serialize;
+
+use crate::figure::{Estimate, ParameterRow};
+use crate::infer_report::{InferReport, Parameter};
+use crate::numbers::{NO_VALUE, as_given, significant, unit_text, with_interval};
+
+/// A parameter as the table shows it.
+#[derive(Serialize)]
+pub(super) struct TableRow {
+    pub(super) symbol: String,
+    pub(super) meaning: String,
+    pub(super) unit: String,
+    pub(super) value: String,
+    pub(super) interval: String,
+    pub(super) naive: String,
+}
+
+impl TableRow {
+    /// The texts of a row.
+    pub(super) fn new(row: &ParameterRow) -> Self {
+        let (value, interval) = match (row.interval(), row.estimate) {
+            (Some(ends), _) => {
+                let [value, low, high] = with_interval(row.value, ends);
+                (value, format!("{low} to {high}"))
+            }
+            (None, Estimate::Fixed) => (as_given(row.value), "held fixed".to_owned()),
+            (None, Estimate::Fitted) => (significant(row.value, 3), "not determined".to_owned()),
+        };
+        Self {
+            symbol: row.symbol.clone(),
+            meaning: row.meaning.clone(),
+            unit: unit_text(&row.unit),
+            value,
+            interval,
+            naive: row.naive.map_or_else(|| NO_VALUE.to_owned(), |naive| significant(naive, 3)),
+        }
+    }
+}
+
+/// The printed symbol of a parameter's name in the file.
+pub(super) fn symbol_of(name: &str) -> String {
+    match name {
+        "alpha" => "α".to_owned(),
+        "K_P_alpha" => "K_P α".to_owned(),
+        "K_P_P_0" => "K_P P_0".to_owned(),
+        "shape_index" => "P_0/ℓ_0".to_owned(),
+        other => other.to_owned(),
+    }
+}
+
+/// The rows of the parameter table, the best determined first.
+pub(super) fn parameter_rows(report: &InferReport) -> Vec<ParameterRow> {
+    let (fitted, naive) = (&report.parameters, &report.naive);
+    let row = |name: &str, parameter: &Parameter, naive: f64, meaning: &str| ParameterRow {
+        symbol: symbol_of(name),
+        unit: parameter.unit.clone(),
+        value: parameter.value,
+        ci95: parameter.ci95,
+        naive: Some(naive).filter(|naive| naive.is_finite()),
+        estimate: if parameter.fixed { Estimate::Fixed } else { Estimate::Fitted },
+        meaning: meaning.to_owned(),
+    };
+    vec![
+        row(
+            "K_P_alpha",
+            &fitted.K_P_alpha,
+            naive.K_P_alpha,
+            "chiral rate: strength of the turned outline force; for positive values the extra force points a \
+             quarter turn clockwise from the outline force (y axis up)",
+        ),
+        row(
+            "shape_index",
+            &fitted.shape_index,
+            naive.shape_index,
+            "preferred shape: small is round and rigid, above about 3.8 elongated and fluid \
+             (without chirality)",
+        ),
+        row(
+            "alpha",
+            &fitted.alpha,
+            naive.alpha,
+            "chirality: turned outline force relative to the outline force itself",
+        ),
+        row("K_P", &fitted.K_P, naive.K_P, "stiffness of the cell outline"),
+        row("P_0", &fitted.P_0, naive.P_0, "preferred length of the cell outline"),
+        row("K_A", &fitted.K_A, naive.K_A, "stiffness of the cell area; often not determined"),
+    ]
+}

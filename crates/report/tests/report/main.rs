@@ -1,0 +1,5 @@
+//! Figures, pages and report files from synthetic data.
+
+mod figures;
+mod pages;
+mod sample;
