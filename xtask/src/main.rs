@@ -1,1 +1,57 @@
-fn main() {}
+//! Automation of this repository: `cargo xtask <command>`.
+
+mod check;
+mod fixtures;
+mod oracle;
+
+use clap::{Parser, Subcommand};
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+
+/// Automation of this repository.
+#[derive(Parser)]
+#[command(name = "cargo xtask")]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Subcommand)]
+enum Command {
+    /// Run the checks that every change must pass, in order, and stop at the first failure.
+    Check {
+        /// Run these only.
+        #[arg(long, value_delimiter = ',', value_enum)]
+        only: Vec<check::Check>,
+    },
+    /// Make everything in fixtures/ from recorded seeds; twice gives the same bytes.
+    Fixtures {
+        /// Folder to write to.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
+}
+
+/// What a command came to; failures of any kind are for a person to read.
+type Outcome = Result<(), Box<dyn std::error::Error>>;
+
+fn main() -> ExitCode {
+    let root = root();
+    let outcome = match Arguments::parse().command {
+        Command::Check { only } => check::run(&root, &only),
+        Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),
+    };
+    match outcome {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(error) => {
+            eprintln!("error: {error}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+/// The folder of the workspace.
+fn root() -> PathBuf {
+    let here = Path::new(env!("CARGO_MANIFEST_DIR"));
+    here.parent().unwrap_or(here).to_path_buf()
+}

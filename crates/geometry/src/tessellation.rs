@@ -82,6 +82,12 @@ impl Tessellation {
         self.neighbour.len()
     }
 
+    /// The first half-edge of a cell; for a cell number of N, the number of half-edges.
+    #[inline]
+    pub fn half_edge_start(&self, cell: usize) -> usize {
+        self.start[cell] as usize
+    }
+
     /// The half-edges of a cell, counter-clockwise.
     #[inline]
     pub fn ring(&self, cell: usize) -> std::ops::Range<usize> {

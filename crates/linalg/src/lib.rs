@@ -1,1 +1,18 @@
-//! linalg
+//! Sparse linear algebra behind a small interface: the only place that knows the library that does it.
+//!
+//! ```
+//! use voronudge_linalg::{Cholesky, SymmetricMatrix};
+//!
+//! // [[4, 1], [1, 3]] x = [1, 2], given by its lower triangle in compressed columns.
+//! let matrix = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![4.0, 1.0, 3.0])?;
+//! let mut x = [1.0, 2.0];
+//! Cholesky::new(&matrix)?.solve(&mut x);
+//! assert!((x[0] - 1.0 / 11.0).abs() < 1e-15 && (x[1] - 7.0 / 11.0).abs() < 1e-15);
+//! # Ok::<(), voronudge_linalg::Error>(())
+//! ```
+
+mod cholesky;
+mod error;
+
+pub use cholesky::{Cholesky, CholeskyPattern, SymmetricMatrix};
+pub use error::Error;

@@ -6,7 +6,7 @@ use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{HalfEdgeForces, Model, Parameters, jacobian};
+use voronudge_model::{BlockMatrix, HalfEdgeForces, JacobianBuilder, Model, Parameters};
 
 fn main() {
     divan::main();
@@ -32,15 +32,15 @@ fn velocities(bencher: Bencher, side: usize) {
     let (positions, tessellation, model) = tissue(side);
     let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
-        forces.evaluate(&tessellation, divan::black_box(&positions), &model);
-        forces.gather(&tessellation, &mut v);
+        forces.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
     });
 }
 
 #[divan::bench(args = [10, 100, 1000], max_time = 20)]
 fn sparse_jacobian(bencher: Bencher, side: usize) {
     let (positions, tessellation, model) = tissue(side);
-    bencher
-        .counter(ItemsCount::new(positions.len()))
-        .bench_local(|| jacobian(&tessellation, divan::black_box(&positions), &model));
+    let (mut builder, mut matrix) = (JacobianBuilder::default(), BlockMatrix::default());
+    bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
+        builder.build(&tessellation, divan::black_box(&positions), &model, &mut matrix);
+    });
 }

@@ -5,10 +5,28 @@
 
 use crate::{Model, Term, VertexForces, WeightedTerm};
 use rayon::prelude::*;
+use std::ops::Range;
 use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
 
 /// Cells per task.
 pub(crate) const CHUNK: usize = 1024;
+
+/// Cuts an array of per-cell stretches into tasks of [`CHUNK`] cells; `start` gives the first entry of a cell.
+pub(crate) fn split_by_cells<T>(
+    array: &mut [T],
+    cells: usize,
+    start: impl Fn(usize) -> usize,
+) -> Vec<(Range<usize>, &mut [T])> {
+    let mut rest = array;
+    let mut tasks = Vec::with_capacity(cells.div_ceil(CHUNK));
+    for first in (0..cells).step_by(CHUNK) {
+        let last = (first + CHUNK).min(cells);
+        let (own, after) = rest.split_at_mut(start(last) - start(first));
+        rest = after;
+        tasks.push((first..last, own));
+    }
+    tasks
+}
 
 /// Forces of every cell on its neighbours, one per half-edge. Reusable from call to call.
 #[derive(Debug, Clone)]
@@ -23,27 +41,39 @@ impl<S: Scalar> Default for HalfEdgeForces<S> {
 }
 
 impl<S: Scalar> HalfEdgeForces<S> {
-    /// Evaluates all elements. The forces of a cell whose polygon is not closed are NaN.
-    pub fn evaluate(&mut self, tessellation: &Tessellation, positions: &[Vector<S>], model: &Model<S>) {
-        let nan = S::constant(f64::NAN);
-        self.forces.resize(tessellation.half_edges(), Vector::new(nan, nan));
+    /// Evaluates all elements and sums them into velocities (N). The forces of a cell whose polygon is not closed are
+    /// NaN.
+    pub fn evaluate(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<S>],
+        model: &Model<S>,
+        velocities: &mut Vec<Vector<S>>,
+    ) {
+        let nan = Vector::new(S::constant(f64::NAN), S::constant(f64::NAN));
         let cells = tessellation.len();
+        self.forces.resize(tessellation.half_edges(), nan);
+        velocities.resize(cells, nan);
         if cells <= CHUNK {
-            elements(tessellation, positions, &model.terms, 0..cells, &mut self.forces);
-            return;
+            elements(tessellation, positions, &model.terms, 0..cells, &mut self.forces, velocities);
+        } else {
+            split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
+                .into_par_iter()
+                .zip(velocities.par_chunks_mut(CHUNK))
+                .for_each(|((range, forces), velocities)| {
+                    elements(tessellation, positions, &model.terms, range, forces, velocities);
+                });
         }
-        let mut rest = self.forces.as_mut_slice();
-        let mut tasks = Vec::with_capacity(cells.div_ceil(CHUNK));
-        for first in (0..cells).step_by(CHUNK) {
-            let last = (first + CHUNK).min(cells);
-            let (own, after) =
-                rest.split_at_mut(tessellation.ring(last - 1).end - tessellation.ring(first).start);
-            rest = after;
-            tasks.push((first..last, own));
+        let gather = |(cell, v): (usize, &mut Vector<S>)| {
+            for h in tessellation.ring(cell) {
+                *v += self.forces[tessellation.twin(h)];
+            }
+        };
+        if cells <= CHUNK {
+            velocities.iter_mut().enumerate().for_each(gather);
+        } else {
+            velocities.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(gather);
         }
-        tasks
-            .into_par_iter()
-            .for_each(|(range, own)| elements(tessellation, positions, &model.terms, range, own));
     }
 
     /// The force of the half-edge's cell on the neighbour it points at.
@@ -51,39 +81,29 @@ impl<S: Scalar> HalfEdgeForces<S> {
     pub fn on_neighbour(&self, half_edge: usize) -> Vector<S> {
         self.forces[half_edge]
     }
-
-    /// Sums the forces into velocities (N).
-    pub fn gather(&self, tessellation: &Tessellation, velocities: &mut Vec<Vector<S>>) {
-        let zero = S::constant(0.0);
-        velocities.resize(tessellation.len(), Vector::new(zero, zero));
-        velocities.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(|(cell, v)| {
-            let mut sum = Vector::new(zero, zero);
-            for h in tessellation.ring(cell) {
-                sum += self.forces[tessellation.twin(h)] - self.forces[h];
-            }
-            *v = sum;
-        });
-    }
 }
 
+/// The elements of some cells: forces on their rings, and on the cells themselves.
 fn elements<S: Scalar>(
     tessellation: &Tessellation,
     positions: &[Vector<S>],
     terms: &[WeightedTerm<S>],
-    cells: std::ops::Range<usize>,
+    cells: Range<usize>,
     forces: &mut [Vector<S>],
+    on_cells: &mut [Vector<S>],
 ) {
     let mut polygon = CellPolygon::default();
     let offset = tessellation.ring(cells.start).start;
-    for cell in cells {
+    for (cell, on_cell) in cells.zip(on_cells) {
         let ring = tessellation.ring(cell);
         let own = &mut forces[ring.start - offset..ring.end - offset];
         if tessellation.is_closed(cell) {
             polygon.fill(tessellation, positions, cell);
-            VertexForces::of(terms, polygon.shape()).on_ring(&polygon, own);
+            *on_cell = VertexForces::of(terms, polygon.shape()).on_ring(&polygon, own);
         } else {
             let nan = S::constant(f64::NAN);
-            own.fill(Vector::new(nan, nan));
+            *on_cell = Vector::new(nan, nan);
+            own.fill(*on_cell);
         }
     }
 }
@@ -97,9 +117,8 @@ pub fn velocities<S: Scalar>(
     model: &Model<S>,
 ) -> Vec<Vector<S>> {
     let mut forces = HalfEdgeForces::default();
-    forces.evaluate(tessellation, positions, model);
     let mut v = Vec::new();
-    forces.gather(tessellation, &mut v);
+    forces.evaluate(tessellation, positions, model, &mut v);
     v
 }
 

@@ -58,23 +58,22 @@ impl<S: Scalar> VertexForces<S> {
         )
     }
 
-    /// Writes the force on each neighbour of the cell, one for each side. The force on the cell itself is minus their
-    /// sum.
+    /// Writes the force on each neighbour of the cell, one for each side, and returns the force on the cell itself:
+    /// minus their sum.
     #[inline]
-    pub fn on_ring(&self, polygon: &CellPolygon<S>, ring_forces: &mut [Vector<S>]) {
-        let sides = polygon.len();
-        let mut carried = None;
-        for (m, corner) in polygon.corners().iter().enumerate() {
+    pub fn on_ring(&self, polygon: &CellPolygon<S>, ring_forces: &mut [Vector<S>]) -> Vector<S> {
+        let zero = S::constant(0.0);
+        let (mut carried, mut on_cell) = (Vector::new(zero, zero), Vector::new(zero, zero));
+        for (m, (corner, on_neighbour)) in polygon.corners().iter().zip(ring_forces.iter_mut()).enumerate() {
             let force = self.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
             let [on_this, on_next] = corner.transmit(force);
-            ring_forces[m] = match carried {
-                Some(carried) => on_this + carried,
-                None => on_this,
-            };
-            carried = Some(on_next);
+            *on_neighbour = carried + on_this;
+            carried = on_next;
+            on_cell -= on_this + on_next;
         }
-        if let (Some(carried), true) = (carried, sides > 0) {
-            ring_forces[0] += carried;
+        if let Some(first) = ring_forces.first_mut() {
+            *first += carried;
         }
+        on_cell
     }
 }

@@ -1,30 +1,30 @@
 //! The sparse Jacobian ∂v/∂r.
 
 use crate::Model;
-use crate::assembly::CHUNK;
-use crate::element_jacobian::ElementJacobian;
+use crate::assembly::{CHUNK, split_by_cells};
+use crate::element_jacobian::{Block, ElementJacobian};
 use rayon::prelude::*;
 use voronudge_geometry::{Tessellation, Vector};
 
 /// A sparse matrix of 2 × 2 blocks in compressed rows: one block row and column for each cell.
-#[derive(Debug, Clone, PartialEq)]
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct BlockMatrix {
     /// First block of each row, and the number of blocks at the end.
     pub row_start: Vec<usize>,
-    /// Block column, ascending within a row.
+    /// Block column; each appears once in a row, in no particular order.
     pub column: Vec<u32>,
     /// Entries `[xx, xy, yx, yy]`: the first letter is the component of the velocity.
-    pub block: Vec<[f64; 4]>,
+    pub block: Vec<Block>,
 }
 
 impl BlockMatrix {
     /// Number of block rows.
     pub fn rows(&self) -> usize {
-        self.row_start.len() - 1
+        self.row_start.len().saturating_sub(1)
     }
 
     /// The blocks of one row: column and entries.
-    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &[f64; 4])> {
+    pub fn row(&self, row: usize) -> impl Iterator<Item = (usize, &Block)> {
         let range = self.row_start[row]..self.row_start[row + 1];
         self.column[range.clone()].iter().map(|&c| c as usize).zip(&self.block[range])
     }
@@ -58,156 +58,192 @@ impl BlockMatrix {
 
 /// `J_{ij} = ∂v_i/∂r_j` at frozen topology, exact to rounding.
 ///
-/// Each element is differentiated on its own (about twelve directions), in coordinates relative to its cell; the row and
-/// column of the cell itself follow from the balance of forces and from translation. In an open field of view the rows
-/// of cells without a velocity are empty.
+/// Each element is differentiated on its own, in coordinates relative to its cell; the row and column of the cell itself
+/// follow from the balance of forces and from translation. In an open field of view the rows of cells without a velocity
+/// are empty. For one Jacobian after another see [`JacobianBuilder`].
 pub fn jacobian(tessellation: &Tessellation, positions: &[Vector<f64>], model: &Model<f64>) -> BlockMatrix {
-    let elements = Elements::evaluate(tessellation, positions, model);
-    let cells = tessellation.len();
-    let chunks: Vec<Rows> = (0..cells.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| elements.rows(chunk * CHUNK..((chunk + 1) * CHUNK).min(cells)))
-        .collect();
-    let blocks = chunks.iter().map(|c| c.column.len()).sum();
-    let mut matrix = BlockMatrix {
-        row_start: Vec::with_capacity(cells + 1),
-        column: Vec::with_capacity(blocks),
-        block: Vec::with_capacity(blocks),
-    };
-    matrix.row_start.push(0);
-    for rows in chunks {
-        let offset = matrix.column.len();
-        matrix.row_start.extend(rows.row_end.iter().map(|end| offset + end));
-        matrix.column.extend(rows.column);
-        matrix.block.extend(rows.block);
-    }
+    let mut matrix = BlockMatrix::default();
+    JacobianBuilder::default().build(tessellation, positions, model, &mut matrix);
     matrix
 }
 
-/// The derivatives of all elements.
-struct Elements<'a> {
-    tessellation: &'a Tessellation,
-    /// First block of each cell.
+/// Builds Jacobians one after another in the same memory.
+#[derive(Debug, Default)]
+pub struct JacobianBuilder {
+    /// First block of each cell's element, whose derivative is a matrix of blocks (force on a, by position of b).
     start: Vec<usize>,
-    blocks: Vec<[f64; 4]>,
+    elements: Vec<Block>,
 }
 
-/// Some consecutive rows.
-#[derive(Default)]
-struct Rows {
-    row_end: Vec<usize>,
-    column: Vec<u32>,
-    block: Vec<[f64; 4]>,
-}
+impl JacobianBuilder {
+    /// As [`jacobian`], into an existing matrix.
+    pub fn build(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        model: &Model<f64>,
+        matrix: &mut BlockMatrix,
+    ) {
+        self.evaluate_elements(tessellation, positions, model);
+        find_pattern(tessellation, matrix);
+        let BlockMatrix { row_start, column, block } = matrix;
+        let (row_start, column) = (&*row_start, &*column);
+        block.resize(column.len(), [0.0; 4]);
+        split_by_cells(block, tessellation.len(), |cell| row_start[cell]).into_par_iter().for_each_init(
+            || Places::new(tessellation.len()),
+            |places, (cells, block)| {
+                let offset = row_start[cells.start];
+                for cell in cells {
+                    let range = row_start[cell]..row_start[cell + 1];
+                    let row = &mut block[range.start - offset..range.end - offset];
+                    row.fill([0.0; 4]);
+                    places.enter(&column[range]);
+                    if !row.is_empty() {
+                        self.fill_row(tessellation, cell, places, row);
+                    }
+                }
+            },
+        );
+    }
 
-impl<'a> Elements<'a> {
-    fn evaluate(tessellation: &'a Tessellation, positions: &[Vector<f64>], model: &Model<f64>) -> Self {
-        let cells = tessellation.len();
-        let mut start = Vec::with_capacity(cells + 1);
+    fn evaluate_elements(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        model: &Model<f64>,
+    ) {
+        let Self { start, elements } = self;
+        start.clear();
         start.push(0);
         let mut total = 0;
-        for cell in 0..cells {
+        start.extend((0..tessellation.len()).map(|cell| {
             total += tessellation.ring(cell).len().pow(2);
-            start.push(total);
-        }
-        let mut blocks = vec![[0.0; 4]; total];
-        let mut rest = blocks.as_mut_slice();
-        let mut tasks = Vec::with_capacity(cells.div_ceil(CHUNK));
-        for first in (0..cells).step_by(CHUNK) {
-            let last = (first + CHUNK).min(cells);
-            let (own, after) = rest.split_at_mut(start[last] - start[first]);
-            rest = after;
-            tasks.push((first..last, own));
-        }
-        tasks.into_par_iter().for_each(|(range, own)| {
-            let mut jacobian = ElementJacobian::new(&model.terms);
-            let offset = start[range.start];
-            for cell in range.filter(|&cell| tessellation.is_closed(cell)) {
-                let blocks = &mut own[start[cell] - offset..start[cell + 1] - offset];
-                let ring = tessellation.ring(cell);
-                jacobian.fill(ring.map(|h| tessellation.displacement(positions, cell, h)), blocks);
-            }
-        });
-        Self { tessellation, start, blocks }
+            total
+        }));
+        let start = &*start;
+        elements.resize(total, [0.0; 4]);
+        split_by_cells(elements, tessellation.len(), |cell| start[cell]).into_par_iter().for_each_init(
+            || ElementJacobian::new(&model.terms),
+            |jacobian, (cells, own)| {
+                let offset = start[cells.start];
+                for cell in cells.filter(|&cell| tessellation.is_closed(cell)) {
+                    let ring = tessellation.ring(cell);
+                    jacobian.fill(
+                        ring.map(|h| tessellation.displacement(positions, cell, h)),
+                        &mut own[start[cell] - offset..start[cell + 1] - offset],
+                    );
+                }
+            },
+        );
     }
 
-    fn rows(&self, cells: std::ops::Range<usize>) -> Rows {
-        let mut rows = Rows::default();
-        rows.column.reserve(cells.len() * 19);
-        rows.block.reserve(cells.len() * 19);
-        let mut row = Row { place: vec![u32::MAX; self.tessellation.len()], ..Row::default() };
-        for cell in cells {
-            self.fill_row(cell, &mut row);
-            row.drain_into(&mut rows);
-        }
-        rows
-    }
-
-    fn fill_row(&self, cell: usize, row: &mut Row) {
-        let tessellation = self.tessellation;
-        let complete = tessellation.is_closed(cell)
-            && tessellation.neighbours(cell).iter().all(|&k| tessellation.is_closed(k as usize));
-        if !complete {
-            return;
-        }
+    fn fill_row(&self, tessellation: &Tessellation, cell: usize, places: &Places, row: &mut [Block]) {
         // The cell's own element: the force on the cell is minus the sum over its ring.
-        let sides = tessellation.ring(cell).len();
-        for slot in 0..sides {
-            self.add_slot(cell, slot, -1.0, row);
+        for slot in 0..tessellation.ring(cell).len() {
+            self.add_slot(tessellation, cell, slot, -1.0, places, row);
         }
         for h in tessellation.ring(cell) {
-            let twin = tessellation.twin(h);
             let owner = tessellation.neighbour(h);
-            self.add_slot(owner, twin - tessellation.ring(owner).start, 1.0, row);
+            let slot = tessellation.twin(h) - tessellation.ring(owner).start;
+            self.add_slot(tessellation, owner, slot, 1.0, places, row);
         }
     }
 
     /// Adds the derivatives of the force of `owner` on slot `slot` of its ring.
-    fn add_slot(&self, owner: usize, slot: usize, sign: f64, row: &mut Row) {
-        let neighbours = self.tessellation.neighbours(owner);
-        let sides = neighbours.len();
-        let begin = self.start[owner] + slot * sides;
-        let mut sum = [0.0; 4];
-        for (&column, block) in neighbours.iter().zip(&self.blocks[begin..begin + sides]) {
-            let signed = block.map(|entry| sign * entry);
-            row.add(column, signed);
-            for (total, entry) in sum.iter_mut().zip(signed) {
-                *total += entry;
-            }
-        }
-        row.add(owner as u32, sum.map(|entry| -entry));
-    }
-}
-
-/// One row while it is summed.
-#[derive(Default)]
-struct Row {
-    /// Where each column stands in `entries`.
-    place: Vec<u32>,
-    entries: Vec<(u32, [f64; 4])>,
-}
-
-impl Row {
     #[inline]
-    fn add(&mut self, column: u32, block: [f64; 4]) {
-        let place = &mut self.place[column as usize];
-        if *place == u32::MAX {
-            *place = self.entries.len() as u32;
-            self.entries.push((column, block));
-        } else {
-            for (total, entry) in self.entries[*place as usize].1.iter_mut().zip(block) {
-                *total += entry;
+    fn add_slot(
+        &self,
+        tessellation: &Tessellation,
+        owner: usize,
+        slot: usize,
+        sign: f64,
+        places: &Places,
+        row: &mut [Block],
+    ) {
+        let neighbours = tessellation.neighbours(owner);
+        let begin = self.start[owner] + slot * neighbours.len();
+        let mut sum = [0.0; 4];
+        for (&column, block) in neighbours.iter().zip(&self.elements[begin..]) {
+            let entries = &mut row[places.of(column)];
+            for ((entry, total), derivative) in entries.iter_mut().zip(&mut sum).zip(block) {
+                *entry += sign * derivative;
+                *total += sign * derivative;
             }
+        }
+        for (entry, total) in row[places.of(owner as u32)].iter_mut().zip(sum) {
+            *entry -= total;
+        }
+    }
+}
+
+/// Where each block column stands in the row at hand.
+struct Places {
+    place: Vec<u32>,
+}
+
+impl Places {
+    fn new(cells: usize) -> Self {
+        Self { place: vec![u32::MAX; cells] }
+    }
+
+    fn enter(&mut self, columns: &[u32]) {
+        for (place, &column) in (0..).zip(columns) {
+            self.place[column as usize] = place;
         }
     }
 
-    fn drain_into(&mut self, rows: &mut Rows) {
-        self.entries.sort_unstable_by_key(|entry| entry.0);
-        for (column, block) in self.entries.drain(..) {
-            self.place[column as usize] = u32::MAX;
-            rows.column.push(column);
-            rows.block.push(block);
-        }
-        rows.row_end.push(rows.column.len());
+    #[inline]
+    fn of(&self, column: u32) -> usize {
+        self.place[column as usize] as usize
     }
+
+    /// Whether a column has not been seen in this row yet; it is then marked with the row's number.
+    fn is_new(&mut self, column: u32, row: u32) -> bool {
+        std::mem::replace(&mut self.place[column as usize], row) != row
+    }
+}
+
+/// A velocity depends on the cell, its neighbours, and their neighbours.
+fn find_pattern(tessellation: &Tessellation, matrix: &mut BlockMatrix) {
+    let cells = tessellation.len();
+    let chunks: Vec<(Vec<usize>, Vec<u32>)> = (0..cells.div_ceil(CHUNK))
+        .into_par_iter()
+        .map_init(
+            || Places::new(cells),
+            |seen, chunk| {
+                let range = chunk * CHUNK..((chunk + 1) * CHUNK).min(cells);
+                let (mut lengths, mut columns) = (Vec::with_capacity(CHUNK), Vec::with_capacity(CHUNK * 20));
+                for cell in range {
+                    let first = columns.len();
+                    if has_velocity(tessellation, cell) {
+                        for &k in std::iter::once(&(cell as u32)).chain(tessellation.neighbours(cell)) {
+                            for &j in std::iter::once(&k).chain(tessellation.neighbours(k as usize)) {
+                                if seen.is_new(j, cell as u32) {
+                                    columns.push(j);
+                                }
+                            }
+                        }
+                    }
+                    lengths.push(columns.len() - first);
+                }
+                (lengths, columns)
+            },
+        )
+        .collect();
+    matrix.row_start.clear();
+    matrix.column.clear();
+    matrix.row_start.push(0);
+    let mut end = 0;
+    for (lengths, columns) in chunks {
+        matrix.row_start.extend(lengths.iter().map(|length| {
+            end += length;
+            end
+        }));
+        matrix.column.extend_from_slice(&columns);
+    }
+}
+
+fn has_velocity(tessellation: &Tessellation, cell: usize) -> bool {
+    tessellation.is_closed(cell)
+        && tessellation.neighbours(cell).iter().all(|&k| tessellation.is_closed(k as usize))
 }

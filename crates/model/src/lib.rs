@@ -37,7 +37,7 @@ mod term;
 
 pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use element::VertexForces;
-pub use jacobian::{BlockMatrix, jacobian};
+pub use jacobian::{BlockMatrix, JacobianBuilder, jacobian};
 pub use parameters::{Model, PARAMETER_NAMES, Parameters, WeightedTerm, base_terms, parameter_derivatives};
 pub use stress::stress;
 pub use term::{Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, Term};

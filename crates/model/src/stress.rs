@@ -15,7 +15,7 @@ pub fn stress<S: Scalar>(
     counts: impl Fn(usize) -> bool,
 ) -> [[S; 2]; 2] {
     let mut forces = HalfEdgeForces::default();
-    forces.evaluate(tessellation, positions, model);
+    forces.evaluate(tessellation, positions, model, &mut Vec::new());
     let zero = S::constant(0.0);
     let (mut sum, mut area) = ([[zero; 2]; 2], zero);
     let mut polygon = CellPolygon::default();

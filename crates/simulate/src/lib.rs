@@ -1,1 +1,44 @@
-//! simulate
+//! Time integration of the chiral Voronoi model in a periodic box.
+//!
+//! A [`Simulation`] holds cell centres `r_i` and moves them by `dr_i/dt = v_i(r)` with the classical fourth-order
+//! Runge–Kutta method at a fixed time step; the Voronoi tessellation is renewed at every evaluation of `v`.
+//! [`run`] drives one by a [`Schedule`] and hands out evenly spaced frames. Starting positions come from
+//! [`RandomPlacement`].
+//!
+//! Lengths and times are in whatever unit the parameters of the model are in. The result does not depend on the number
+//! of threads.
+//!
+//! ```
+//! use std::ops::ControlFlow;
+//! use voronudge_geometry::{Domain, PeriodicBox};
+//! use voronudge_model::{Model, Parameters};
+//! use voronudge_simulate::{RandomPlacement, Schedule, Simulation, generator, run};
+//!
+//! let cell_box = PeriodicBox::new([5.0, 5.0])?;
+//! let positions = RandomPlacement::new(25, cell_box).draw(&mut generator(1))?;
+//! let model = Model::chiral_voronoi(&Parameters { chirality: 0.5, ..Parameters::default() });
+//! let mut simulation = Simulation::new(positions, Domain::Periodic(cell_box), model)?;
+//! let mut times = Vec::new();
+//! let schedule = Schedule { time: 1.0, time_step: 0.02, frames: 4 };
+//! let summary = run(&mut simulation, &schedule, |frame| {
+//!     times.push(frame.simulation.time());
+//!     ControlFlow::Continue(())
+//! })?;
+//! assert_eq!(summary.steps, 52); // thirteen steps of 0.25/13 between frames
+//! assert_eq!(times.len(), 4);
+//! assert!((times[3] - 1.0).abs() < 1e-12);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+
+mod error;
+pub mod measure;
+mod placement;
+mod schedule;
+mod simulation;
+mod time_step;
+
+pub use error::Error;
+pub use placement::{Generator, RandomPlacement, generator};
+pub use schedule::{Completion, Frame, Schedule, Summary, run};
+pub use simulation::Simulation;
+pub use time_step::recommended_time_step;

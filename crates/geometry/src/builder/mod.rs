@@ -37,7 +37,7 @@ impl HasPosition for Site {
 }
 
 /// Sizes, relative to √(area per cell), of the displacements that break ties between cells on one circle. They move the
-/// question of who is a neighbour, not the cells.
+/// question of who is a neighbour, not the cells. The box is sheared by as much, for ties among images of one cell.
 const TIE_BREAKS: [f64; 4] = [0.0, 1e-11, 1e-9, 1e-7];
 
 /// Replaces the topology of `tessellation` by that of `positions`.
@@ -99,10 +99,15 @@ fn periodic(
                 size => r - cell_box.translation(*n) + jitter(cell) * (size * spacing),
             })
             .collect();
-        let tiling = Tiling::new(&wrapped, cell_box);
+        let nudged = PeriodicBox::sheared(cell_box.lengths(), cell_box.offset() + tie_break * spacing)?;
+        let tiling = Tiling::new(&wrapped, &nudged);
         let rings: Option<Vec<Rings>> =
             (0..tiling.len()).into_par_iter().map(|tile| tiling.rings(tile)).collect();
         outcome = assemble(tessellation, cells, &rings.ok_or_else(|| duplicate(&wrapped))?);
+        // Where images of one circle of cells were triangulated differently, all may miss its diagonal.
+        if outcome.is_ok() && tessellation.half_edges() != 6 * cells {
+            outcome = Err(Error::Inconsistent { cells, cell: 0 });
+        }
         if outcome.is_ok() {
             rings::refer_to_given_positions(tessellation, &images);
             break;

@@ -1,1 +1,161 @@
-//! gradient check
+//! Every derivative and every symmetry of the model, checked on given positions against independent ways to get it.
+//!
+//! The sparse Jacobian is assembled from derivatives of single elements. Here it meets what takes nothing for granted:
+//! central differences of the velocities, and dual numbers through the whole system. Velocities meet the gradient of the
+//! energy they descend, and the tissue as it was moved, wrapped, turned and mirrored. The list of terms is
+//! [`Term::all`](crate::Term::all), so a new term is checked from the moment it exists.
+//!
+//! Each row of the report states its largest error *relative to the largest magnitude of the quantity compared*. Where
+//! symmetry makes a quantity vanish, as on the honeycomb, only rounding is left to compare. The magnitude therefore
+//! includes a bound `δ` on what rounding can do, counted 1e10 times so that it stays within the tolerance of 1e-10: for
+//! velocities `δ = 8 ε (max|r| max_i Σ_j |J_ij| + max|f|)`, for the Jacobian `δ = 8 ε max(|f| / h)`, with `f` the force
+//! of one cell on another and `h` the step of central differences there. It adds less than a hundredth otherwise.
+//!
+//! In an open field of view, velocities without a value (on the rim and next to it) are left out, and so is the
+//! momentum. Where four cells lie on a circle to rounding, two topologies are equally good and give different forces;
+//! such places are left out where a row needs a second tessellation. A row without anything to compare is not reported.
+//!
+//! ```
+//! use voronudge_geometry::{Domain, PeriodicBox, Vector};
+//! use voronudge_model::{Parameters, gradient_check};
+//!
+//! let positions: Vec<_> = (0..36)
+//!     .map(|i| Vector::new((i % 6) as f64 + 0.3 * (i as f64).sin(), (i / 6) as f64 + 0.3 * (2.0 * i as f64).cos()))
+//!     .collect();
+//! let domain = Domain::Periodic(PeriodicBox::new([6.0, 6.0])?);
+//! let report = gradient_check::check(&positions, domain, &Parameters { chirality: 0.5, ..Parameters::default() })?;
+//! assert!(report.passed());
+//! # Ok::<(), voronudge_geometry::Error>(())
+//! ```
+
+mod comparison;
+mod differences;
+mod duals;
+mod polygons;
+mod report;
+mod sample;
+mod symmetry;
+#[cfg(test)]
+mod tests;
+
+pub use report::{Axis, GradientReport, GradientRow, Place, Quantity};
+
+use crate::{BlockMatrix, ForceTerm, Model, Parameters, Term, WeightedTerm, jacobian, velocities};
+use comparison::Comparison;
+use sample::Sample;
+use symmetry::Images;
+use voronudge_geometry::{Domain, Error, Scalar, Vector};
+
+/// Name of the rows of the whole base model.
+pub const MODEL: &str = "chiral Voronoi model";
+
+/// Name of the rows that concern no force.
+pub const GEOMETRY: &str = "geometry";
+
+/// Number of cells up to which all are displaced. Of more cells, `CELL_LIMIT² / N` are, evenly spaced by index, so that
+/// the time does not grow with the square of their number.
+pub const CELL_LIMIT: usize = 600;
+
+/// Checks all terms (for a coefficient of one), the base model with `parameters`, and the geometry, at `positions` (N).
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn check(
+    positions: &[Vector<f64>],
+    domain: Domain,
+    parameters: &Parameters<f64>,
+) -> Result<GradientReport, Error> {
+    let sample = Sample::new(positions, domain)?;
+    let images = Images::of(&sample)?;
+    let mut rows = polygons::rows(&sample);
+    for term in Term::all() {
+        rows.extend(Subject::new(term.name(), Model::single(term), &sample).rows(&images));
+    }
+    let base = Subject::new(MODEL, Model::chiral_voronoi(parameters), &sample);
+    rows.extend(base.rows(&images));
+    rows.extend(differences::parameters(&base, parameters));
+    Ok(GradientReport { cells: positions.len(), displaced: sample.displaced.len(), rows })
+}
+
+/// The tolerance where the reference is exact to rounding.
+const ROUNDING_TOLERANCE: f64 = 1e-10;
+
+/// A model under check, with what is compared.
+struct Subject<'a> {
+    name: &'static str,
+    model: Model<f64>,
+    sample: &'a Sample,
+    velocities: Vec<Vector<f64>>,
+    jacobian: BlockMatrix,
+    /// Magnitude to add to that of velocities.
+    velocity_floor: f64,
+    /// Magnitude to add to that of the Jacobian.
+    jacobian_floor: f64,
+}
+
+impl<'a> Subject<'a> {
+    fn new(name: &'static str, model: Model<f64>, sample: &'a Sample) -> Self {
+        let velocities = velocities(&sample.tessellation, &sample.positions, &model);
+        let jacobian = jacobian(&sample.tessellation, &sample.positions, &model);
+        let row_sum = |row| jacobian.row(row).flat_map(|(_, b)| b).map(|entry| entry.abs()).sum::<f64>();
+        let steepest = (0..jacobian.rows()).map(row_sum).fold(0.0, f64::max);
+        let [force, slope] = sample.magnitudes(&model);
+        let floor = |magnitude: f64| 8.0 * f64::EPSILON * magnitude / ROUNDING_TOLERANCE;
+        let velocity_floor = floor(sample.reach * steepest + force);
+        Self { name, model, sample, velocities, jacobian, velocity_floor, jacobian_floor: floor(slope) }
+    }
+
+    fn rows(&self, images: &Images) -> Vec<GradientRow> {
+        let mut comparisons = vec![
+            (Quantity::JacobianByDifferences, differences::jacobian(self)),
+            (Quantity::JacobianByDuals, duals::jacobian(self)),
+        ];
+        if let Some(descent) = self.descent() {
+            comparisons.push((Quantity::EnergyByDuals, duals::energy(&descent)));
+            comparisons.push((Quantity::EnergyByDifferences, differences::energy(&descent)));
+        }
+        if let Domain::Periodic(_) = self.sample.tessellation.domain() {
+            comparisons.push((Quantity::Momentum, self.momentum()));
+        }
+        comparisons.extend(images.compare(self));
+        comparisons.into_iter().filter_map(|(quantity, c)| c.row(self.name, quantity)).collect()
+    }
+
+    /// The part of the model that descends an energy, if there is one.
+    fn descent(&self) -> Option<Subject<'a>> {
+        let shape = voronudge_geometry::Shape { area: 1.0, perimeter: 4.0 };
+        let has_energy = |w: &&WeightedTerm<f64>| w.term.energy(shape).is_some();
+        let terms: Vec<_> = self.model.terms.iter().filter(has_energy).copied().collect();
+        (!terms.is_empty()).then(|| Self::new(self.name, Model { terms }, self.sample))
+    }
+
+    fn momentum(&self) -> Comparison {
+        let total: Vector<f64> = self.velocities.iter().sum();
+        let scale = self.velocities.iter().map(|v| v.norm() + self.velocity_floor).sum();
+        let mut comparison = Comparison::relative_to(scale);
+        for axis in Axis::BOTH {
+            comparison.add(total[axis.index()], 0.0, || Place::Total { axis });
+        }
+        comparison
+    }
+
+    /// A comparison of velocities.
+    fn of_velocities(&self) -> Comparison {
+        Comparison::relative_to(self.velocity_floor)
+    }
+
+    /// A comparison of entries of the Jacobian.
+    fn of_slopes(&self) -> Comparison {
+        Comparison::relative_to(self.jacobian_floor)
+    }
+
+    fn moves(&self, cell: usize) -> bool {
+        self.velocities[cell].iter().all(|v| v.is_finite())
+    }
+}
+
+/// Energy of one cell under the terms that have one.
+fn cell_energy<S: Scalar>(model: &Model<S>, shape: voronudge_geometry::Shape<S>) -> S {
+    let energies = model.terms.iter().filter_map(|w| Some(w.term.energy(shape)? * w.coefficient));
+    energies.fold(S::constant(0.0), |sum, energy| sum + energy)
+}

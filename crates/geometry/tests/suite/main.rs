@@ -1,0 +1,8 @@
+//! What is true of every tessellation, and what is known of special ones.
+
+mod boundaries;
+mod large;
+mod polygon;
+mod refused;
+mod samples;
+mod tessellation;

@@ -1,0 +1,84 @@
+use thiserror::Error;
+
+/// Why an inference cannot be made.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A snapshot cannot be tessellated.
+    #[error("frame {frame}: {source}")]
+    Geometry {
+        /// Position of the frame in the list given.
+        frame: usize,
+        /// What is wrong with it.
+        source: voronudge_geometry::Error,
+    },
+    /// Positions and velocities of different number.
+    #[error("frame {frame} has {positions} positions but {velocities} velocities")]
+    Lengths {
+        /// Position of the frame in the list given.
+        frame: usize,
+        /// Number of positions.
+        positions: usize,
+        /// Number of velocities.
+        velocities: usize,
+    },
+    /// Not enough measured velocities in the interior of the data.
+    #[error(
+        "{used} cells have a measured velocity and a trusted neighbourhood, but a fit needs at least {required}"
+    )]
+    TooFewVelocities {
+        /// Number of usable cells.
+        used: usize,
+        /// Number needed.
+        required: usize,
+    },
+    /// All velocities are zero.
+    #[error("all measured velocities are zero")]
+    NothingMoves,
+    /// Every parameter is fixed.
+    #[error("every parameter is fixed, so there is nothing to fit")]
+    NothingToFit,
+    /// Parameters that cannot be fixed together, or to that value.
+    #[error("{0}")]
+    Fixed(&'static str),
+    /// The columns of the model are linearly dependent on these data.
+    #[error("the velocities of the fitted terms are linearly dependent on these data")]
+    Degenerate,
+    /// A noise level that is not positive.
+    #[error("the {name} noise is {value}, but it must be positive and finite")]
+    Noise {
+        /// `position` or `velocity`.
+        name: &'static str,
+        /// The level.
+        value: f64,
+    },
+    /// The linear algebra failed.
+    #[error(transparent)]
+    Algebra(#[from] voronudge_linalg::Error),
+    /// The optimiser failed.
+    #[error("the optimiser failed: {0}")]
+    Optimiser(String),
+    /// The caller asked to stop.
+    #[error("interrupted")]
+    Interrupted,
+}
+
+impl Error {
+    /// Advice on what to change, if there is any.
+    pub fn hint(&self) -> Option<&'static str> {
+        match self {
+            Self::Geometry { source, .. } => source.hint(),
+            Self::TooFewVelocities { .. } => Some(
+                "choose frames with velocities and more cells whose neighbours are all seen, or give more frames",
+            ),
+            Self::NothingMoves => Some("check the velocities, or give frames in which cells move"),
+            Self::NothingToFit => Some("leave at least one of K_A, K_P, P_0, alpha free"),
+            Self::Fixed(_) => Some("fix K_A, K_P (not to zero), P_0 or alpha to a finite value"),
+            Self::Degenerate => Some("fix one of the parameters, for example K_A, or give more cells"),
+            Self::Noise { .. } => {
+                Some("give the standard deviation of one component, in the units of the data")
+            }
+            _ => None,
+        }
+    }
+}

@@ -1,0 +1,164 @@
+//! Sparse Levenberg–Marquardt as a solver for argmin.
+
+use crate::Error;
+use crate::linearisation::Linearisation;
+use argmin::core::{
+    CostFunction, Error as ArgminError, IterState, Jacobian, KV, Problem, Solver, State, TerminationReason,
+    TerminationStatus,
+};
+use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
+
+/// How far a fit has come; the caller may stop it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Progress<'a> {
+    /// What is being done, in a few words.
+    pub stage: &'a str,
+    /// Steps done and steps allowed.
+    pub step: (u64, u64),
+    /// Objective in units of its expected value.
+    pub objective: f64,
+}
+
+/// Called after each step.
+pub(crate) type Observer<'a> = &'a mut dyn FnMut(u64, f64) -> ControlFlow<()>;
+
+pub(crate) type FitState = IterState<Vec<f64>, (), (), (), (), f64>;
+
+/// Damped Gauss–Newton on parameters and nudges together. The damping follows the ratio of actual to predicted
+/// decrease; the cost is evaluated anew at every trial, with its own topology.
+pub(crate) struct LevenbergMarquardt<'o> {
+    damping: f64,
+    growth: f64,
+    tolerance: f64,
+    linearised: Option<Vec<Linearisation>>,
+    small_steps: u32,
+    observer: Observer<'o>,
+    interrupted: bool,
+}
+
+/// Damping beyond which no step is short enough.
+const LARGEST_DAMPING: f64 = 1e8;
+
+/// Accepted steps in a row that gain less than the tolerance, before the fit counts as converged. A single small gain
+/// can be the crossing of a kink.
+const SMALL_STEPS: u32 = 2;
+
+impl<'o> LevenbergMarquardt<'o> {
+    pub fn new(tolerance: f64, observer: Observer<'o>) -> Self {
+        Self {
+            damping: 1e-3,
+            growth: 2.0,
+            tolerance,
+            linearised: None,
+            small_steps: 0,
+            observer,
+            interrupted: false,
+        }
+    }
+
+    /// The step for the present damping and the decrease it promises.
+    fn step(&self, linearised: &[Linearisation]) -> Result<(Vec<f64>, f64), Error> {
+        let unit = linearised.iter().map(Linearisation::mean_diagonal).sum::<f64>() / linearised.len() as f64;
+        let shift = self.damping * unit;
+        let eliminated =
+            linearised.iter().map(|frame| frame.eliminate(shift)).collect::<Result<Vec<_>, _>>()?;
+        let p = linearised[0].free_gradient.len();
+        let (mut schur, mut gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
+        let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
+        for (frame, part) in linearised.iter().zip(&eliminated) {
+            schur += &part.schur;
+            gradient += &part.gradient;
+            free_normal += &frame.free_normal;
+            free_gradient += &frame.free_gradient;
+        }
+        for i in 0..p {
+            schur[(i, i)] += self.damping * free_normal[(i, i)];
+        }
+        let free_step = schur.cholesky().ok_or(Error::Degenerate)?.solve(&gradient);
+        let mut step = free_step.as_slice().to_vec();
+        // A step δ of (H + λD) δ = g promises gᵀδ + λ δᵀDδ.
+        let mut promised: f64 = (0..p)
+            .map(|i| free_step[i] * (free_gradient[i] + self.damping * free_normal[(i, i)] * free_step[i]))
+            .sum();
+        for (frame, part) in linearised.iter().zip(&eliminated) {
+            let own = part.nudge_step(&free_step);
+            promised += own.iter().zip(frame.nudge_gradient()).map(|(s, g)| s * (g + shift * s)).sum::<f64>();
+            step.extend(own);
+        }
+        Ok((step, promised))
+    }
+}
+
+impl<O> Solver<O, FitState> for LevenbergMarquardt<'_>
+where
+    O: CostFunction<Param = Vec<f64>, Output = f64>
+        + Jacobian<Param = Vec<f64>, Jacobian = Vec<Linearisation>>,
+{
+    fn name(&self) -> &str {
+        "sparse Levenberg-Marquardt"
+    }
+
+    fn init(
+        &mut self,
+        problem: &mut Problem<O>,
+        mut state: FitState,
+    ) -> Result<(FitState, Option<KV>), ArgminError> {
+        let start = state.take_param().ok_or_else(|| Error::Optimiser("no starting point".into()))?;
+        let cost = problem.cost(&start)?;
+        self.linearised = Some(problem.jacobian(&start)?);
+        Ok((state.param(start).cost(cost), None))
+    }
+
+    fn next_iter(
+        &mut self,
+        problem: &mut Problem<O>,
+        mut state: FitState,
+    ) -> Result<(FitState, Option<KV>), ArgminError> {
+        let (at, cost) = (
+            state.take_param().ok_or_else(|| Error::Optimiser("no current point".into()))?,
+            state.get_cost(),
+        );
+        let linearised = self
+            .linearised
+            .take()
+            .ok_or_else(|| Error::Optimiser("the problem was not linearised".into()))?;
+        let (step, promised) = self.step(&linearised)?;
+        let trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + s).collect();
+        let trial_cost = problem.cost(&trial)?;
+        let gain = (cost - trial_cost) / promised.max(f64::MIN_POSITIVE);
+        let next = if trial_cost < cost {
+            self.linearised = Some(problem.jacobian(&trial)?);
+            self.damping =
+                (self.damping * (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0)).max(1e-12);
+            self.growth = 2.0;
+            let small = cost - trial_cost <= self.tolerance * cost;
+            self.small_steps = if small { self.small_steps + 1 } else { 0 };
+            state.param(trial).cost(trial_cost)
+        } else {
+            self.linearised = Some(linearised);
+            self.damping *= self.growth;
+            self.growth *= 2.0;
+            // Nothing left to gain, to rounding.
+            if promised <= self.tolerance * cost {
+                self.small_steps = SMALL_STEPS;
+            }
+            state.param(at).cost(cost)
+        };
+        self.interrupted = (self.observer)(next.get_iter() + 1, next.get_cost()).is_break();
+        Ok((next, None))
+    }
+
+    fn terminate(&mut self, state: &FitState) -> TerminationStatus {
+        let reason = if self.interrupted {
+            TerminationReason::Interrupt
+        } else if state.get_iter() > 0 && self.small_steps >= SMALL_STEPS {
+            TerminationReason::SolverConverged
+        } else if self.damping > LARGEST_DAMPING {
+            TerminationReason::SolverExit("no shorter step decreases the objective".into())
+        } else {
+            return TerminationStatus::NotTerminated;
+        };
+        TerminationStatus::Terminated(reason)
+    }
+}

@@ -1,0 +1,170 @@
+//! The positions under check: which cells are displaced, how far, and where the topology is ambiguous.
+
+use super::CELL_LIMIT;
+use crate::{Model, VertexForces};
+use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector, cross};
+
+/// Positions, and what the checks need to know about them.
+pub(super) struct Sample {
+    pub positions: Vec<Vector<f64>>,
+    pub tessellation: Tessellation,
+    /// The cells that are displaced.
+    pub displaced: Vec<usize>,
+    /// Step of central differences for each cell: a small part of the distance to the nearest position where a formula
+    /// is singular, which is the line through two cells that share a vertex with it.
+    pub step: Vec<f64>,
+    /// Cells whose velocity does not depend on how cells on a common circle were triangulated.
+    pub unambiguous: Vec<bool>,
+    /// Closed cells that act on any with a velocity, in an open field.
+    acting: Vec<bool>,
+    /// √(area per cell)
+    pub spacing: f64,
+    /// Largest magnitude of a coordinate, or of one that a lattice vector may add.
+    pub reach: f64,
+}
+
+/// Step of central differences relative to the distance of a singularity.
+const STEP: f64 = 1.0 / 128.0;
+
+impl Sample {
+    pub fn new(positions: &[Vector<f64>], domain: Domain) -> Result<Self, Error> {
+        let tessellation = Tessellation::new(positions, domain)?;
+        let cells = positions.len();
+        let largest = positions.iter().flat_map(|r| [r.x.abs(), r.y.abs()]).fold(0.0, f64::max);
+        let (area, reach) = match domain {
+            Domain::Periodic(cell_box) => {
+                (cell_box.area(), largest + 2.0 * (cell_box.lengths()[0] + cell_box.lengths()[1]))
+            }
+            Domain::Open => (extent(positions), 2.0 * largest),
+        };
+        let spacing = (area / cells as f64).sqrt();
+        let acting = acting(&tessellation);
+        let count = cells.min((CELL_LIMIT * CELL_LIMIT / cells).max(1));
+        Ok(Self {
+            displaced: (0..count).map(|k| k * cells / count).collect(),
+            step: steps(&tessellation, positions, &acting, spacing),
+            acting,
+            unambiguous: unambiguous(&tessellation, positions, spacing),
+            positions: positions.to_vec(),
+            tessellation,
+            spacing,
+            reach,
+        })
+    }
+
+    /// The largest force of one cell on another, and the largest ratio of one to the step of a cell it depends on.
+    pub fn magnitudes(&self, model: &Model<f64>) -> [f64; 2] {
+        let (mut polygon, mut forces) = (CellPolygon::default(), Vec::new());
+        let (mut force, mut slope) = (0.0, 0.0);
+        for &cell in self.displaced.iter().filter(|&&cell| self.acting[cell]) {
+            polygon.fill(&self.tessellation, &self.positions, cell);
+            forces.resize(polygon.len(), Vector::zeros());
+            VertexForces::of(&model.terms, polygon.shape()).on_ring(&polygon, &mut forces);
+            let largest = forces.iter().map(|f| f.amax()).fold(0.0, f64::max);
+            let neighbours = self.tessellation.neighbours(cell).iter();
+            let step = neighbours.map(|&k| self.step[k as usize]).fold(self.step[cell], f64::min);
+            (force, slope) = (largest.max(force), (largest / step).max(slope));
+        }
+        [force, slope]
+    }
+
+    /// Batches of cells to displace together, no two of which act on one cell, with the cell that acts on each.
+    pub fn batches(&self) -> Vec<Batch> {
+        let mut batches: Vec<Batch> = Vec::new();
+        for &cell in &self.displaced {
+            let reached = self.reached_from(cell);
+            let free = |batch: &Batch| reached.iter().all(|&i| batch.moved_by[i].is_none());
+            let at = batches.iter().position(free).unwrap_or_else(|| {
+                batches.push(Batch { cells: Vec::new(), moved_by: vec![None; self.positions.len()] });
+                batches.len() - 1
+            });
+            batches[at].cells.push(cell);
+            for i in reached {
+                batches[at].moved_by[i] = Some(cell);
+            }
+        }
+        batches
+    }
+
+    /// The cell, its neighbours and their neighbours.
+    fn reached_from(&self, cell: usize) -> Vec<usize> {
+        let mut reached = vec![cell];
+        for _ in 0..2 {
+            let next: Vec<usize> = (reached.iter())
+                .flat_map(|&i| self.tessellation.neighbours(i).iter().map(|&j| j as usize))
+                .collect();
+            reached.extend(next);
+            reached.sort_unstable();
+            reached.dedup();
+        }
+        reached
+    }
+}
+
+/// Cells that are displaced together.
+pub(super) struct Batch {
+    pub cells: Vec<usize>,
+    /// For each cell, the one of the batch that its velocity depends on.
+    pub moved_by: Vec<Option<usize>>,
+}
+
+/// Area of the rectangle around all positions.
+fn extent(positions: &[Vector<f64>]) -> f64 {
+    let mut corners = [Vector::repeat(f64::INFINITY), Vector::repeat(f64::NEG_INFINITY)];
+    for r in positions {
+        corners = [corners[0].inf(r), corners[1].sup(r)];
+    }
+    let size = corners[1] - corners[0];
+    size.x * size.y
+}
+
+fn acting(tessellation: &Tessellation) -> Vec<bool> {
+    let closed = |cell: usize| tessellation.is_closed(cell);
+    let moves =
+        |cell: usize| closed(cell) && tessellation.neighbours(cell).iter().all(|&k| closed(k as usize));
+    let acts = |cell| moves(cell) || tessellation.neighbours(cell).iter().any(|&k| moves(k as usize));
+    (0..tessellation.len()).map(|cell| closed(cell) && acts(cell)).collect()
+}
+
+fn steps(tessellation: &Tessellation, positions: &[Vector<f64>], acting: &[bool], spacing: f64) -> Vec<f64> {
+    let mut distance = vec![spacing; positions.len()];
+    let mut polygon = CellPolygon::default();
+    for cell in (0..tessellation.len()).filter(|&cell| acting[cell]) {
+        let neighbours = tessellation.neighbours(cell);
+        polygon.fill(tessellation, positions, cell);
+        for (m, corner) in polygon.corners().iter().enumerate() {
+            let twice_area = cross(corner.a, corner.b).abs();
+            let next = if m + 1 == neighbours.len() { 0 } else { m + 1 };
+            let [a, b] = [neighbours[m] as usize, neighbours[next] as usize];
+            for (own, side) in [(cell, corner.a - corner.b), (a, corner.b), (b, corner.a)] {
+                distance[own] = distance[own].min(twice_area / side.norm());
+            }
+        }
+    }
+    // A power of two adds to a coordinate without rounding.
+    distance.into_iter().map(|distance| (distance * STEP).log2().floor().exp2()).collect()
+}
+
+fn unambiguous(tessellation: &Tessellation, positions: &[Vector<f64>], spacing: f64) -> Vec<bool> {
+    let mut settled = vec![true; positions.len()];
+    let mut polygon = CellPolygon::default();
+    for cell in (0..tessellation.len()).filter(|&cell| tessellation.is_closed(cell)) {
+        polygon.fill(tessellation, positions, cell);
+        let neighbours = tessellation.neighbours(cell);
+        let sides = neighbours.len();
+        for (m, length) in polygon.side_lengths().enumerate() {
+            let previous = if m == 0 { sides - 1 } else { m - 1 };
+            let radius = polygon.corners()[m].centre.norm().max(polygon.corners()[previous].centre.norm());
+            if length.abs() < 1e-9 * (spacing + radius * radius / spacing) {
+                let next = if m + 1 == sides { 0 } else { m + 1 };
+                settled[cell] = false;
+                for k in [previous, m, next] {
+                    settled[neighbours[k] as usize] = false;
+                }
+            }
+        }
+    }
+    (0..positions.len())
+        .map(|cell| settled[cell] && tessellation.neighbours(cell).iter().all(|&k| settled[k as usize]))
+        .collect()
+}

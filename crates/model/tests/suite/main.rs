@@ -1,0 +1,8 @@
+//! The physics of the model: derivatives, symmetries, and limits known on paper.
+
+mod gradients;
+mod honeycomb;
+mod jacobian;
+mod physics;
+mod samples;
+mod threads;

@@ -1,0 +1,84 @@
+use thiserror::Error;
+
+/// Why a simulation cannot be made or go on.
+#[derive(Debug, Clone, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// The positions cannot be tessellated.
+    #[error("at time {time}: {source}")]
+    Tessellation {
+        /// Time of the evaluation.
+        time: f64,
+        /// What the tessellation said.
+        source: voronudge_geometry::Error,
+    },
+    /// Time integration needs the velocity of every cell, which an open field of view does not give.
+    #[error("an open field of view cannot be simulated")]
+    OpenDomain,
+    /// No cells to place.
+    #[error("0 cells, but a simulation needs at least 1")]
+    NoCells,
+    /// A least distance between starting positions that is negative or not finite.
+    #[error(
+        "the least distance between cells is {value} of their mean spacing, but it must be finite and not negative"
+    )]
+    LeastDistance {
+        /// The distance given.
+        value: f64,
+    },
+    /// A time step that is not a positive finite number.
+    #[error("the time step is {time_step}, but it must be positive and finite")]
+    TimeStep {
+        /// The step given.
+        time_step: f64,
+    },
+    /// A duration that is not a positive finite number.
+    #[error("the duration is {time}, but it must be positive and finite")]
+    Duration {
+        /// The duration given.
+        time: f64,
+    },
+    /// A schedule that records nothing.
+    #[error("0 frames, but a schedule records at least 1")]
+    NoFrames,
+    /// A cell that moves too far in one step: the time step is too large for the forces.
+    #[error(
+        "at time {time}, cell {cell} would move by {distance} in one step of {time_step} (limit {limit}): the time step \
+         is too large"
+    )]
+    StepTooLarge {
+        /// Time at the beginning of the step.
+        time: f64,
+        /// The first cell that moves too far.
+        cell: usize,
+        /// How far it would move; NaN or infinite if its velocity is.
+        distance: f64,
+        /// Half the mean spacing of the cells.
+        limit: f64,
+        /// The time step `Δt`.
+        time_step: f64,
+    },
+}
+
+impl Error {
+    /// Advice on what to change, if there is any.
+    ///
+    /// ```
+    /// use voronudge_simulate::Error;
+    /// assert!(Error::TimeStep { time_step: -1.0 }.hint().is_some());
+    /// ```
+    pub fn hint(&self) -> Option<&'static str> {
+        match self {
+            Self::Tessellation { source, .. } => source.hint(),
+            Self::OpenDomain => Some("give a periodic box"),
+            Self::NoCells => Some("ask for one cell or more"),
+            Self::LeastDistance { .. } => Some("0.7 is usual; above about 0.8 cells do not fit at random"),
+            Self::TimeStep { .. } | Self::StepTooLarge { .. } => Some(
+                "take a smaller time step: K_P Δt ≤ 0.02 for |α| ≤ 1, K_P |α| Δt ≤ 0.02 above; halve it until the result \
+                 does not change",
+            ),
+            Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
+            Self::NoFrames => Some("ask for one frame to get the end of the run"),
+        }
+    }
+}
