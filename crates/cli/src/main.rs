@@ -1,1 +1,56 @@
-fn main() {}
+//! `voronudge`: which forces move these cells, and what does the model of them miss?
+
+mod arguments;
+mod command;
+mod failure;
+mod progress;
+mod run;
+mod snapshot;
+
+use clap::{Parser, Subcommand};
+use std::process::ExitCode;
+
+/// Which forces move these cells, and what does the model of them miss?
+#[derive(Debug, Parser)]
+#[command(name = "voronudge", version, propagate_version = true, arg_required_else_help = true)]
+struct Arguments {
+    #[command(subcommand)]
+    command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+enum Command {
+    Infer(command::infer::Arguments),
+    Evaluate(command::evaluate::Arguments),
+    Simulate(command::simulate::Arguments),
+    CheckGradients(command::check_gradients::Arguments),
+    Import(command::import::Arguments),
+}
+
+/// What a command that ran has to say.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Answer {
+    /// Exit code 0.
+    Positive,
+    /// Exit code 1: it ran, but found no acceptable fit, or a check failed.
+    Negative,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    let answer = match arguments.command {
+        Command::Infer(arguments) => command::infer::run(arguments),
+        Command::Evaluate(arguments) => command::evaluate::run(arguments),
+        Command::Simulate(arguments) => command::simulate::run(arguments),
+        Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
+        Command::Import(arguments) => command::import::run(arguments),
+    };
+    match answer {
+        Ok(Answer::Positive) => ExitCode::SUCCESS,
+        Ok(Answer::Negative) => ExitCode::from(1),
+        Err(failure) => {
+            eprintln!("{failure}");
+            ExitCode::from(failure.exit_code())
+        }
+    }
+}

@@ -2,6 +2,9 @@
 
 use crate::{Error, Scalar, Vector};
 
+/// Largest offset in units of `L_x`: images are counted in 16 bits.
+const MOST_BOXES: f64 = 8192.0;
+
 /// The boundary condition. All of geometry, mechanics and inference see boundaries through this type only.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Domain {
@@ -39,8 +42,9 @@ impl PeriodicBox {
                 return Err(Error::BoxSide { axis, length });
             }
         }
-        if !offset.is_finite() {
-            return Err(Error::BoxOffset { offset });
+        let limit = MOST_BOXES * lengths[0];
+        if !offset.is_finite() || offset.abs() > limit {
+            return Err(Error::BoxOffset { offset, limit });
         }
         Ok(Self { lengths, offset })
     }

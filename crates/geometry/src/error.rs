@@ -12,11 +12,15 @@ pub enum Error {
         /// The length given.
         length: f64,
     },
-    /// A Lees–Edwards offset that is not finite.
-    #[error("the shear offset of the box is {offset}, but it must be finite")]
+    /// A Lees–Edwards offset that is not finite, or of very many boxes.
+    #[error(
+        "the shear offset of the box is {offset}, but it must be finite and at most {limit} in magnitude"
+    )]
     BoxOffset {
         /// The offset given.
         offset: f64,
+        /// The largest magnitude possible.
+        limit: f64,
     },
     /// A coordinate that is NaN or infinite, or so far away that positions lose their meaning.
     #[error("cell {cell} is at ({x}, {y}), which is not a usable position")]

@@ -2,6 +2,8 @@
 //!
 //! `cargo bench -p voronudge-simulate`; with `RAYON_NUM_THREADS=1` for one core.
 
+#![allow(clippy::expect_used)]
+
 use divan::{Bencher, counter::ItemsCount};
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};

@@ -53,7 +53,7 @@ pub enum Error {
         cell: usize,
         /// How far it would move; NaN or infinite if its velocity is.
         distance: f64,
-        /// Half the mean spacing of the cells.
+        /// The mean spacing of the cells.
         limit: f64,
         /// The time step `Δt`.
         time_step: f64,
@@ -74,7 +74,7 @@ impl Error {
             Self::NoCells => Some("ask for one cell or more"),
             Self::LeastDistance { .. } => Some("0.7 is usual; above about 0.8 cells do not fit at random"),
             Self::TimeStep { .. } | Self::StepTooLarge { .. } => Some(
-                "take a smaller time step: K_P Δt ≤ 0.02 for |α| ≤ 1, K_P |α| Δt ≤ 0.02 above; halve it until the result \
+                "take a smaller time step: K_P Δt ≤ 0.01 for |α| ≤ 1, K_P |α| Δt ≤ 0.01 above; halve it until the result \
                  does not change",
             ),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),

@@ -6,7 +6,7 @@ use voronudge_geometry::{Domain, Tessellation, Vector};
 use voronudge_model::{HalfEdgeForces, Model};
 
 /// Largest displacement in one step, in mean spacings.
-const LIMIT: f64 = 2.0;
+const LIMIT: f64 = 1.0;
 
 /// Cells per task in sums over fields.
 const CHUNK: usize = 4096;
@@ -22,7 +22,7 @@ pub struct Simulation {
     time: f64,
     positions: Vec<Vector<f64>>,
     velocities: Vec<Vector<f64>>,
-    /// Largest displacement in one step: half the mean spacing.
+    /// Largest displacement in one step.
     limit: f64,
     forces: HalfEdgeForces<f64>,
     stage: Stage,
@@ -88,14 +88,14 @@ impl Simulation {
     /// r ← r + Δt (k₁ + 2k₂ + 2k₃ + k₄)/6
     /// ```
     ///
-    /// The error of a trajectory without T1 transitions is of order `Δt⁴`; at a T1 the velocity has a kink, and the
-    /// error there is of second order. See [`recommended_time_step`](crate::recommended_time_step): `K_P Δt ≤ 0.02`
-    /// serves most tissues.
+    /// The error of a trajectory without T1 transitions is of order `Δt⁴`; at a T1 the velocity has a kink or a jump, and
+    /// the order is lost. [`recommended_time_step`](crate::recommended_time_step) has figures.
     ///
     /// # Errors
     /// [`Error::TimeStep`] if `Δt` is not positive and finite; [`Error::StepTooLarge`] if a cell would move by more than
-    /// half the mean spacing or not to a finite place; [`Error::Tessellation`] if positions on the way cannot be
-    /// tessellated. The simulation is then as it was before the step.
+    /// the mean spacing or not to a finite place (a net for runs gone wrong, no promise of accuracy);
+    /// [`Error::Tessellation`] if positions on the way cannot be tessellated. The simulation is then as it was before the
+    /// step.
     pub fn step(&mut self, time_step: f64) -> Result<(), Error> {
         if !(time_step.is_finite() && time_step > 0.0) {
             return Err(Error::TimeStep { time_step });
@@ -173,8 +173,7 @@ impl Simulation {
         let limit = self.limit;
         let moved = |(to, from): (&Vector<f64>, &Vector<f64>)| (to - from).norm();
         let pairs = self.stage.positions.par_iter().zip(&self.positions).with_min_len(CHUNK);
-        // Written so that NaN counts as too far.
-        match pairs.map(moved).position_first(|distance| !(distance <= limit)) {
+        match pairs.map(moved).position_first(|distance| distance.is_nan() || distance > limit) {
             None => Ok(()),
             Some(cell) => {
                 let distance = (self.stage.positions[cell] - self.positions[cell]).norm();

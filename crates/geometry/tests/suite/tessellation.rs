@@ -3,7 +3,9 @@
 use crate::samples::{honeycomb, periodic, random, sheared, squares};
 use voronudge_geometry::{Domain, Error, FieldOfView, Tessellation, Vector, Visibility, circumcentre};
 
-fn tissues() -> Result<Vec<(Vec<Vector<f64>>, Domain)>, Error> {
+type Tissue = (Vec<Vector<f64>>, Domain);
+
+fn tissues() -> Result<Vec<Tissue>, Error> {
     let (lattice, lengths) = honeycomb(4, 4);
     Ok(vec![
         (random(120, [8.0, 8.0], 1), periodic([8.0, 8.0])?),

@@ -1,7 +1,7 @@
 //! Central differences of sixth order.
 
 use super::sample::Batch;
-use super::{Axis, Comparison, GradientRow, Place, Quantity, Subject, cell_energy};
+use super::{Axis, Comparison, GradientRow, Pair, Place, Quantity, Subject, cell_energy};
 use crate::{Model, PARAMETER_NAMES, Parameters, parameter_derivatives, velocities};
 use rayon::prelude::*;
 use voronudge_geometry::{CellPolygon, Vector};
@@ -54,16 +54,15 @@ fn displaced(subject: &Subject, batch: &Batch, along: Axis) -> Comparison {
 /// Velocities against differences of the energies of a cell and its neighbours.
 pub(super) fn energy(subject: &Subject) -> Comparison {
     let sample = subject.sample;
-    let cells: Vec<usize> = sample.displaced.iter().copied().filter(|&cell| subject.moves(cell)).collect();
+    let cells: Vec<usize> = sample.resolved().filter(|&cell| subject.moves(cell)).collect();
     let gradients: Vec<Vector<f64>> = cells
         .par_iter()
         .map(|&cell| Vector::from(Axis::BOTH.map(|axis| slope(subject, cell, axis))))
         .collect();
-    let mut comparison = subject.of_velocities();
-    for (&cell, gradient) in cells.iter().zip(&gradients) {
-        comparison.add_vector(subject.velocities[cell], -gradient, |axis| Place::Cell { cell, axis });
-    }
-    comparison
+    let pairs: Vec<Pair> = (cells.iter().zip(&gradients))
+        .map(|(&cell, gradient)| Pair { cell, found: subject.velocities[cell], expected: -gradient })
+        .collect();
+    subject.compare(sample.widest, &pairs)
 }
 
 /// `∂E/∂r` along one axis: only the energies of the cell and its neighbours change.
@@ -121,11 +120,13 @@ pub(super) fn parameters_against(
             velocities(&sample.tessellation, &sample.positions, &Model::chiral_voronoi(&shifted))
         };
         let (after, before) = (velocities_at(step), velocities_at(-step));
-        let mut comparison = subject.of_velocities();
-        for cell in (0..sample.positions.len()).filter(|&cell| subject.moves(cell)) {
-            let difference = (after[cell] - before[cell]) / (2.0 * step);
-            comparison.add_vector(exact[cell], difference, |axis| Place::Cell { cell, axis });
-        }
+        let pair = |cell: usize| Pair {
+            cell,
+            found: exact[cell],
+            expected: (after[cell] - before[cell]) / (2.0 * step),
+        };
+        let moving = (0..sample.positions.len()).filter(|&cell| subject.moves(cell));
+        let comparison = subject.compare(sample.widest, &moving.map(pair).collect::<Vec<_>>());
         rows.extend(comparison.row(subject.name, Quantity::ParameterDerivative(name)));
     }
     rows

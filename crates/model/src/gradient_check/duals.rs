@@ -1,6 +1,6 @@
 //! Dual numbers through the whole system, without any use of its sparsity.
 
-use super::{Axis, Comparison, Place, Subject, cell_energy};
+use super::{Axis, Comparison, Pair, Place, Subject, cell_energy};
 use crate::{Model, velocities};
 use num_dual::DualSVec64;
 use rayon::prelude::*;
@@ -67,14 +67,14 @@ pub(super) fn energy(subject: &Subject) -> Comparison {
     let gradients: Vec<Dual> = (batches.par_iter())
         .map(|batch| total_energy(&sample.tessellation, &seeded(&sample.positions, batch), &model))
         .collect();
-    let mut comparison = subject.of_velocities();
+    let mut pairs = Vec::with_capacity(cells.len());
     for (batch, energy) in batches.iter().zip(&gradients) {
         for (k, &cell) in batch.iter().enumerate() {
             let gradient = Vector::from(Axis::BOTH.map(|axis| derivative(energy, k, axis)));
-            comparison.add_vector(subject.velocities[cell], -gradient, |axis| Place::Cell { cell, axis });
+            pairs.push(Pair { cell, found: subject.velocities[cell], expected: -gradient });
         }
     }
-    comparison
+    subject.compare(sample.widest, &pairs)
 }
 
 fn total_energy<S: Scalar>(tessellation: &Tessellation, positions: &[Vector<S>], model: &Model<S>) -> S {

@@ -7,13 +7,15 @@
 //!
 //! Each row of the report states its largest error *relative to the largest magnitude of the quantity compared*. Where
 //! symmetry makes a quantity vanish, as on the honeycomb, only rounding is left to compare. The magnitude therefore
-//! includes a bound `δ` on what rounding can do, counted 1e10 times so that it stays within the tolerance of 1e-10: for
-//! velocities `δ = 8 ε (max|r| max_i Σ_j |J_ij| + max|f|)`, for the Jacobian `δ = 8 ε max(|f| / h)`, with `f` the force
-//! of one cell on another and `h` the step of central differences there. It adds less than a hundredth otherwise.
+//! includes what rounding can do, counted 1e10 times so that it stays within the tolerance of 1e-10: for the Jacobian
+//! `8 ε max(|f| / h)`, with `f` the force of one cell on another and `h` the step of central differences there; for the
+//! velocity of cell `i` `8 ε (max|f| + d Σ_j |J_ij|)`, with `d` the largest distance of neighbours or, where the
+//! positions themselves are mapped and hence rounded, the largest coordinate.
 //!
 //! In an open field of view, velocities without a value (on the rim and next to it) are left out, and so is the
 //! momentum. Where four cells lie on a circle to rounding, two topologies are equally good and give different forces;
-//! such places are left out where a row needs a second tessellation. A row without anything to compare is not reported.
+//! such places are left out where a row needs a second tessellation. Cells within some 1e-8 of a position where a formula
+//! is singular, such as another cell, are displaced by dual numbers only. A row without anything to compare is not reported.
 //!
 //! ```
 //! use voronudge_geometry::{Domain, PeriodicBox, Vector};
@@ -80,6 +82,18 @@ pub fn check(
 /// The tolerance where the reference is exact to rounding.
 const ROUNDING_TOLERANCE: f64 = 1e-10;
 
+/// What some roundings of numbers of the given size add to the magnitude that errors are relative to.
+fn floor(size: f64) -> f64 {
+    8.0 * f64::EPSILON * size / ROUNDING_TOLERANCE
+}
+
+/// Two ways to get the velocity of a cell.
+struct Pair {
+    cell: usize,
+    found: Vector<f64>,
+    expected: Vector<f64>,
+}
+
 /// A model under check, with what is compared.
 struct Subject<'a> {
     name: &'static str,
@@ -87,22 +101,22 @@ struct Subject<'a> {
     sample: &'a Sample,
     velocities: Vec<Vector<f64>>,
     jacobian: BlockMatrix,
-    /// Magnitude to add to that of velocities.
-    velocity_floor: f64,
-    /// Magnitude to add to that of the Jacobian.
-    jacobian_floor: f64,
+    /// `Σ_j |J_ij|` of every cell.
+    row_sums: Vec<f64>,
+    /// The largest force of one cell on another.
+    force: f64,
+    /// The largest ratio of such a force to a step.
+    slope: f64,
 }
 
 impl<'a> Subject<'a> {
     fn new(name: &'static str, model: Model<f64>, sample: &'a Sample) -> Self {
         let velocities = velocities(&sample.tessellation, &sample.positions, &model);
         let jacobian = jacobian(&sample.tessellation, &sample.positions, &model);
-        let row_sum = |row| jacobian.row(row).flat_map(|(_, b)| b).map(|entry| entry.abs()).sum::<f64>();
-        let steepest = (0..jacobian.rows()).map(row_sum).fold(0.0, f64::max);
+        let row_sum = |row| jacobian.row(row).flat_map(|(_, b)| b).map(|entry| entry.abs()).sum();
+        let row_sums = (0..jacobian.rows()).map(row_sum).collect();
         let [force, slope] = sample.magnitudes(&model);
-        let floor = |magnitude: f64| 8.0 * f64::EPSILON * magnitude / ROUNDING_TOLERANCE;
-        let velocity_floor = floor(sample.reach * steepest + force);
-        Self { name, model, sample, velocities, jacobian, velocity_floor, jacobian_floor: floor(slope) }
+        Self { name, model, sample, velocities, jacobian, row_sums, force, slope }
     }
 
     fn rows(&self, images: &Images) -> Vec<GradientRow> {
@@ -131,7 +145,8 @@ impl<'a> Subject<'a> {
 
     fn momentum(&self) -> Comparison {
         let total: Vector<f64> = self.velocities.iter().sum();
-        let scale = self.velocities.iter().map(|v| v.norm() + self.velocity_floor).sum();
+        let magnitude = |(cell, v): (usize, &Vector<f64>)| v.norm() + self.rounding(cell, self.sample.widest);
+        let scale = self.velocities.iter().enumerate().map(magnitude).sum();
         let mut comparison = Comparison::relative_to(scale);
         for axis in Axis::BOTH {
             comparison.add(total[axis.index()], 0.0, || Place::Total { axis });
@@ -139,14 +154,26 @@ impl<'a> Subject<'a> {
         comparison
     }
 
-    /// A comparison of velocities.
-    fn of_velocities(&self) -> Comparison {
-        Comparison::relative_to(self.velocity_floor)
+    /// Velocities against velocities, when rounding acts on numbers of size `length`.
+    fn compare(&self, length: f64, pairs: &[Pair]) -> Comparison {
+        let largest = pairs.iter().map(|pair| pair.expected.amax()).fold(0.0, f64::max);
+        let mut comparison = Comparison::relative_to(1.0);
+        for &Pair { cell, found, expected } in pairs {
+            let magnitude = largest + self.rounding(cell, length);
+            let error = if found == expected { Vector::zeros() } else { (found - expected) / magnitude };
+            comparison.add_vector(error, Vector::zeros(), |axis| Place::Cell { cell, axis });
+        }
+        comparison
+    }
+
+    /// The magnitude to add to that of a cell's velocity.
+    fn rounding(&self, cell: usize, length: f64) -> f64 {
+        floor(self.force + length * self.row_sums[cell])
     }
 
     /// A comparison of entries of the Jacobian.
     fn of_slopes(&self) -> Comparison {
-        Comparison::relative_to(self.jacobian_floor)
+        Comparison::relative_to(floor(self.slope))
     }
 
     fn moves(&self, cell: usize) -> bool {

@@ -3,7 +3,7 @@
 use super::sample::Sample;
 use super::{Axis, Comparison, GEOMETRY, GradientRow, Place, Quantity};
 use num_dual::DualSVec64;
-use voronudge_geometry::{CellPolygon, Scalar, Vector, circumcentre, cross, dot};
+use voronudge_geometry::{CellPolygon, Corner, Scalar, Vector, circumcentre, cross, dot};
 
 /// Derivatives by two points of the plane.
 type Dual = DualSVec64<4>;
@@ -16,6 +16,12 @@ fn gradient(value: Dual, first: usize) -> Vector<f64> {
     value.eps.0.map_or(Vector::zeros(), |eps| Vector::new(eps[first], eps[first + 1]))
 }
 
+/// Largest rounding of a vertex, relative to the side whose direction is taken from it.
+const SIDE_ROUNDING: f64 = 1e-11;
+
+/// Smallest sine of the angle of a triangle whose circumcentre is differentiated: rounding grows with its inverse square.
+const THINNEST: f64 = 1e-5;
+
 /// The rows of the displaced cells' polygons.
 pub(super) fn rows(sample: &Sample) -> Vec<GradientRow> {
     let mut areas = Comparison::new();
@@ -24,6 +30,7 @@ pub(super) fn rows(sample: &Sample) -> Vec<GradientRow> {
     let mut polygon = CellPolygon::default();
     for &cell in sample.displaced.iter().filter(|&&cell| sample.tessellation.is_closed(cell)) {
         polygon.fill(&sample.tessellation, &sample.positions, cell);
+        let sides = polygon.len();
         let points: Vec<Vector<f64>> = polygon.vertices().collect();
         let lengths: Vec<f64> = polygon.side_lengths().collect();
         for (m, corner) in polygon.corners().iter().enumerate() {
@@ -31,15 +38,19 @@ pub(super) fn rows(sample: &Sample) -> Vec<GradientRow> {
             let mut free: Vec<Vector<Dual>> = voronudge_geometry::lift(&points);
             free[m] = seeded(points[m], 0);
             areas.add_vector(polygon.area_gradient(m), gradient(shoelace(&free), 0), place);
-            // The direction of a side is not to be had from end points that nearly coincide.
-            let next = if m + 1 == points.len() { 0 } else { m + 1 };
-            let shortest = 1e-5 * (sample.spacing + corner.centre.norm_squared() / sample.spacing);
+            // The direction of a side is not to be had from end points that coincide but for rounding.
+            let (previous, next) = ((m + sides - 1) % sides, (m + 1) % sides);
+            let uncertain = [previous, m, next].map(|k| uncertainty(&polygon.corners()[k]));
+            let shortest = uncertain.into_iter().fold(0.0, f64::max) / SIDE_ROUNDING;
             if lengths[m] > shortest && lengths[next] > shortest {
                 perimeters.add_vector(
                     polygon.perimeter_gradient(m),
                     gradient(circumference(&free, m), 0),
                     place,
                 );
+            }
+            if cross(corner.a, corner.b) < THINNEST * corner.a.norm() * corner.b.norm() {
+                continue;
             }
             let centre = circumcentre(seeded(corner.a, 0), seeded(corner.b, 2));
             for component in Axis::BOTH {
@@ -59,6 +70,12 @@ pub(super) fn rows(sample: &Sample) -> Vec<GradientRow> {
     .into_iter()
     .flatten()
     .collect()
+}
+
+/// Rounding of a vertex: large where the triangle is thin.
+fn uncertainty(corner: &Corner<f64>) -> f64 {
+    let (a, b) = (corner.a.norm(), corner.b.norm());
+    f64::EPSILON * a * b * (a + b) / cross(corner.a, corner.b).abs()
 }
 
 /// `½ Σ c_m × c_{m+1}` for vertices that are free to move.

@@ -2,7 +2,7 @@
 
 use super::CELL_LIMIT;
 use crate::{Model, VertexForces};
-use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector, cross};
+use voronudge_geometry::{CellPolygon, Domain, Error, Shape, Tessellation, Vector, cross};
 
 /// Positions, and what the checks need to know about them.
 pub(super) struct Sample {
@@ -19,12 +19,17 @@ pub(super) struct Sample {
     acting: Vec<bool>,
     /// √(area per cell)
     pub spacing: f64,
+    /// Largest distance of two neighbours on which a velocity depends.
+    pub widest: f64,
     /// Largest magnitude of a coordinate, or of one that a lattice vector may add.
     pub reach: f64,
 }
 
 /// Step of central differences relative to the distance of a singularity.
 const STEP: f64 = 1.0 / 128.0;
+
+/// Smallest useful step relative to √(area per cell): rounding of a displacement then changes it by 1e-6.
+const SMALLEST_STEP: f64 = 2e-10;
 
 impl Sample {
     pub fn new(positions: &[Vector<f64>], domain: Domain) -> Result<Self, Error> {
@@ -33,7 +38,8 @@ impl Sample {
         let largest = positions.iter().flat_map(|r| [r.x.abs(), r.y.abs()]).fold(0.0, f64::max);
         let (area, reach) = match domain {
             Domain::Periodic(cell_box) => {
-                (cell_box.area(), largest + 2.0 * (cell_box.lengths()[0] + cell_box.lengths()[1]))
+                let [x, y] = cell_box.lengths();
+                (cell_box.area(), largest + x.max(y) + cell_box.offset().abs())
             }
             Domain::Open => (extent(positions), 2.0 * largest),
         };
@@ -43,6 +49,7 @@ impl Sample {
         Ok(Self {
             displaced: (0..count).map(|k| k * cells / count).collect(),
             step: steps(&tessellation, positions, &acting, spacing),
+            widest: widest(&tessellation, positions, &acting),
             acting,
             unambiguous: unambiguous(&tessellation, positions, spacing),
             positions: positions.to_vec(),
@@ -59,8 +66,14 @@ impl Sample {
         for &cell in self.displaced.iter().filter(|&&cell| self.acting[cell]) {
             polygon.fill(&self.tessellation, &self.positions, cell);
             forces.resize(polygon.len(), Vector::zeros());
-            VertexForces::of(&model.terms, polygon.shape()).on_ring(&polygon, &mut forces);
-            let largest = forces.iter().map(|f| f.amax()).fold(0.0, f64::max);
+            // Forces may happen to vanish at the very shape of the cell, not at another one too.
+            let Shape { area, perimeter } = polygon.shape();
+            let mut largest: f64 = 0.0;
+            for size in [1.0, 2.0] {
+                let shape = Shape { area: size * area, perimeter: size * perimeter };
+                VertexForces::of(&model.terms, shape).on_ring(&polygon, &mut forces);
+                largest = forces.iter().map(|f| f.amax()).fold(largest, f64::max);
+            }
             let neighbours = self.tessellation.neighbours(cell).iter();
             let step = neighbours.map(|&k| self.step[k as usize]).fold(self.step[cell], f64::min);
             (force, slope) = (largest.max(force), (largest / step).max(slope));
@@ -68,10 +81,15 @@ impl Sample {
         [force, slope]
     }
 
+    /// The cells to displace that are not so close to a singular position that the step is lost in rounding.
+    pub fn resolved(&self) -> impl Iterator<Item = usize> {
+        self.displaced.iter().copied().filter(|&cell| self.step[cell] > SMALLEST_STEP * self.spacing)
+    }
+
     /// Batches of cells to displace together, no two of which act on one cell, with the cell that acts on each.
     pub fn batches(&self) -> Vec<Batch> {
         let mut batches: Vec<Batch> = Vec::new();
-        for &cell in &self.displaced {
+        for cell in self.resolved() {
             let reached = self.reached_from(cell);
             let free = |batch: &Batch| reached.iter().all(|&i| batch.moved_by[i].is_none());
             let at = batches.iter().position(free).unwrap_or_else(|| {
@@ -124,6 +142,14 @@ fn acting(tessellation: &Tessellation) -> Vec<bool> {
         |cell: usize| closed(cell) && tessellation.neighbours(cell).iter().all(|&k| closed(k as usize));
     let acts = |cell| moves(cell) || tessellation.neighbours(cell).iter().any(|&k| moves(k as usize));
     (0..tessellation.len()).map(|cell| closed(cell) && acts(cell)).collect()
+}
+
+fn widest(tessellation: &Tessellation, positions: &[Vector<f64>], acting: &[bool]) -> f64 {
+    (0..positions.len())
+        .filter(|&cell| acting[cell])
+        .flat_map(|cell| tessellation.ring(cell).map(move |h| (cell, h)))
+        .map(|(cell, h)| tessellation.displacement(positions, cell, h).norm())
+        .fold(0.0, f64::max)
 }
 
 fn steps(tessellation: &Tessellation, positions: &[Vector<f64>], acting: &[bool], spacing: f64) -> Vec<f64> {

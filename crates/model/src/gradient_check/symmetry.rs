@@ -1,7 +1,7 @@
 //! The tissue moved, wrapped, turned and mirrored, and tessellated anew.
 
 use super::sample::Sample;
-use super::{Comparison, Place, Quantity, Subject};
+use super::{Comparison, Pair, Quantity, Subject};
 use crate::{ForceTerm, Model, Parity, velocities};
 use nalgebra::Matrix2;
 use voronudge_geometry::{Domain, Error, PeriodicBox, Tessellation, Vector};
@@ -64,15 +64,15 @@ impl Images {
                 _ => &subject.model,
             };
             let found = velocities(&image.tessellation, &image.positions, model);
-            let mut comparison = subject.of_velocities();
+            let mut pairs = Vec::with_capacity(found.len());
             for (cell, v) in subject.velocities.iter().enumerate() {
                 // Rounding may take a cell of a straight rim onto the hull or off it.
                 let lost = matches!(image.tessellation.domain(), Domain::Open) && !found[cell].x.is_finite();
                 if subject.moves(cell) && subject.sample.unambiguous[cell] && !lost {
-                    comparison.add_vector(found[cell], image.map * v, |axis| Place::Cell { cell, axis });
+                    pairs.push(Pair { cell, found: found[cell], expected: image.map * v });
                 }
             }
-            (image.quantity, comparison)
+            (image.quantity, subject.compare(subject.sample.reach, &pairs))
         };
         self.0.iter().map(compare).collect()
     }

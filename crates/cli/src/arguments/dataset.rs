@@ -1,0 +1,86 @@
+//! Which data: a folder, single files, or both.
+
+use crate::failure::Failure;
+use clap::Args;
+use std::path::PathBuf;
+use voronudge_io::{Boundary, DataSet, Noise, Source, YAxis};
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Data")]
+pub(crate) struct DataSetArguments {
+    /// Folder with positions.npy, dataset.toml and, where there are any, velocities.npy.
+    #[arg(value_name = "DATASET")]
+    pub dataset: Option<PathBuf>,
+    /// Positions (N, 2) or (frames, N, 2), .npy, instead of the folder's.
+    #[arg(long, value_name = "FILE")]
+    pub positions: Option<PathBuf>,
+    /// Velocities of the same shape.
+    #[arg(long, value_name = "FILE")]
+    pub velocities: Option<PathBuf>,
+    /// Periodic box.
+    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], conflicts_with = "open", allow_negative_numbers = true)]
+    pub box_lengths: Option<Vec<f64>>,
+    /// Open field of view.
+    #[arg(long)]
+    pub open: bool,
+    /// Time between frames.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    pub frame_interval: Option<f64>,
+    /// Unit of length, for display.
+    #[arg(long, value_name = "UNIT")]
+    pub length_unit: Option<String>,
+    /// Unit of time, for display.
+    #[arg(long, value_name = "UNIT")]
+    pub time_unit: Option<String>,
+    /// Direction of y in the files: `up`, or `down` as in images.
+    #[arg(long, value_name = "up|down")]
+    pub y_axis: Option<YAxis>,
+    /// Periodic trajectories that leave the box are meant to.
+    #[arg(long)]
+    pub unwrapped: bool,
+    /// Standard deviation of a coordinate, in data units or as a percentage of the cell size: `0.4`, `2%`.
+    #[arg(long, value_name = "NOISE", allow_hyphen_values = true)]
+    pub position_noise: Option<Noise>,
+    /// Standard deviation of a velocity component, in data units or as a percentage of the rms velocity.
+    #[arg(long, value_name = "NOISE", allow_hyphen_values = true)]
+    pub velocity_noise: Option<Noise>,
+}
+
+impl DataSetArguments {
+    /// Reads and checks the data.
+    pub fn load(&self) -> Result<DataSet, Failure> {
+        if self.dataset.is_none() && self.positions.is_none() {
+            return Err(Failure::new("no data are given")
+                .with_hint("name a data set folder, or give --positions FILE with --box LX LY or --open"));
+        }
+        let boundary = match (&self.box_lengths, self.open) {
+            (Some(lengths), _) => Some(Boundary::Periodic { lengths: [lengths[0], lengths[1]] }),
+            (None, true) => Some(Boundary::Open),
+            (None, false) => None,
+        };
+        let source = Source {
+            folder: self.dataset.clone(),
+            positions: self.positions.clone(),
+            velocities: self.velocities.clone(),
+            boundary,
+            frame_interval: self.frame_interval,
+            length_unit: self.length_unit.clone(),
+            time_unit: self.time_unit.clone(),
+            y_axis: self.y_axis,
+            unwrapped: self.unwrapped.then_some(true),
+            position_noise: self.position_noise,
+            velocity_noise: self.velocity_noise,
+            ..Source::default()
+        };
+        Ok(source.load()?)
+    }
+
+    /// The file that holds the positions, for messages.
+    pub fn positions_file(&self) -> PathBuf {
+        match (&self.positions, &self.dataset) {
+            (Some(file), _) => file.clone(),
+            (None, Some(folder)) => folder.join("positions.npy"),
+            (None, None) => PathBuf::from("positions.npy"),
+        }
+    }
+}

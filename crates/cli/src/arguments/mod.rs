@@ -1,0 +1,58 @@
+//! Arguments that several commands share.
+
+mod dataset;
+mod parameters;
+
+pub(crate) use dataset::DataSetArguments;
+pub(crate) use parameters::ParameterArguments;
+
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Form of what is written to stdout.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    /// For people.
+    Text,
+    /// The content of report.json.
+    Json,
+}
+
+/// How much is said beside the result.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Verbosity {
+    Normal,
+    Quiet,
+}
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "General")]
+pub(crate) struct CommonArguments {
+    /// Folder for the results; it is made if it does not exist.
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+    /// Seed of all random numbers.
+    #[arg(long, default_value_t = 0)]
+    pub seed: u64,
+    /// Number of threads (default: all cores). Results do not depend on it.
+    #[arg(long)]
+    pub threads: Option<usize>,
+    /// Print neither progress nor a summary.
+    #[arg(long)]
+    quiet: bool,
+    /// What to print on stdout.
+    #[arg(long, value_enum, default_value_t = Format::Text)]
+    pub format: Format,
+}
+
+impl CommonArguments {
+    pub fn verbosity(&self) -> Verbosity {
+        if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
+    }
+
+    /// The output folder of a command that cannot do without.
+    pub fn required_out(&self) -> Result<&PathBuf, Failure> {
+        self.out.as_ref().ok_or_else(|| Failure::new("no output folder is given").with_hint("add --out DIR"))
+    }
+}

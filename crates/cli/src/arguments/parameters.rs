@@ -1,0 +1,85 @@
+//! Parameters of the model, from flags or a file.
+
+use crate::failure::Failure;
+use clap::Args;
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use voronudge_model::Parameters;
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Model")]
+#[allow(non_snake_case, reason = "the field's symbols are the names of the flags")]
+pub(crate) struct ParameterArguments {
+    /// Parameters as JSON: `{"K_A": …, "K_P": …, "P_0": …, "A_0": …, "alpha": …}`, or a report.json that holds them.
+    #[arg(long, value_name = "FILE")]
+    parameters: Option<PathBuf>,
+    /// Area elasticity [default: 0.1].
+    #[arg(long = "K_A", allow_negative_numbers = true)]
+    K_A: Option<f64>,
+    /// Perimeter elasticity [default: 1].
+    #[arg(long = "K_P", allow_negative_numbers = true)]
+    K_P: Option<f64>,
+    /// Preferred perimeter [default: 4].
+    #[arg(long = "P_0", allow_negative_numbers = true)]
+    P_0: Option<f64>,
+    /// Preferred area, which changes no velocity [default: 1].
+    #[arg(long = "A_0", allow_negative_numbers = true)]
+    A_0: Option<f64>,
+    /// Cortical chirality [default: 0].
+    #[arg(long = "alpha", allow_negative_numbers = true)]
+    alpha: Option<f64>,
+}
+
+impl ParameterArguments {
+    /// The parameters: defaults, overridden by the file, overridden by flags.
+    pub fn resolve(&self) -> Result<Parameters<f64>, Failure> {
+        let mut parameters = Parameters::default();
+        if let Some(file) = &self.parameters {
+            parameters = read(file)?;
+        }
+        for (slot, flag) in [
+            (&mut parameters.area_elasticity, self.K_A),
+            (&mut parameters.perimeter_elasticity, self.K_P),
+            (&mut parameters.preferred_perimeter, self.P_0),
+            (&mut parameters.preferred_area, self.A_0),
+            (&mut parameters.chirality, self.alpha),
+        ] {
+            if let Some(value) = flag {
+                if !value.is_finite() {
+                    return Err(Failure::new(format!("a model parameter is {value}, but it must be finite")));
+                }
+                *slot = value;
+            }
+        }
+        Ok(parameters)
+    }
+}
+
+fn read(file: &Path) -> Result<Parameters<f64>, Failure> {
+    const HINT: &str =
+        r#"write {"K_A": 0.1, "K_P": 1, "P_0": 4, "A_0": 1, "alpha": 0}, or give a report.json of infer"#;
+    let fault = |text: String| Failure::new(format!("{}: {text}", file.display())).with_hint(HINT);
+    let text = std::fs::read_to_string(file).map_err(|error| fault(error.to_string()))?;
+    let json: Value = serde_json::from_str(&text).map_err(|error| fault(format!("not JSON: {error}")))?;
+    // A report carries the same names one level down, each as an object with its value.
+    let table = json.get("parameters").unwrap_or(&json);
+    let table = table.as_object().ok_or_else(|| fault("not a table of parameters".into()))?;
+    let mut parameters = Parameters::default();
+    let mut found = 0;
+    for (name, slot) in [
+        ("K_A", &mut parameters.area_elasticity),
+        ("K_P", &mut parameters.perimeter_elasticity),
+        ("P_0", &mut parameters.preferred_perimeter),
+        ("A_0", &mut parameters.preferred_area),
+        ("alpha", &mut parameters.chirality),
+    ] {
+        let Some(entry) = table.get(name) else { continue };
+        let value = entry.get("value").unwrap_or(entry).as_f64().filter(|value| value.is_finite());
+        *slot = value.ok_or_else(|| fault(format!("{name} is not a finite number")))?;
+        found += 1;
+    }
+    if found == 0 {
+        return Err(fault("none of K_A, K_P, P_0, A_0, alpha is there".into()));
+    }
+    Ok(parameters)
+}

@@ -1,0 +1,155 @@
+//! `voronudge check-gradients`: every derivative against independent ways to get it.
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, DataSetArguments, ParameterArguments};
+use crate::failure::Failure;
+use crate::run::Run;
+use crate::snapshot::{Snapshot, domain};
+use clap::Args;
+use serde::Serialize;
+use std::fmt::Write as _;
+use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_io::{FrameSelection, OutputDirectory};
+use voronudge_model::gradient_check::{GradientReport, check};
+use voronudge_report::infer_report::RunRecord;
+use voronudge_simulate::{RandomPlacement, generator};
+
+/// Checks derivatives and symmetries of every force term on given or built-in positions.
+///
+/// Prints a table: term, quantity, worst error relative to the largest magnitude, where, tolerance. Exits 1 if one fails.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    data: DataSetArguments,
+    /// Frames to check: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: the first].
+    #[arg(long, value_name = "FRAMES")]
+    frames: Option<FrameSelection>,
+    #[command(flatten)]
+    parameters: ParameterArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+/// Cells of the built-in configurations.
+const BUILT_IN_CELLS: usize = 100;
+
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    run: RunRecord,
+    passed: bool,
+    checks: Vec<Check>,
+}
+
+#[derive(Serialize)]
+struct Check {
+    configuration: String,
+    term: String,
+    quantity: String,
+    worst: f64,
+    place: String,
+    tolerance: f64,
+    passed: bool,
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let run = Run::begin("check-gradients", &arguments.common)?;
+    let parameters = arguments.parameters.resolve()?;
+    let mut out = arguments.common.out.as_ref().map(OutputDirectory::create).transpose()?;
+    let given = arguments.data.dataset.is_some() || arguments.data.positions.is_some();
+    let data = given.then(|| arguments.data.load()).transpose()?;
+    let mut subjects: Vec<(String, Vec<Vector<f64>>, Domain)> = Vec::new();
+    match &data {
+        Some(data) => {
+            let frames = match &arguments.frames {
+                Some(selection) => selection.resolve(data.frames())?,
+                None => vec![0],
+            };
+            let file = arguments.data.positions_file();
+            for frame in frames {
+                let name = format!("{}, frame {frame}", file.display());
+                subjects.push((name, Snapshot::new(data, frame).positions, domain(data)?));
+            }
+        }
+        None => {
+            let side = (BUILT_IN_CELLS as f64).sqrt();
+            let cell_box = PeriodicBox::new([side, side])?;
+            let positions =
+                RandomPlacement::new(BUILT_IN_CELLS, cell_box).draw(&mut generator(arguments.common.seed))?;
+            let count = positions.len();
+            subjects.push((
+                format!("{count} random cells, periodic"),
+                positions.clone(),
+                Domain::Periodic(cell_box),
+            ));
+            subjects.push((format!("{count} random cells, open"), positions, Domain::Open));
+        }
+    }
+    let mut reports = Vec::new();
+    for (name, positions, domain) in subjects {
+        let report =
+            check(&positions, domain, &parameters).map_err(|error| Failure::from(error).at(&name))?;
+        reports.push((name, report));
+    }
+    let passed = reports.iter().all(|(_, report)| report.passed());
+    let checks = reports.iter().flat_map(|(name, report)| rows(name, report)).collect();
+    let json = serde_json::to_string_pretty(&Report { run: run.record(data.as_ref()), passed, checks })?;
+    if let Some(out) = &mut out {
+        out.write_text("report.json", &json)?;
+    }
+    run.finish(out, &json, &table(&reports))?;
+    Ok(if passed { Answer::Positive } else { Answer::Negative })
+}
+
+fn rows(name: &str, report: &GradientReport) -> Vec<Check> {
+    report
+        .rows
+        .iter()
+        .map(|row| Check {
+            configuration: name.into(),
+            term: row.term.clone(),
+            quantity: row.quantity.to_string(),
+            worst: row.worst,
+            place: row.place.to_string(),
+            tolerance: row.tolerance,
+            passed: row.passed(),
+        })
+        .collect()
+}
+
+fn table(reports: &[(String, GradientReport)]) -> String {
+    let mut text = String::new();
+    for (name, report) in reports {
+        let displaced = match report.displaced {
+            d if d == report.cells => String::new(),
+            d => format!(" ({d} of them displaced)"),
+        };
+        let _ = writeln!(text, "{name}: {} cells{displaced}\n", report.cells);
+        let header = ["term", "quantity", "worst error", "tolerance", "", "where"].map(String::from);
+        let rows: Vec<[String; 6]> = std::iter::once(header)
+            .chain(report.rows.iter().map(|row| {
+                [
+                    row.term.clone(),
+                    row.quantity.to_string(),
+                    format!("{:.1e}", row.worst),
+                    format!("{:.0e}", row.tolerance),
+                    if row.passed() { "ok" } else { "FAILED" }.into(),
+                    row.place.to_string(),
+                ]
+            }))
+            .collect();
+        let width = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+        let widths: Vec<usize> = (0..6).map(width).collect();
+        for row in &rows {
+            let line: Vec<String> =
+                row.iter().zip(&widths).map(|(entry, &width)| format!("{entry:width$}")).collect();
+            let _ = writeln!(text, "{}", line.join("  ").trim_end());
+        }
+        let failed = report.rows.iter().filter(|row| !row.passed()).count();
+        let _ = match failed {
+            0 => writeln!(text, "\nall {} checks passed\n", report.rows.len()),
+            _ => writeln!(text, "\n{failed} of {} checks FAILED\n", report.rows.len()),
+        };
+    }
+    text
+}

@@ -1,0 +1,225 @@
+//! `voronudge evaluate`: the model's fields at given positions.
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, DataSetArguments, ParameterArguments};
+use crate::failure::Failure;
+use crate::run::Run;
+use crate::snapshot::{Snapshot, domain, to_array, to_scalars};
+use clap::Args;
+use ndarray::{Array1, Array2, Array3};
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::io::Cursor;
+use voronudge_geometry::{FieldOfView, Tessellation, Vector, areas, perimeters};
+use voronudge_io::{DataSet, FrameSelection, OutputDirectory, YAxis};
+use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
+use voronudge_report::infer_report::RunRecord;
+
+/// The model's velocities, areas, perimeters, stress and Jacobian at the positions of a data set.
+///
+/// Writes velocities.npy, areas.npy, perimeters.npy, stress.npy (force index first) and report.json, and on request the
+/// Jacobian of the first frame chosen: jacobian.npy (2N, 2N; x0, y0, x1, …) up to 4000 coordinates, jacobian.npz (row,
+/// column, value) above.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    data: DataSetArguments,
+    /// Frames to evaluate: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all].
+    #[arg(long, value_name = "FRAMES")]
+    frames: Option<FrameSelection>,
+    #[command(flatten)]
+    parameters: ParameterArguments,
+    /// Also write the Jacobian of velocities with respect to positions.
+    #[arg(long)]
+    jacobian: bool,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+/// Coordinates up to which the Jacobian is written dense.
+const DENSE_LIMIT: usize = 4000;
+
+/// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
+const LARGEST_AREA: f64 = 3.0;
+
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    run: RunRecord,
+    cells: Cells,
+    parameters: ModelParameters,
+    stress: Vec<[[f64; 2]; 2]>,
+    mean_square_velocity: Vec<f64>,
+}
+
+#[derive(Serialize)]
+struct Cells {
+    frames: Vec<usize>,
+    present: Vec<usize>,
+    with_velocity: Vec<usize>,
+}
+
+/// Parameters under the names of the interface.
+#[derive(Serialize)]
+#[allow(non_snake_case, reason = "the names of the file")]
+pub(crate) struct ModelParameters {
+    K_A: f64,
+    K_P: f64,
+    P_0: f64,
+    A_0: f64,
+    alpha: f64,
+}
+
+impl From<&Parameters<f64>> for ModelParameters {
+    fn from(p: &Parameters<f64>) -> Self {
+        Self {
+            K_A: p.area_elasticity,
+            K_P: p.perimeter_elasticity,
+            P_0: p.preferred_perimeter,
+            A_0: p.preferred_area,
+            alpha: p.chirality,
+        }
+    }
+}
+
+/// One frame's fields.
+struct Fields {
+    snapshot: Snapshot,
+    velocities: Vec<Vector<f64>>,
+    areas: Vec<f64>,
+    perimeters: Vec<f64>,
+    stress: [[f64; 2]; 2],
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("evaluate", &arguments.common)?;
+    let data = arguments.data.load()?;
+    let parameters = arguments.parameters.resolve()?;
+    let frames = match &arguments.frames {
+        Some(selection) => selection.resolve(data.frames())?,
+        None => (0..data.frames()).collect(),
+    };
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
+    let model = Model::chiral_voronoi(&parameters);
+    let domain = domain(&data)?;
+    let mut fields = Vec::new();
+    for (index, &frame) in frames.iter().enumerate() {
+        let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
+        let snapshot = Snapshot::new(&data, frame);
+        let tessellation = Tessellation::new(&snapshot.positions, domain)
+            .map_err(|error| Failure::from(error).at(place()))?;
+        let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
+        if index == 0 && arguments.jacobian {
+            let matrix = jacobian(&tessellation, &snapshot.positions, &model);
+            if frames.len() > 1 {
+                run.warn(format!("the Jacobian is that of frame {frame} only"));
+            }
+            write_jacobian(&mut out, &matrix, data.y_axis)?;
+        }
+        fields.push(Fields {
+            velocities: velocities(&tessellation, &snapshot.positions, &model),
+            areas: areas(&tessellation, &snapshot.positions),
+            perimeters: perimeters(&tessellation, &snapshot.positions),
+            stress: oriented(
+                stress(&tessellation, &snapshot.positions, &model, |cell| view.counts(cell)),
+                data.y_axis,
+            ),
+            snapshot,
+        });
+    }
+    write_fields(&mut out, &data, &fields)?;
+    let finite = |f: &Fields| f.velocities.iter().filter(|v| v.x.is_finite()).count();
+    let report = Report {
+        run: run.record(Some(&data)),
+        cells: Cells {
+            present: fields.iter().map(|f| f.velocities.len()).collect(),
+            with_velocity: fields.iter().map(finite).collect(),
+            frames,
+        },
+        parameters: (&parameters).into(),
+        stress: fields.iter().map(|f| f.stress).collect(),
+        mean_square_velocity: fields
+            .iter()
+            .map(|f| {
+                let squares = f.velocities.iter().filter(|v| v.x.is_finite()).map(|v| v.norm_squared());
+                squares.sum::<f64>() / finite(f).max(1) as f64
+            })
+            .collect(),
+    };
+    let json = serde_json::to_string_pretty(&report)?;
+    out.write_text("report.json", &json)?;
+    let mut summary = String::new();
+    for (index, frame) in report.cells.frames.iter().enumerate() {
+        let _ = writeln!(
+            summary,
+            "frame {frame}: {} cells, {} with a velocity, mean square velocity {:.6e}",
+            report.cells.present[index],
+            report.cells.with_velocity[index],
+            report.mean_square_velocity[index]
+        );
+    }
+    let _ = writeln!(summary, "written to {}", out.path().display());
+    run.finish(Some(out), &json, &summary)?;
+    Ok(Answer::Positive)
+}
+
+fn write_fields(out: &mut OutputDirectory, data: &DataSet, fields: &[Fields]) -> Result<(), Failure> {
+    let vectors = to_array(data, fields.iter().map(|f| (&f.snapshot, f.velocities.as_slice())));
+    out.write_array("velocities.npy", vectors.view())?;
+    let scalars = to_scalars(data, fields.iter().map(|f| (&f.snapshot, f.areas.as_slice())));
+    out.write_array("areas.npy", scalars.view())?;
+    let scalars = to_scalars(data, fields.iter().map(|f| (&f.snapshot, f.perimeters.as_slice())));
+    out.write_array("perimeters.npy", scalars.view())?;
+    let stress = Array3::from_shape_fn((fields.len(), 2, 2), |(frame, i, j)| fields[frame].stress[i][j]);
+    if data.frames() == 1 {
+        out.write_array("stress.npy", stress.index_axis(ndarray::Axis(0), 0))?;
+    } else {
+        out.write_array("stress.npy", stress.view())?;
+    }
+    Ok(())
+}
+
+/// A tensor in the axes of the files: mixed components change sign where y points down.
+fn oriented(tensor: [[f64; 2]; 2], y_axis: YAxis) -> [[f64; 2]; 2] {
+    match y_axis {
+        YAxis::Up => tensor,
+        YAxis::Down => [[tensor[0][0], -tensor[0][1]], [-tensor[1][0], tensor[1][1]]],
+    }
+}
+
+fn write_jacobian(out: &mut OutputDirectory, matrix: &BlockMatrix, y_axis: YAxis) -> Result<(), Failure> {
+    let n = 2 * matrix.rows();
+    let sign = |row: usize, column: usize| match y_axis {
+        YAxis::Down if (row + column) % 2 == 1 => -1.0,
+        _ => 1.0,
+    };
+    if n <= DENSE_LIMIT {
+        let mut dense = Array2::from_shape_vec((n, n), matrix.to_dense())
+            .map_err(|error| Failure::new(format!("the Jacobian has an unexpected shape: {error}")))?;
+        dense.indexed_iter_mut().for_each(|((row, column), entry)| *entry *= sign(row, column));
+        out.write_array("jacobian.npy", dense.view())?;
+        return Ok(());
+    }
+    let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
+    for row in 0..matrix.rows() {
+        for (column, block) in matrix.row(row) {
+            for (k, entry) in block.iter().enumerate() {
+                let (i, j) = (2 * row + k / 2, 2 * column + k % 2);
+                rows.push(i as i64);
+                columns.push(j as i64);
+                values.push(sign(i, j) * entry);
+            }
+        }
+    }
+    let mut bytes = Cursor::new(Vec::new());
+    let failed = |error: ndarray_npy::WriteNpzError| Failure::new(format!("jacobian.npz: {error}"));
+    let mut npz = ndarray_npy::NpzWriter::new_compressed(&mut bytes);
+    npz.add_array("row", &Array1::from(rows)).map_err(failed)?;
+    npz.add_array("column", &Array1::from(columns)).map_err(failed)?;
+    npz.add_array("value", &Array1::from(values)).map_err(failed)?;
+    npz.add_array("shape", &Array1::from(vec![n as i64, n as i64])).map_err(failed)?;
+    npz.finish().map_err(failed)?;
+    out.write_bytes("jacobian.npz", bytes.get_ref())?;
+    Ok(())
+}

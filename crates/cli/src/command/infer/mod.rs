@@ -1,0 +1,162 @@
+//! `voronudge infer`: parameters of the model from snapshots, by nudged inference.
+
+mod page;
+mod prepare;
+mod report;
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, DataSetArguments};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use crate::snapshot::to_array;
+use clap::{Args, ValueEnum};
+use prepare::Prepared;
+use voronudge_geometry::Vector;
+use voronudge_infer::{Fixed, Inference, infer};
+use voronudge_io::{DataSet, Difference, FrameSelection, OutputDirectory};
+
+/// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
+///
+/// Velocities are read from the data set or derived from its tracked positions. Writes report.json, report.html,
+/// nudged_positions.npy, predicted_velocities.npy and residual_velocities.npy.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    data: DataSetArguments,
+    /// Frames to fit together: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all that have velocities].
+    #[arg(long, value_name = "FRAMES")]
+    frames: Option<FrameSelection>,
+    /// How velocities are derived from positions where none are given.
+    #[arg(long, value_name = "central|forward|backward", default_value_t = Difference::Central)]
+    difference: Difference,
+    /// Hold a parameter: `--fix K_A=0.1` (repeatable), in the units of the data.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = fixed_parameter, allow_hyphen_values = true)]
+    fix: Vec<(String, f64)>,
+    /// Which mean velocity to remove first: drift of the stage shows as one.
+    #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
+    remove_mean: MeanToRemove,
+    /// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
+    #[arg(long, value_name = "FACTOR", default_value_t = 3.0)]
+    largest_area: f64,
+    /// Steps of the optimiser at the last stage of each fit.
+    #[arg(long, default_value_t = 60)]
+    max_steps: u64,
+    /// Open report.html when done.
+    #[arg(long)]
+    open_report: bool,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MeanToRemove {
+    /// The median of each frame if velocities are derived from tracks in an open field, none otherwise.
+    Auto,
+    /// None.
+    None,
+    /// The median velocity of the cells used in each frame.
+    PerFrame,
+}
+
+fn fixed_parameter(text: &str) -> Result<(String, f64), String> {
+    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for example K_A=0.1")?;
+    if !["K_A", "K_P", "P_0", "alpha"].contains(&name) {
+        return Err(format!("{name} is not a parameter; there are K_A, K_P, P_0 and alpha"));
+    }
+    let number: f64 = value.parse().map_err(|_| format!("{value} is not a number"))?;
+    Ok((name.into(), number))
+}
+
+impl Arguments {
+    /// The parameters held, in units of the data.
+    fn fixed(&self) -> Result<Fixed, Failure> {
+        let mut fixed = Fixed::default();
+        for (name, value) in &self.fix {
+            let slot = match name.as_str() {
+                "K_A" => &mut fixed.area_elasticity,
+                "K_P" => &mut fixed.perimeter_elasticity,
+                "P_0" => &mut fixed.preferred_perimeter,
+                _ => &mut fixed.chirality,
+            };
+            if slot.replace(*value).is_some() {
+                return Err(Failure::new(format!("{name} is fixed twice")));
+            }
+        }
+        Ok(fixed)
+    }
+}
+
+/// An objective this many times its expected value is no fit: the noise levels given, or the model, are wrong.
+const UNACCEPTABLE: f64 = 3.0;
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("infer", &arguments.common)?;
+    let data = arguments.data.load()?;
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let prepared = prepare::prepare(&arguments, &data, &mut run)?;
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let result = infer(&prepared.observations, &prepared.request, &mut |state| {
+        progress.step(state.stage, state.step.0, state.step.1)
+    });
+    progress.finish();
+    let result = result.map_err(|error| prepared.place(error, &arguments))?;
+    warn_about(&result, &mut run);
+    write_arrays(&mut out, &data, &prepared, &result)?;
+    let report = report::report(&run, &data, &prepared, &result);
+    let json = report.to_json()?;
+    out.write_text("report.json", &json)?;
+    out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report)?)?;
+    let folder = out.path().to_owned();
+    let summary = report::summary(&report, &folder);
+    run.finish(Some(out), &json, &summary)?;
+    if arguments.open_report {
+        open(&folder.join("report.html"));
+    }
+    let acceptable = result.objective <= UNACCEPTABLE * result.expected_objective;
+    Ok(if acceptable { Answer::Positive } else { Answer::Negative })
+}
+
+fn warn_about(result: &Inference, run: &mut Run) {
+    let excess = result.objective / result.expected_objective;
+    if excess > 1.5 {
+        run.warn(format!(
+            "the objective is {excess:.1} times its expected value: the noise levels are too small, or the model lacks \
+             something; intervals are widened accordingly"
+        ));
+    }
+    if result.status == voronudge_infer::Status::StepLimit {
+        run.warn("the fit used up its steps; raise --max-steps");
+    }
+}
+
+fn write_arrays(
+    out: &mut OutputDirectory,
+    data: &DataSet,
+    prepared: &Prepared,
+    result: &Inference,
+) -> Result<(), Failure> {
+    let fields: Vec<[Vec<Vector<f64>>; 3]> =
+        (0..prepared.snapshots.len()).map(|index| prepared.fields(result, index)).collect();
+    for (k, name) in ["nudged_positions.npy", "predicted_velocities.npy", "residual_velocities.npy"]
+        .into_iter()
+        .enumerate()
+    {
+        let frames = prepared.snapshots.iter().zip(&fields).map(|(snapshot, f)| (snapshot, f[k].as_slice()));
+        out.write_array(name, to_array(data, frames).view())?;
+    }
+    Ok(())
+}
+
+/// Shows a page in the user's browser, where there is one.
+fn open(page: &std::path::Path) {
+    let opener = match std::env::consts::OS {
+        "macos" => "open",
+        "windows" => "explorer",
+        _ => "xdg-open",
+    };
+    let opened = std::process::Command::new(opener).arg(page).spawn();
+    if opened.is_err() {
+        eprintln!("no browser could be started; open {} yourself", page.display());
+    }
+}

@@ -1,0 +1,158 @@
+//! The result of `infer` as a page with figures.
+
+use super::Arguments;
+use super::prepare::Prepared;
+use crate::failure::Failure;
+use voronudge_geometry::{CellPolygon, Domain, Vector};
+use voronudge_infer::Inference;
+use voronudge_io::{DataSet, Difference};
+use voronudge_report::infer_report::{InferReport, MeanRemoved};
+use voronudge_report::numbers::significant;
+use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Segment};
+
+/// Frames drawn at most: the first, the middle and the last.
+const DRAWN: usize = 3;
+
+pub(super) fn page(
+    arguments: &Arguments,
+    data: &DataSet,
+    prepared: &Prepared,
+    result: &Inference,
+    report: &InferReport,
+) -> Result<String, Failure> {
+    let count = prepared.frames.len();
+    let mut drawn: Vec<usize> =
+        if count <= DRAWN { (0..count).collect() } else { vec![0, count / 2, count - 1] };
+    drawn.dedup();
+    let frames: Vec<FrameView> = drawn.into_iter().map(|index| frame_view(prepared, result, index)).collect();
+    let title = match (&arguments.data.dataset, &arguments.data.positions) {
+        (Some(folder), _) => folder.file_name().map(|name| name.to_string_lossy().into_owned()),
+        (None, Some(file)) => file.file_name().map(|name| name.to_string_lossy().into_owned()),
+        (None, None) => None,
+    };
+    let page = InferPage {
+        title: &title.unwrap_or_else(|| "data".into()),
+        headline: &headline(report),
+        summary: &paragraphs(data, prepared, report),
+        report,
+        frames: &frames,
+    };
+    Ok(page.render()?)
+}
+
+/// The answer in one sentence. Held-out errors decide: the error of the fit itself always looks good.
+fn headline(report: &InferReport) -> String {
+    let held_out = report.nmse.cross_validated.unwrap_or(report.nmse.un_nudged);
+    let spread = report.nmse.cross_validated_standard_error.unwrap_or(0.0);
+    let percent = |share: f64| format!("{} %", significant(100.0 * share, 2));
+    if held_out + spread >= 0.95 {
+        return format!(
+            "The model explains almost nothing of these velocities (held-out error {} of their square): the numbers below \
+             describe no mechanism of this tissue.",
+            percent(held_out)
+        );
+    }
+    let alpha = &report.parameters.alpha;
+    let chirality = match (report.parameters.K_P_alpha.ci95, alpha.fixed) {
+        (Some([low, high]), false) if low > 0.0 || high < 0.0 => {
+            format!("The tissue is chiral, α = {}", significant(alpha.value, 2))
+        }
+        (_, true) => format!("With α held at {}", significant(alpha.value, 2)),
+        _ => "No chirality is seen".into(),
+    };
+    format!(
+        "{chirality}; the preferred shape index P₀/ℓ₀ is {}. The model explains {} of the velocities it has not seen.",
+        significant(report.parameters.shape_index.value, 3),
+        percent((1.0 - held_out).max(0.0))
+    )
+}
+
+fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<String> {
+    let source = match prepared.derived {
+        None => "Velocities were given".to_owned(),
+        Some(difference) => format!(
+            "Velocities are {} differences of tracked positions, {} {} apart",
+            match difference {
+                Difference::Central => "central",
+                Difference::Forward => "forward",
+                Difference::Backward => "backward",
+            },
+            data.frame_interval,
+            data.time_unit
+        ),
+    };
+    let mean = match report.nmse.mean_removed {
+        MeanRemoved::None => "no mean was removed",
+        _ => "the median velocity of each frame was removed, because drift of the stage shows as one",
+    };
+    let boundary = match prepared.observations.first().map(|o| o.tessellation.domain()) {
+        Some(Domain::Periodic(_)) => "The box is periodic.",
+        _ => {
+            "The field of view is open: only cells whose polygon and whose neighbours' polygons are closed count."
+        }
+    };
+    vec![format!("{source}; {mean}. {boundary}")]
+}
+
+fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameView {
+    let (observation, frame) = (&prepared.observations[index], &result.frames[index]);
+    let scale = &prepared.scale;
+    let wrapped = |r: Vector<f64>| match observation.tessellation.domain() {
+        Domain::Periodic(cell_box) => cell_box.wrap(r),
+        Domain::Open => r,
+    };
+    let length = |r: Vector<f64>| [r.x * scale.length, r.y * scale.length];
+    let velocity = |v: Vector<f64>| [v.x * scale.velocity(), v.y * scale.velocity()];
+    let mut polygon = CellPolygon::default();
+    let cells = (0..observation.positions.len())
+        .map(|cell| {
+            let centre = wrapped(observation.positions[cell]);
+            let closed = observation.tessellation.is_closed(cell);
+            let target = observation.target(cell);
+            if closed {
+                polygon.fill(&observation.tessellation, &observation.positions, cell);
+            }
+            let shape = polygon.shape();
+            CellView {
+                centre: length(centre),
+                polygon: if closed {
+                    polygon.vertices().map(|c| length(centre + c)).collect()
+                } else {
+                    Vec::new()
+                },
+                area: if closed { shape.area * scale.length * scale.length } else { f64::NAN },
+                perimeter: if closed { shape.perimeter * scale.length } else { f64::NAN },
+                status: if target.is_some() { CellStatus::Used } else { CellStatus::LeftOut },
+                measured: target.map(velocity),
+                predicted: Some(frame.predicted[cell]).filter(|v| v.x.is_finite()).map(velocity),
+                nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
+            }
+        })
+        .collect();
+    let segments = |pairs: &[(u32, u32)]| -> Vec<Segment> {
+        pairs
+            .iter()
+            .map(|&(a, b)| {
+                let from = wrapped(observation.positions[a as usize]);
+                let domain = observation.tessellation.domain();
+                let across = observation.positions[b as usize] - observation.positions[a as usize];
+                [length(from), length(from + domain.shortest(across))]
+            })
+            .collect()
+    };
+    FrameView {
+        label: format!("frame {}", prepared.frames[index]),
+        cells,
+        changed_edges: ChangedEdges {
+            lost: segments(&frame.edges_lost),
+            gained: segments(&frame.edges_gained),
+        },
+        outline: match observation.tessellation.domain() {
+            Domain::Periodic(cell_box) => {
+                let [x, y] = cell_box.lengths();
+                Some([[0.0, 0.0], [x * scale.length, y * scale.length]])
+            }
+            Domain::Open => None,
+        },
+    }
+}

@@ -1,0 +1,7 @@
+//! The commands: arguments as typed, a checked request, one library call, and its result rendered.
+
+pub(crate) mod check_gradients;
+pub(crate) mod evaluate;
+pub(crate) mod import;
+pub(crate) mod infer;
+pub(crate) mod simulate;

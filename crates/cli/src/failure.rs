@@ -1,0 +1,94 @@
+//! Errors as the user sees them: `error: …`, an empty line, `hint: …`.
+
+use std::fmt;
+
+/// Why a command did not run to its end.
+#[derive(Debug)]
+pub(crate) struct Failure {
+    message: String,
+    hint: Option<String>,
+    exit_code: u8,
+}
+
+impl Failure {
+    pub fn new(message: impl Into<String>) -> Self {
+        Self { message: message.into(), hint: None, exit_code: 2 }
+    }
+
+    pub fn with_hint(mut self, hint: impl Into<String>) -> Self {
+        self.hint = Some(hint.into());
+        self
+    }
+
+    /// Ctrl-C. Nothing has been written.
+    pub fn interrupted() -> Self {
+        Self { message: "interrupted; nothing was written".into(), hint: None, exit_code: 130 }
+    }
+
+    /// Says where the fault is.
+    pub fn at(mut self, place: impl fmt::Display) -> Self {
+        self.message = format!("{place}: {}", self.message);
+        self
+    }
+
+    pub fn exit_code(&self) -> u8 {
+        self.exit_code
+    }
+
+    fn from_parts(error: impl fmt::Display, hint: Option<impl Into<String>>) -> Self {
+        Self { message: error.to_string(), hint: hint.map(Into::into), exit_code: 2 }
+    }
+}
+
+impl fmt::Display for Failure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "error: {}", self.message)?;
+        if let Some(hint) = &self.hint {
+            write!(f, "\n\nhint: {hint}")?;
+        }
+        Ok(())
+    }
+}
+
+impl From<voronudge_io::Error> for Failure {
+    fn from(error: voronudge_io::Error) -> Self {
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
+impl From<voronudge_geometry::Error> for Failure {
+    fn from(error: voronudge_geometry::Error) -> Self {
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
+impl From<voronudge_infer::Error> for Failure {
+    fn from(error: voronudge_infer::Error) -> Self {
+        if error == voronudge_infer::Error::Interrupted {
+            return Self::interrupted();
+        }
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
+impl From<voronudge_simulate::Error> for Failure {
+    fn from(error: voronudge_simulate::Error) -> Self {
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
+impl From<voronudge_report::ReportError> for Failure {
+    fn from(error: voronudge_report::ReportError) -> Self {
+        Self::new(error.to_string())
+    }
+}
+
+impl From<serde_json::Error> for Failure {
+    fn from(error: serde_json::Error) -> Self {
+        Self::new(error.to_string())
+    }
+}

@@ -1,0 +1,81 @@
+//! What every command does: threads, the record of the run, writing results.
+
+use crate::arguments::{CommonArguments, Format, Verbosity};
+use crate::failure::Failure;
+use std::time::Instant;
+use voronudge_io::{DataSet, OutputDirectory};
+use voronudge_report::infer_report::{InputFile, RunRecord};
+
+/// A command at work.
+pub(crate) struct Run {
+    name: &'static str,
+    begun: Instant,
+    seed: u64,
+    pub format: Format,
+    pub verbosity: Verbosity,
+    pub warnings: Vec<String>,
+}
+
+impl Run {
+    pub fn begin(name: &'static str, common: &CommonArguments) -> Result<Self, Failure> {
+        if let Some(threads) = common.threads {
+            if threads == 0 {
+                return Err(Failure::new("--threads is 0, but at least one thread is needed"));
+            }
+            rayon::ThreadPoolBuilder::new()
+                .num_threads(threads)
+                .build_global()
+                .map_err(|error| Failure::new(format!("cannot start {threads} threads: {error}")))?;
+        }
+        Ok(Self {
+            name,
+            begun: Instant::now(),
+            seed: common.seed,
+            format: common.format,
+            verbosity: common.verbosity(),
+            warnings: Vec::new(),
+        })
+    }
+
+    pub fn warn(&mut self, text: impl Into<String>) {
+        let text = text.into();
+        if self.verbosity == Verbosity::Normal {
+            eprintln!("warning: {text}");
+        }
+        self.warnings.push(text);
+    }
+
+    /// The record for the report.
+    pub fn record(&self, inputs: Option<&DataSet>) -> RunRecord {
+        RunRecord {
+            command: self.name.into(),
+            command_line: std::env::args().collect::<Vec<_>>().join(" "),
+            version: env!("CARGO_PKG_VERSION").into(),
+            seed: self.seed,
+            threads: rayon::current_num_threads(),
+            inputs: inputs
+                .iter()
+                .flat_map(|data| &data.inputs)
+                .map(|input| InputFile {
+                    path: input.path.display().to_string(),
+                    sha256: input.sha256.clone(),
+                })
+                .collect(),
+            wall_seconds: self.begun.elapsed().as_secs_f64(),
+            warnings: self.warnings.clone(),
+        }
+    }
+
+    /// Puts the results in place and prints the summary.
+    pub fn finish(&self, out: Option<OutputDirectory>, json: &str, summary: &str) -> Result<(), Failure> {
+        if let Some(out) = out {
+            out.commit()?;
+        }
+        match (self.format, self.verbosity) {
+            (Format::Json, _) => println!("{json}"),
+            (Format::Text, Verbosity::Normal) => print!("{summary}"),
+            (Format::Text, Verbosity::Quiet) => {}
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,87 @@
+//! Between data sets, whose cells come and go, and snapshots of the cells that are there.
+
+use crate::failure::Failure;
+use ndarray::{Array3, ArrayD, ArrayView2, Axis, Ix2};
+use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_io::{Boundary, DataSet, YAxis};
+
+/// The boundary as the geometry knows it.
+pub(crate) fn domain(data: &DataSet) -> Result<Domain, Failure> {
+    Ok(match data.boundary {
+        Boundary::Periodic { lengths } => Domain::Periodic(PeriodicBox::new(lengths)?),
+        Boundary::Open => Domain::Open,
+    })
+}
+
+/// The cells present in one frame.
+pub(crate) struct Snapshot {
+    /// Index of each cell on the data set's axis of cells.
+    pub cells: Vec<usize>,
+    pub positions: Vec<Vector<f64>>,
+}
+
+impl Snapshot {
+    pub fn new(data: &DataSet, frame: usize) -> Self {
+        let (cells, positions) = data
+            .positions
+            .index_axis(Axis(0), frame)
+            .rows()
+            .into_iter()
+            .enumerate()
+            .filter(|(_, r)| r[0].is_finite() && r[1].is_finite())
+            .map(|(cell, r)| (cell, Vector::new(r[0], r[1])))
+            .unzip();
+        Self { cells, positions }
+    }
+
+    /// Vectors of these cells from an array over all cells; `None` where not finite.
+    pub fn pick(&self, all: ArrayView2<'_, f64>) -> Vec<Option<Vector<f64>>> {
+        self.cells
+            .iter()
+            .map(|&cell| Vector::new(all[(cell, 0)], all[(cell, 1)]))
+            .map(|v| Some(v).filter(|v| v.x.is_finite() && v.y.is_finite()))
+            .collect()
+    }
+}
+
+/// Vectors of the cells of several frames, as an array (frames, cells, 2) with y as in the files, or (cells, 2) if the
+/// data set has a single frame. NaN where a cell is absent.
+pub(crate) fn to_array<'a>(
+    data: &DataSet,
+    frames: impl ExactSizeIterator<Item = (&'a Snapshot, &'a [Vector<f64>])>,
+) -> ArrayD<f64> {
+    let flip = match data.y_axis {
+        YAxis::Up => 1.0,
+        YAxis::Down => -1.0,
+    };
+    let mut array = Array3::from_elem((frames.len(), data.cells(), 2), f64::NAN);
+    for (index, (snapshot, vectors)) in frames.enumerate() {
+        for (&cell, v) in snapshot.cells.iter().zip(vectors) {
+            array[(index, cell, 0)] = v.x;
+            array[(index, cell, 1)] = flip * v.y;
+        }
+    }
+    as_given(data, array)
+}
+
+/// Numbers of the cells of several frames, as an array (frames, cells), or (cells,) if the data set has a single frame.
+pub(crate) fn to_scalars<'a>(
+    data: &DataSet,
+    frames: impl ExactSizeIterator<Item = (&'a Snapshot, &'a [f64])>,
+) -> ArrayD<f64> {
+    let mut array = Array3::from_elem((frames.len(), data.cells(), 1), f64::NAN);
+    for (index, (snapshot, values)) in frames.enumerate() {
+        for (&cell, value) in snapshot.cells.iter().zip(values) {
+            array[(index, cell, 0)] = *value;
+        }
+    }
+    let array = array.remove_axis(Axis(2));
+    match array.view().into_dimensionality::<Ix2>() {
+        Ok(view) if data.frames() == 1 => view.row(0).to_owned().into_dyn(),
+        _ => array.into_dyn(),
+    }
+}
+
+fn as_given(data: &DataSet, array: Array3<f64>) -> ArrayD<f64> {
+    if data.frames() == 1 { array.index_axis_move(Axis(0), 0).into_dyn() } else { array.into_dyn() }
+}
