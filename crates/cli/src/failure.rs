@@ -50,6 +50,24 @@ impl fmt::Display for Failure {
     }
 }
 
+impl From<clap::Error> for Failure {
+    /// A command line that cannot be read, told like every other fault.
+    fn from(error: clap::Error) -> Self {
+        let text = error.render().to_string();
+        let message = text.split("\n\n").next().unwrap_or_default().trim_start_matches("error: ");
+        let message = message.lines().map(str::trim).collect::<Vec<_>>().join(" ");
+        let reason = std::error::Error::source(&error);
+        let reason = reason.and_then(|reason| reason.downcast_ref::<voronudge_io::Error>());
+        let tip = || {
+            let tips = text.lines().filter_map(|line| line.trim().strip_prefix("tip: "));
+            // The advice to write `-- -1` helps nobody.
+            tips.map(str::to_owned).find(|tip| !tip.starts_with("to pass"))
+        };
+        let hint = reason.and_then(voronudge_io::Error::hint).or_else(tip);
+        Self::new(message).with_hint(hint.unwrap_or_else(|| "--help shows what can be given".into()))
+    }
+}
+
 impl From<voronudge_io::Error> for Failure {
     fn from(error: voronudge_io::Error) -> Self {
         let hint = error.hint();

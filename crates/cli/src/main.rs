@@ -7,7 +7,9 @@ mod progress;
 mod run;
 mod snapshot;
 
+use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
+use failure::Failure;
 use std::process::ExitCode;
 
 /// Which forces move these cells, and what does the model of them miss?
@@ -37,20 +39,32 @@ pub(crate) enum Answer {
 }
 
 fn main() -> ExitCode {
-    let arguments = Arguments::parse();
-    let answer = match arguments.command {
-        Command::Infer(arguments) => command::infer::run(arguments),
-        Command::Evaluate(arguments) => command::evaluate::run(arguments),
-        Command::Simulate(arguments) => command::simulate::run(arguments),
-        Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
-        Command::Import(arguments) => command::import::run(arguments),
-    };
-    match answer {
+    match run() {
         Ok(Answer::Positive) => ExitCode::SUCCESS,
         Ok(Answer::Negative) => ExitCode::from(1),
         Err(failure) => {
             eprintln!("{failure}");
             ExitCode::from(failure.exit_code())
         }
+    }
+}
+
+fn run() -> Result<Answer, Failure> {
+    let arguments = match Arguments::try_parse() {
+        Ok(arguments) => arguments,
+        Err(error) => match error.kind() {
+            // Printed as they are; they end the program.
+            ErrorKind::DisplayHelp
+            | ErrorKind::DisplayVersion
+            | ErrorKind::DisplayHelpOnMissingArgumentOrSubcommand => error.exit(),
+            _ => return Err(error.into()),
+        },
+    };
+    match arguments.command {
+        Command::Infer(arguments) => command::infer::run(arguments),
+        Command::Evaluate(arguments) => command::evaluate::run(arguments),
+        Command::Simulate(arguments) => command::simulate::run(arguments),
+        Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
+        Command::Import(arguments) => command::import::run(arguments),
     }
 }

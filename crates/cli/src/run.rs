@@ -20,7 +20,8 @@ impl Run {
     pub fn begin(name: &'static str, common: &CommonArguments) -> Result<Self, Failure> {
         if let Some(threads) = common.threads {
             if threads == 0 {
-                return Err(Failure::new("--threads is 0, but at least one thread is needed"));
+                return Err(Failure::new("--threads is 0, but at least one thread is needed")
+                    .with_hint("leave --threads out to use all cores"));
             }
             rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)

@@ -34,6 +34,18 @@ impl Snapshot {
         Self { cells, positions }
     }
 
+    /// The error with cells numbered as in the file, where absent cells count.
+    pub fn in_file_numbers(&self, error: voronudge_geometry::Error) -> voronudge_geometry::Error {
+        use voronudge_geometry::Error;
+        match error {
+            Error::DuplicateCells { first, second, x, y } => {
+                Error::DuplicateCells { first: self.cells[first], second: self.cells[second], x, y }
+            }
+            Error::Position { cell, x, y } => Error::Position { cell: self.cells[cell], x, y },
+            other => other,
+        }
+    }
+
     /// Vectors of these cells from an array over all cells; `None` where not finite.
     pub fn pick(&self, all: ArrayView2<'_, f64>) -> Vec<Option<Vector<f64>>> {
         self.cells

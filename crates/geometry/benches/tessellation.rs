@@ -2,6 +2,8 @@
 //!
 //! `cargo bench -p voronudge-geometry`
 
+#![allow(clippy::expect_used, reason = "a benchmark of fixed input")]
+
 use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -1,6 +1,7 @@
 //! Which cells of a tessellation can be trusted.
 
-use crate::{Tessellation, Vector, areas};
+use crate::polygon::{areas, reaches};
+use crate::{Tessellation, Vector};
 
 /// Why a cell counts or does not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -9,7 +10,8 @@ pub enum Visibility {
     Counted,
     /// The cell is on the convex hull of the data: its polygon is not closed.
     OnHull,
-    /// The polygon is larger than the stated multiple of the median area: a rim or a hole in the data.
+    /// The polygon is larger than the stated multiple of the median area, or reaches as far as a regular hexagon larger
+    /// than that: a rim or a hole in the data.
     TooLarge,
     /// The cell itself is sound, but a neighbour is not.
     NextToRim,
@@ -24,6 +26,10 @@ pub struct FieldOfView {
 impl FieldOfView {
     /// Judges every cell. `largest_area` is the multiple of the median area above which a polygon is taken for a rim or
     /// a hole; 3 is usual. Positions (N) in any unit.
+    ///
+    /// Cells at the rim can have closed polygons of usual size that are nevertheless wrong, because a neighbour was not
+    /// seen. They give themselves away by vertices far outside: circumcentres of three cells along the rim. So a polygon
+    /// must not reach farther than a regular hexagon of the largest area either.
     pub fn new(tessellation: &Tessellation, positions: &[Vector<f64>], largest_area: f64) -> Self {
         if matches!(tessellation.domain(), crate::Domain::Periodic(_)) {
             return Self { visibility: vec![Visibility::Counted; tessellation.len()] };
@@ -32,13 +38,21 @@ impl FieldOfView {
         let mut closed: Vec<f64> = areas.iter().copied().filter(|a| a.is_finite()).collect();
         closed.sort_unstable_by(f64::total_cmp);
         let limit = largest_area * closed.get(closed.len() / 2).copied().unwrap_or(0.0);
+        // A regular hexagon with circumradius R has the area (3√3/2) R².
+        let farthest = (limit / (1.5 * 3f64.sqrt())).sqrt();
+        let reaches = reaches(tessellation, positions);
         let own: Vec<Visibility> = areas
             .iter()
+            .zip(&reaches)
             .enumerate()
-            .map(|(cell, &area)| match area {
-                _ if !tessellation.is_closed(cell) => Visibility::OnHull,
-                area if area <= limit => Visibility::Counted,
-                _ => Visibility::TooLarge,
+            .map(|(cell, (&area, &reach))| {
+                if !tessellation.is_closed(cell) {
+                    Visibility::OnHull
+                } else if area <= limit && reach <= farthest {
+                    Visibility::Counted
+                } else {
+                    Visibility::TooLarge
+                }
             })
             .collect();
         let visibility = own

@@ -1,6 +1,6 @@
 //! The error on velocities that a fit has not seen.
 
-use crate::inference::nudged_fit;
+use crate::fit::nudged_fit;
 use crate::least_squares::{self, columns_of, predict};
 use crate::objective::Objective;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Progress};

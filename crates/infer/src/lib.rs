@@ -15,6 +15,8 @@ mod coefficients;
 mod cross_validation;
 mod degrees_of_freedom;
 mod error;
+mod estimates;
+mod fit;
 mod inference;
 mod least_squares;
 mod levenberg_marquardt;
@@ -22,14 +24,14 @@ mod linearisation;
 mod noise;
 mod objective;
 mod observation;
+mod result;
 mod scale;
 
 pub use coefficients::{CoefficientSpace, Fixed};
 pub use error::Error;
-pub use inference::{
-    Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Request, Status, infer,
-};
+pub use inference::infer;
 pub use levenberg_marquardt::Progress;
 pub use noise::{NoiseLevels, NoiseSource};
 pub use observation::Observation;
+pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Request, Status};
 pub use scale::Scale;

@@ -49,7 +49,7 @@ impl Spent {
         NoiseLevels {
             position: limited((self.nudges / self.degrees_of_freedom.max(1e-9)).sqrt(), levels.position)
                 .clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE),
-            velocity: limited((self.residual / left).sqrt(), levels.velocity),
+            velocity: limited((self.residual / left).sqrt(), levels.velocity).max(SMALLEST_VELOCITY_NOISE),
         }
     }
 }
@@ -61,3 +61,7 @@ pub(crate) const FIRST_POSITION_NOISE: f64 = 0.02;
 /// no place.
 pub(crate) const SMALLEST_POSITION_NOISE: f64 = 1e-3;
 pub(crate) const LARGEST_POSITION_NOISE: f64 = 0.15;
+
+/// Estimates of the velocity noise stay above this, in units of the velocities: with softer springs the nudges could
+/// explain anything.
+pub(crate) const SMALLEST_VELOCITY_NOISE: f64 = 1e-3;

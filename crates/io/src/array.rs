@@ -70,24 +70,14 @@ pub(crate) fn parse_vectors(path: &Path, bytes: &[u8]) -> Result<Array3<f64>, Er
     const EXPECTED: &str = "(cells, 2) or (frames, cells, 2)";
     let array = parse_reals(path, bytes)?;
     let found = array.shape().to_vec();
-    let failure = |fault| Error::Shape {
-        path: path.to_path_buf(),
-        fault,
-    };
-    let dimensions = |found| {
-        failure(ShapeFault::Dimensions {
-            found,
-            expected: EXPECTED,
-        })
-    };
+    let failure = |fault| Error::Shape { path: path.to_path_buf(), fault };
+    let dimensions = |found| failure(ShapeFault::Dimensions { found, expected: EXPECTED });
     let array = match found.len() {
         2 => array.insert_axis(Axis(0)),
         3 => array,
         _ => return Err(dimensions(found)),
     };
-    let array = array
-        .into_dimensionality::<Ix3>()
-        .map_err(|_| dimensions(found.clone()))?;
+    let array = array.into_dimensionality::<Ix3>().map_err(|_| dimensions(found.clone()))?;
     let (frames, cells, components) = array.dim();
     if components != 2 {
         let expected = EXPECTED;
@@ -119,16 +109,11 @@ fn assemble<T: Clone>(header: &Header, elements: Vec<T>) -> Result<ArrayD<T>, Fo
     let shape = IxDyn(&header.shape).set_f(header.fortran_order);
     let array = ArrayD::from_shape_vec(shape, elements).map_err(|error| {
         // Only shapes such as (0, 2^63) come here: no elements, yet not representable.
-        FormatFault::HeaderMalformed {
-            detail: format!("impossible shape {:?}: {error}", header.shape),
-        }
+        FormatFault::HeaderMalformed { detail: format!("impossible shape {:?}: {error}", header.shape) }
     })?;
     Ok(array.as_standard_layout().into_owned())
 }
 
 fn format_error(path: &Path, fault: FormatFault) -> Error {
-    Error::Format {
-        path: path.to_path_buf(),
-        fault,
-    }
+    Error::Format { path: path.to_path_buf(), fault }
 }

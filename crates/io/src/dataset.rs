@@ -97,10 +97,8 @@ impl DataSet {
     pub(crate) fn check_settings(&self) -> Result<(), SettingFault> {
         self.boundary.check()?;
         validate::positive("frame_interval", self.frame_interval)?;
-        for (key, noise) in [
-            ("position_noise", self.position_noise),
-            ("velocity_noise", self.velocity_noise),
-        ] {
+        for (key, noise) in [("position_noise", self.position_noise), ("velocity_noise", self.velocity_noise)]
+        {
             if let Some(noise) = noise {
                 noise.check(key)?;
             }
@@ -113,9 +111,9 @@ impl Boundary {
     pub(crate) fn check(&self) -> Result<(), SettingFault> {
         match self {
             Self::Open => Ok(()),
-            Self::Periodic { lengths } => lengths
-                .iter()
-                .try_for_each(|&length| validate::positive("box length", length)),
+            Self::Periodic { lengths } => {
+                lengths.iter().try_for_each(|&length| validate::positive("box length", length))
+            }
         }
     }
 }

@@ -34,10 +34,7 @@ impl FrameSelection {
     /// [`Error::Selection`] for a frame that does not exist, a range without frames, and a frame
     /// named twice.
     pub fn resolve(&self, total: usize) -> Result<Vec<usize>, Error> {
-        self.select(total).map_err(|fault| Error::Selection {
-            text: self.text.clone(),
-            fault,
-        })
+        self.select(total).map_err(|fault| Error::Selection { text: self.text.clone(), fault })
     }
 
     fn select(&self, total: usize) -> Result<Vec<usize>, SelectionFault> {
@@ -58,9 +55,7 @@ impl FrameSelection {
             }
         }
         let frames = chosen.iter().enumerate();
-        Ok(frames
-            .filter_map(|(frame, &taken)| taken.then_some(frame))
-            .collect())
+        Ok(frames.filter_map(|(frame, &taken)| taken.then_some(frame)).collect())
     }
 }
 
@@ -70,14 +65,8 @@ impl FromStr for FrameSelection {
     fn from_str(text: &str) -> Result<Self, Error> {
         let parts: Result<Vec<Part>, SelectionFault> = text.split(',').map(parse_part).collect();
         match parts {
-            Ok(parts) => Ok(Self {
-                text: text.to_owned(),
-                parts,
-            }),
-            Err(fault) => Err(Error::Selection {
-                text: text.to_owned(),
-                fault,
-            }),
+            Ok(parts) => Ok(Self { text: text.to_owned(), parts }),
+            Err(fault) => Err(Error::Selection { text: text.to_owned(), fault }),
         }
     }
 }
@@ -98,18 +87,12 @@ fn parse_part(part: &str) -> Result<Part, SelectionFault> {
         // A bare parse would also take "+3".
         let plain = !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit());
         let parsed = if plain { digits.parse().ok() } else { None };
-        parsed.ok_or_else(|| SelectionFault::NotANumber {
-            part: part.to_owned(),
-        })
+        parsed.ok_or_else(|| SelectionFault::NotANumber { part: part.to_owned() })
     };
     let Some((start, end)) = part.split_once("..") else {
         return number(part).map(Part::One);
     };
-    let start = if start.trim().is_empty() {
-        0
-    } else {
-        number(start)?
-    };
+    let start = if start.trim().is_empty() { 0 } else { number(start)? };
     if end.trim().is_empty() {
         return Ok(Part::Range { start, end: None });
     }
@@ -117,8 +100,5 @@ fn parse_part(part: &str) -> Result<Part, SelectionFault> {
     if end <= start {
         return Err(SelectionFault::Reversed { start, end });
     }
-    Ok(Part::Range {
-        start,
-        end: Some(end),
-    })
+    Ok(Part::Range { start, end: Some(end) })
 }

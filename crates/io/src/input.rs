@@ -23,23 +23,14 @@ pub struct InputFile {
 /// changes afterwards.
 pub(crate) fn read_input(path: &Path) -> Result<(Vec<u8>, InputFile), Error> {
     let bytes = read_bytes(path)?;
-    let sha256 = Sha256::digest(&bytes)
-        .iter()
-        .map(|byte| format!("{byte:02x}"))
-        .collect();
-    let record = InputFile {
-        path: path.to_path_buf(),
-        sha256,
-    };
+    let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
+    let record = InputFile { path: path.to_path_buf(), sha256 };
     Ok((bytes, record))
 }
 
 /// Reads a regular file: a folder, a pipe or a device is refused, so reading always ends.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
-    let failure = |fault| Error::File {
-        path: path.to_path_buf(),
-        fault,
-    };
+    let failure = |fault| Error::File { path: path.to_path_buf(), fault };
     let metadata = fs::metadata(path).map_err(|source| failure(file_fault(source)))?;
     if metadata.is_dir() {
         return Err(failure(FileFault::IsFolder));

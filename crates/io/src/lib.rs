@@ -40,8 +40,8 @@ mod velocity;
 pub use array::{read_integers, read_reals, read_vectors};
 pub use dataset::{Boundary, DataSet, YAxis};
 pub use error::{
-    Error, FileFault, FormatFault, OutputFault, SelectionFault, SettingFault, ShapeFault,
-    TableFault, TomlFault, ValueFault,
+    Error, FileFault, FormatFault, OutputFault, SelectionFault, SettingFault, ShapeFault, TableFault,
+    TomlFault, ValueFault,
 };
 pub use frames::FrameSelection;
 pub use input::InputFile;

@@ -43,11 +43,7 @@ impl Noise {
 
     pub(crate) fn check(self, key: &'static str) -> Result<(), SettingFault> {
         let (Self::Absolute(value) | Self::Relative(value)) = self;
-        if value.is_finite() && value >= 0.0 {
-            Ok(())
-        } else {
-            Err(SettingFault::Negative { key, value })
-        }
+        if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(SettingFault::Negative { key, value }) }
     }
 }
 

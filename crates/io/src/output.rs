@@ -75,11 +75,7 @@ impl OutputDirectory {
             .prefix(".voronudge-")
             .tempdir_in(&directory.path)
             .map_err(|source| output_error(&directory.path, OutputFault::NotWritable(source)))?;
-        Ok(Self {
-            staging,
-            directory,
-            staged: Vec::new(),
-        })
+        Ok(Self { staging, directory, staged: Vec::new() })
     }
 
     /// The directory.
@@ -150,14 +146,7 @@ impl OutputDirectory {
         for (done, (name, target)) in self.staged.iter().zip(&targets).enumerate() {
             fs::rename(self.staging.path().join(name), target).map_err(|source| {
                 let total = targets.len();
-                output_error(
-                    target,
-                    OutputFault::Rename {
-                        source,
-                        done,
-                        total,
-                    },
-                )
+                output_error(target, OutputFault::Rename { source, done, total })
             })?;
         }
         Ok(targets)
@@ -177,15 +166,10 @@ impl OutputDirectory {
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), Error> {
         let target = self.directory.path.join(name);
-        let plain = Path::new(name)
-            .file_name()
-            .is_some_and(|plain| plain == name);
+        let plain = Path::new(name).file_name().is_some_and(|plain| plain == name);
         if !plain {
             let name = name.to_owned();
-            return Err(output_error(
-                &self.directory.path,
-                OutputFault::InvalidName { name },
-            ));
+            return Err(output_error(&self.directory.path, OutputFault::InvalidName { name }));
         }
         refuse_folder(&target)?;
         // A write that fails must not leave half a file to be committed.
@@ -220,8 +204,5 @@ fn refuse_folder(target: &Path) -> Result<(), Error> {
 }
 
 fn output_error(path: &Path, fault: OutputFault) -> Error {
-    Error::Output {
-        path: path.to_path_buf(),
-        fault,
-    }
+    Error::Output { path: path.to_path_buf(), fault }
 }

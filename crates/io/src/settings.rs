@@ -45,11 +45,7 @@ enum BoundaryName {
 
 impl Settings {
     pub(crate) fn parse(path: &Path, bytes: &[u8]) -> Result<Self, Error> {
-        let failure = |line, fault| Error::Toml {
-            path: path.to_path_buf(),
-            line,
-            fault,
-        };
+        let failure = |line, fault| Error::Toml { path: path.to_path_buf(), line, fault };
         let text = std::str::from_utf8(bytes).map_err(|_| failure(None, TomlFault::NotText))?;
         let line_of = |offset| line_number(text, offset);
         let table = DeTable::parse(text).map_err(|error| {
@@ -57,28 +53,18 @@ impl Settings {
             failure(line, TomlFault::Syntax(error.message().to_owned()))
         })?;
 
-        let mut settings = Self {
-            path: path.to_path_buf(),
-            ..Self::default()
-        };
+        let mut settings = Self { path: path.to_path_buf(), ..Self::default() };
         let mut entries: Vec<_> = table.get_ref().iter().collect();
         // The table is sorted by key; complaints should come in reading order.
         entries.sort_by_key(|(key, _)| key.span().start);
         for (key, value) in entries {
             let line = line_of(key.span().start);
-            settings
-                .take(key.get_ref(), value, line)
-                .map_err(|fault| failure(Some(line), fault))?;
+            settings.take(key.get_ref(), value, line).map_err(|fault| failure(Some(line), fault))?;
         }
         Ok(settings)
     }
 
-    fn take(
-        &mut self,
-        key: &str,
-        value: &Spanned<DeValue<'_>>,
-        line: u64,
-    ) -> Result<(), TomlFault> {
+    fn take(&mut self, key: &str, value: &Spanned<DeValue<'_>>, line: u64) -> Result<(), TomlFault> {
         let value = value.get_ref();
         match key {
             "boundary" => self.boundary = Some((boundary(value)?, line)),
@@ -94,10 +80,7 @@ impl Settings {
             "position_noise" => self.position_noise = Some(noise("position_noise", value)?),
             "velocity_noise" => self.velocity_noise = Some(noise("velocity_noise", value)?),
             _ => {
-                return Err(TomlFault::UnknownKey {
-                    key: key.to_owned(),
-                    known: KEYS,
-                });
+                return Err(TomlFault::UnknownKey { key: key.to_owned(), known: KEYS });
             }
         }
         Ok(())
@@ -116,9 +99,7 @@ impl Settings {
             (Some((BoundaryName::Periodic, _)), Some((lengths, _))) => {
                 Ok(Some(Boundary::Periodic { lengths }))
             }
-            (Some((BoundaryName::Periodic, line)), None) => {
-                Err(failure(line, SettingFault::MissingBox))
-            }
+            (Some((BoundaryName::Periodic, line)), None) => Err(failure(line, SettingFault::MissingBox)),
             (name, Some((_, line))) => {
                 let boundary = match name {
                     Some(_) => "open",
@@ -149,10 +130,7 @@ pub(crate) fn render(data: &DataSet) -> String {
     if data.unwrapped {
         lines.push("unwrapped = true".to_owned());
     }
-    for (key, noise) in [
-        ("position_noise", data.position_noise),
-        ("velocity_noise", data.velocity_noise),
-    ] {
+    for (key, noise) in [("position_noise", data.position_noise), ("velocity_noise", data.velocity_noise)] {
         match noise {
             Some(Noise::Absolute(value)) => lines.push(format!("{key} = {}", number(value))),
             Some(relative) => lines.push(format!("{key} = \"{relative}\"")),
@@ -176,11 +154,8 @@ fn boundary(value: &DeValue<'_>) -> Result<BoundaryName, TomlFault> {
 }
 
 fn lengths(value: &DeValue<'_>) -> Result<[f64; 2], TomlFault> {
-    let wrong = |found| TomlFault::WrongType {
-        key: "box",
-        found,
-        expected: "two lengths such as [20.0, 20.0]",
-    };
+    let wrong =
+        |found| TomlFault::WrongType { key: "box", found, expected: "two lengths such as [20.0, 20.0]" };
     let DeValue::Array(items) = value else {
         return Err(wrong(kind(value)));
     };
@@ -225,31 +200,23 @@ fn noise(key: &'static str, value: &DeValue<'_>) -> Result<Noise, TomlFault> {
 fn text<'a>(key: &'static str, value: &'a DeValue<'_>) -> Result<&'a str, TomlFault> {
     match value {
         DeValue::String(text) => Ok(text),
-        other => Err(TomlFault::WrongType {
-            key,
-            found: kind(other),
-            expected: "a text in quotation marks",
-        }),
+        other => Err(TomlFault::WrongType { key, found: kind(other), expected: "a text in quotation marks" }),
     }
 }
 
 fn truth(key: &'static str, value: &DeValue<'_>) -> Result<bool, TomlFault> {
     match value {
         DeValue::Boolean(truth) => Ok(*truth),
-        other => Err(TomlFault::WrongType {
-            key,
-            found: kind(other),
-            expected: "true or false",
-        }),
+        other => Err(TomlFault::WrongType { key, found: kind(other), expected: "true or false" }),
     }
 }
 
 fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(integer) => i64::from_str_radix(integer.as_str(), integer.radix())
-            .ok()
-            .map(|whole| whole as f64),
+        DeValue::Integer(integer) => {
+            i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
+        }
         _ => None,
     }
 }

@@ -72,9 +72,7 @@ impl Source {
         let settings = self.read_settings(&mut inputs)?;
         let boundary = match self.boundary {
             Some(boundary) => boundary,
-            None => settings
-                .boundary()?
-                .ok_or_else(|| self.missing_boundary())?,
+            None => settings.boundary()?.ok_or_else(|| self.missing_boundary())?,
         };
         let positions_path = self
             .file(self.positions.as_ref(), "positions.npy")
@@ -87,10 +85,7 @@ impl Source {
             velocities: None,
             labels: None,
             boundary,
-            frame_interval: self
-                .frame_interval
-                .or(settings.frame_interval)
-                .unwrap_or(1.0),
+            frame_interval: self.frame_interval.or(settings.frame_interval).unwrap_or(1.0),
             length_unit: first_text(&self.length_unit, settings.length_unit, "length"),
             time_unit: first_text(&self.time_unit, settings.time_unit, "time"),
             y_axis: self.y_axis.or(settings.y_axis).unwrap_or_default(),
@@ -126,10 +121,7 @@ impl Source {
         let Some(folder) = &self.folder else {
             return Ok(Settings::default());
         };
-        let failure = |fault| Error::File {
-            path: folder.clone(),
-            fault,
-        };
+        let failure = |fault| Error::File { path: folder.clone(), fault };
         let metadata = fs::metadata(folder).map_err(|source| failure(file_fault(source)))?;
         if !metadata.is_dir() {
             return Err(failure(FileFault::NotAFolder));
@@ -145,10 +137,7 @@ impl Source {
 
     fn missing_boundary(&self) -> Error {
         Error::Setting(SettingFault::MissingBoundary {
-            searched: self
-                .folder
-                .as_ref()
-                .map(|folder| folder.join("dataset.toml")),
+            searched: self.folder.as_ref().map(|folder| folder.join("dataset.toml")),
         })
     }
 
@@ -186,10 +175,7 @@ fn read_labels(path: &Path, data: &mut DataSet) -> Result<Array2<i64>, Error> {
     data.inputs.push(record);
     let labels = parse_integers(path, &bytes)?;
     let found = labels.shape().to_vec();
-    let failure = |fault| Error::Shape {
-        path: path.to_path_buf(),
-        fault,
-    };
+    let failure = |fault| Error::Shape { path: path.to_path_buf(), fault };
     let (frames, cells) = (data.frames(), data.cells());
     match found.as_slice() {
         [count] if *count == cells => {
@@ -199,17 +185,9 @@ fn read_labels(path: &Path, data: &mut DataSet) -> Result<Array2<i64>, Error> {
         }
         [_, _] => labels.into_dimensionality::<Ix2>().ok(),
         [_] => {
-            return Err(failure(ShapeFault::Mismatch {
-                found,
-                positions: data.positions.shape().to_vec(),
-            }));
+            return Err(failure(ShapeFault::Mismatch { found, positions: data.positions.shape().to_vec() }));
         }
         _ => None,
     }
-    .ok_or_else(|| {
-        failure(ShapeFault::Dimensions {
-            found,
-            expected: "(cells,) or (frames, cells)",
-        })
-    })
+    .ok_or_else(|| failure(ShapeFault::Dimensions { found, expected: "(cells,) or (frames, cells)" }))
 }

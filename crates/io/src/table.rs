@@ -38,11 +38,7 @@ pub(crate) fn read_spots(
     layout: Layout,
     names: &ColumnNames,
 ) -> Result<SpotTable, Error> {
-    let failure = |line, fault| Error::Table {
-        path: path.to_path_buf(),
-        line,
-        fault,
-    };
+    let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
     let text = decompress(bytes).map_err(|fault| failure(None, fault))?;
     parse(&text, layout, names).map_err(|(offset, fault)| {
         let line = offset.map(|offset| line_number(&text, offset));
@@ -54,10 +50,8 @@ pub(crate) fn read_spots(
 type Located = (Option<u64>, TableFault);
 
 fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, Located> {
-    let mut reader = csv::ReaderBuilder::new()
-        .has_headers(false)
-        .delimiter(delimiter(text))
-        .from_reader(text);
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).delimiter(delimiter(text)).from_reader(text);
     let mut rows = reader.byte_records();
     let header = match rows.next() {
         Some(row) => row.map_err(csv_fault)?,
@@ -66,14 +60,9 @@ fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, 
     if header.iter().all(|field| field.trim_ascii().is_empty()) {
         return Err((None, TableFault::Empty));
     }
-    let columns =
-        Columns::find(&header, layout, names).map_err(|fault| (offset_of(&header), fault))?;
+    let columns = Columns::find(&header, layout, names).map_err(|fault| (offset_of(&header), fault))?;
 
-    let mut table = SpotTable {
-        spots: Vec::new(),
-        untracked: 0,
-        length_unit: None,
-    };
+    let mut table = SpotTable { spots: Vec::new(), untracked: 0, length_unit: None };
     let mut extra_rows = match layout {
         Layout::TrackMate => EXTRA_HEADER_ROWS,
         Layout::Tracks => 0,
@@ -129,21 +118,15 @@ fn delimiter(text: &[u8]) -> u8 {
     };
     // Of equals max_by_key takes the last: the comma.
     let candidates = [b'\t', b';', b','];
-    candidates
-        .into_iter()
-        .max_by_key(|&candidate| count(candidate))
-        .unwrap_or(b',')
+    candidates.into_iter().max_by_key(|&candidate| count(candidate)).unwrap_or(b',')
 }
 
 fn csv_fault(error: csv::Error) -> Located {
     let offset = error.position().map(csv::Position::byte);
     let fault = match error.kind() {
-        csv::ErrorKind::UnequalLengths {
-            expected_len, len, ..
-        } => TableFault::FieldCount {
-            found: *len,
-            expected: *expected_len,
-        },
+        csv::ErrorKind::UnequalLengths { expected_len, len, .. } => {
+            TableFault::FieldCount { found: *len, expected: *expected_len }
+        }
         _ => TableFault::Unreadable(error.to_string()),
     };
     (offset, fault)

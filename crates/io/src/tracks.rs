@@ -101,8 +101,7 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     let (bytes, record) = read_input(path)?;
     dataset.inputs.push(record);
     let table = read_spots(path, &bytes, layout, &options.columns)?;
-    if let (None, None, Some(unit)) = (&options.length_unit, options.pixel_size, &table.length_unit)
-    {
+    if let (None, None, Some(unit)) = (&options.length_unit, options.pixel_size, &table.length_unit) {
         dataset.length_unit.clone_from(unit);
     }
     let tracks = Tracks::arrange(&table).map_err(|fault| Error::Table {
@@ -112,17 +111,9 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     })?;
 
     dataset.positions = tracks.positions * scale;
-    dataset.check_arrays(&ArrayNames {
-        positions: path,
-        velocities: path,
-        labels: path,
-    })?;
+    dataset.check_arrays(&ArrayNames { positions: path, velocities: path, labels: path })?;
     dataset.y_axis.turn(&mut dataset.positions);
-    Ok(Import {
-        dataset,
-        track_ids: tracks.ids,
-        summary: tracks.summary,
-    })
+    Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary })
 }
 
 /// The data set as far as the options know it.
@@ -131,8 +122,7 @@ fn describe(options: &ImportOptions) -> DataSet {
         Some(_) => "time",
         None => "frame",
     };
-    let or =
-        |given: &Option<String>, default: &str| given.clone().unwrap_or_else(|| default.to_owned());
+    let or = |given: &Option<String>, default: &str| given.clone().unwrap_or_else(|| default.to_owned());
     DataSet {
         positions: Array3::zeros((0, 0, 2)),
         velocities: None,
@@ -163,12 +153,7 @@ impl Tracks {
         let ids: Vec<i64> = ids.into_iter().collect();
         let bytes = 16 * frames as u64 * ids.len() as u64;
         if bytes > SIZE_LIMIT {
-            return Err(TableFault::TooLarge {
-                frames,
-                tracks: ids.len(),
-                bytes,
-                limit: SIZE_LIMIT,
-            });
+            return Err(TableFault::TooLarge { frames, tracks: ids.len(), bytes, limit: SIZE_LIMIT });
         }
         let cells: BTreeMap<i64, usize> = ids.iter().copied().zip(0..).collect();
         let mut positions = Array3::from_elem((frames, ids.len(), 2), f64::NAN);
@@ -193,11 +178,7 @@ impl Tracks {
             left_out_untracked: table.untracked,
             left_out_duplicate: duplicates,
         };
-        Ok(Self {
-            positions,
-            ids,
-            summary,
-        })
+        Ok(Self { positions, ids, summary })
     }
 }
 
@@ -210,10 +191,6 @@ fn frame_span(spots: &[Spot]) -> Result<(i64, usize), TableFault> {
     let count = last.abs_diff(first).saturating_add(1);
     match usize::try_from(count) {
         Ok(count) if count <= FRAME_LIMIT => Ok((first, count)),
-        _ => Err(TableFault::TooManyFrames {
-            first,
-            last,
-            limit: FRAME_LIMIT,
-        }),
+        _ => Err(TableFault::TooManyFrames { first, last, limit: FRAME_LIMIT }),
     }
 }

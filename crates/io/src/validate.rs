@@ -28,10 +28,7 @@ impl DataSet {
         check_extent(names.positions, self)?;
         let mismatch = |path: &Path, found: &[usize]| Error::Shape {
             path: path.to_path_buf(),
-            fault: ShapeFault::Mismatch {
-                found: found.to_vec(),
-                positions: self.positions.shape().to_vec(),
-            },
+            fault: ShapeFault::Mismatch { found: found.to_vec(), positions: self.positions.shape().to_vec() },
         };
         if let Some(velocities) = &self.velocities {
             if velocities.dim() != self.positions.dim() {
@@ -50,35 +47,19 @@ impl DataSet {
 
 /// A setting that must be finite and above zero.
 pub(crate) fn positive(key: &'static str, value: f64) -> Result<(), SettingFault> {
-    if value.is_finite() && value > 0.0 {
-        Ok(())
-    } else {
-        Err(SettingFault::NotPositive { key, value })
-    }
+    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(SettingFault::NotPositive { key, value }) }
 }
 
 fn check_shape(path: &Path, positions: &Array3<f64>) -> Result<(), Error> {
     let found = || positions.shape().to_vec();
     let (frames, cells, components) = positions.dim();
     let fault = match (frames, cells, components) {
-        (0, ..) => ShapeFault::Nothing {
-            found: found(),
-            axis: "frames",
-        },
-        (_, 0, _) => ShapeFault::Nothing {
-            found: found(),
-            axis: "cells",
-        },
+        (0, ..) => ShapeFault::Nothing { found: found(), axis: "frames" },
+        (_, 0, _) => ShapeFault::Nothing { found: found(), axis: "cells" },
         (.., 2) => return Ok(()),
-        _ => ShapeFault::NotPairs {
-            found: found(),
-            expected: "(frames, cells, 2)",
-        },
+        _ => ShapeFault::NotPairs { found: found(), expected: "(frames, cells, 2)" },
     };
-    Err(Error::Shape {
-        path: path.to_path_buf(),
-        fault,
-    })
+    Err(Error::Shape { path: path.to_path_buf(), fault })
 }
 
 /// Every vector is finite or absent as a whole.
@@ -103,13 +84,8 @@ fn check_vectors(path: &Path, vectors: &Array3<f64>) -> Result<(), Error> {
 fn check_distinct(path: &Path, data: &DataSet) -> Result<(), Error> {
     for (frame, rows) in data.positions.outer_iter().enumerate() {
         if let Some((first, second)) = coincident(rows) {
-            let fault = ValueFault::Duplicate {
-                frame,
-                first,
-                second,
-                x: rows[[first, 0]],
-                y: rows[[first, 1]],
-            };
+            let fault =
+                ValueFault::Duplicate { frame, first, second, x: rows[[first, 0]], y: rows[[first, 1]] };
             return Err(value_error(path, fault));
         }
     }
@@ -142,29 +118,18 @@ fn check_extent(path: &Path, data: &DataSet) -> Result<(), Error> {
     if data.unwrapped {
         return Ok(());
     }
-    let first = data
-        .positions
-        .outer_iter()
-        .enumerate()
-        .find(|(_, rows)| rows.iter().any(|value| !value.is_nan()));
+    let first =
+        data.positions.outer_iter().enumerate().find(|(_, rows)| rows.iter().any(|value| !value.is_nan()));
     let Some((frame, rows)) = first else {
         return Ok(());
     };
-    for (axis, (column, length)) in ['x', 'y']
-        .into_iter()
-        .zip(rows.axis_iter(Axis(1)).zip(lengths))
-    {
+    for (axis, (column, length)) in ['x', 'y'].into_iter().zip(rows.axis_iter(Axis(1)).zip(lengths)) {
         // min and max pass over NaN.
         let smallest = column.fold(f64::INFINITY, |least, &value| least.min(value));
         let largest = column.fold(f64::NEG_INFINITY, |most, &value| most.max(value));
         let extent = largest - smallest;
         if extent > EXTENT_LIMIT * length {
-            let fault = ValueFault::BoxTooSmall {
-                frame,
-                axis,
-                extent,
-                length,
-            };
+            let fault = ValueFault::BoxTooSmall { frame, axis, extent, length };
             return Err(value_error(path, fault));
         }
     }
@@ -172,8 +137,5 @@ fn check_extent(path: &Path, data: &DataSet) -> Result<(), Error> {
 }
 
 fn value_error(path: &Path, fault: ValueFault) -> Error {
-    Error::Value {
-        path: path.to_path_buf(),
-        fault,
-    }
+    Error::Value { path: path.to_path_buf(), fault }
 }

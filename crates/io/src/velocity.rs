@@ -46,11 +46,7 @@ pub fn derive_velocities(data: &DataSet, difference: Difference) -> Result<Array
     let (frames, cells, _) = data.positions.dim();
     let needed = difference.frames_needed();
     if frames < needed {
-        return Err(Error::TooFewFrames {
-            difference,
-            needed,
-            found: frames,
-        });
+        return Err(Error::TooFewFrames { difference, needed, found: frames });
     }
     let positions = &data.positions;
     let step = |from: usize, to: usize, cell: usize, axis: usize| {
@@ -61,25 +57,20 @@ pub fn derive_velocities(data: &DataSet, difference: Difference) -> Result<Array
         }
     };
     let interval = data.frame_interval;
-    Ok(Array3::from_shape_fn(
-        (frames, cells, 2),
-        |(frame, cell, axis)| {
-            let before = frame.checked_sub(1);
-            let after = Some(frame + 1).filter(|&next| next < frames);
-            match (difference, before, after) {
-                // Going through the present frame makes a cell absent there NaN by itself.
-                (Difference::Central, Some(before), Some(after)) => {
-                    let path = step(before, frame, cell, axis) + step(frame, after, cell, axis);
-                    path / (2.0 * interval)
-                }
-                (Difference::Forward, _, Some(after)) => step(frame, after, cell, axis) / interval,
-                (Difference::Backward, Some(before), _) => {
-                    step(before, frame, cell, axis) / interval
-                }
-                _ => f64::NAN,
+    Ok(Array3::from_shape_fn((frames, cells, 2), |(frame, cell, axis)| {
+        let before = frame.checked_sub(1);
+        let after = Some(frame + 1).filter(|&next| next < frames);
+        match (difference, before, after) {
+            // Going through the present frame makes a cell absent there NaN by itself.
+            (Difference::Central, Some(before), Some(after)) => {
+                let path = step(before, frame, cell, axis) + step(frame, after, cell, axis);
+                path / (2.0 * interval)
             }
-        },
-    ))
+            (Difference::Forward, _, Some(after)) => step(frame, after, cell, axis) / interval,
+            (Difference::Backward, Some(before), _) => step(before, frame, cell, axis) / interval,
+            _ => f64::NAN,
+        }
+    }))
 }
 
 /// The image of a displacement nearest to zero.

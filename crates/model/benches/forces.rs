@@ -2,6 +2,8 @@
 //!
 //! `RAYON_NUM_THREADS=1 cargo bench -p voronudge-model` for figures per cell on one core.
 
+#![allow(clippy::expect_used, reason = "a benchmark of fixed input")]
+
 use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;

@@ -162,6 +162,8 @@ pub struct Nmse {
     pub nudged: f64,
     /// Nudged parameters at the measured positions.
     pub un_nudged: f64,
+    /// What measurement noise alone makes of `un_nudged` and of the held-out error if the model is right.
+    pub noise_floor: f64,
     /// Cells predicted from a fit that did not see their velocities.
     pub cross_validated: Option<f64>,
     /// Standard error of `cross_validated` over its folds.
@@ -176,9 +178,9 @@ pub struct Nmse {
 pub enum MeanRemoved {
     /// None.
     None,
-    /// The mean over the used cells of each frame.
+    /// The median over the used cells of each frame, component by component.
     PerFrame,
-    /// The mean over the used cells of all frames.
+    /// The median over the used cells of all frames.
     Overall,
 }
 

@@ -77,10 +77,19 @@ impl DataSetArguments {
 
     /// The file that holds the positions, for messages.
     pub fn positions_file(&self) -> PathBuf {
-        match (&self.positions, &self.dataset) {
+        self.file(self.positions.as_ref(), "positions.npy")
+    }
+
+    /// The file that holds the velocities, for messages.
+    pub fn velocities_file(&self) -> PathBuf {
+        self.file(self.velocities.as_ref(), "velocities.npy")
+    }
+
+    fn file(&self, given: Option<&PathBuf>, name: &str) -> PathBuf {
+        match (given, &self.dataset) {
             (Some(file), _) => file.clone(),
-            (None, Some(folder)) => folder.join("positions.npy"),
-            (None, None) => PathBuf::from("positions.npy"),
+            (None, Some(folder)) => folder.join(name),
+            (None, None) => PathBuf::from(name),
         }
     }
 }

@@ -37,16 +37,17 @@ impl ParameterArguments {
         if let Some(file) = &self.parameters {
             parameters = read(file)?;
         }
-        for (slot, flag) in [
-            (&mut parameters.area_elasticity, self.K_A),
-            (&mut parameters.perimeter_elasticity, self.K_P),
-            (&mut parameters.preferred_perimeter, self.P_0),
-            (&mut parameters.preferred_area, self.A_0),
-            (&mut parameters.chirality, self.alpha),
+        for (name, slot, flag) in [
+            ("K_A", &mut parameters.area_elasticity, self.K_A),
+            ("K_P", &mut parameters.perimeter_elasticity, self.K_P),
+            ("P_0", &mut parameters.preferred_perimeter, self.P_0),
+            ("A_0", &mut parameters.preferred_area, self.A_0),
+            ("alpha", &mut parameters.chirality, self.alpha),
         ] {
             if let Some(value) = flag {
                 if !value.is_finite() {
-                    return Err(Failure::new(format!("a model parameter is {value}, but it must be finite")));
+                    return Err(Failure::new(format!("--{name} is {value}, but it must be finite"))
+                        .with_hint("leave it out for the default"));
                 }
                 *slot = value;
             }

@@ -61,11 +61,13 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut subjects: Vec<(String, Vec<Vector<f64>>, Domain)> = Vec::new();
     match &data {
         Some(data) => {
+            let file = arguments.data.positions_file();
             let frames = match &arguments.frames {
-                Some(selection) => selection.resolve(data.frames())?,
+                Some(selection) => selection
+                    .resolve(data.frames())
+                    .map_err(|error| Failure::from(error).at(file.display()))?,
                 None => vec![0],
             };
-            let file = arguments.data.positions_file();
             for frame in frames {
                 let name = format!("{}, frame {frame}", file.display());
                 subjects.push((name, Snapshot::new(data, frame).positions, domain(data)?));

@@ -96,7 +96,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let data = arguments.data.load()?;
     let parameters = arguments.parameters.resolve()?;
     let frames = match &arguments.frames {
-        Some(selection) => selection.resolve(data.frames())?,
+        Some(selection) => selection
+            .resolve(data.frames())
+            .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?,
         None => (0..data.frames()).collect(),
     };
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
@@ -108,7 +110,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
         let snapshot = Snapshot::new(&data, frame);
         let tessellation = Tessellation::new(&snapshot.positions, domain)
-            .map_err(|error| Failure::from(error).at(place()))?;
+            .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
         let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
         if index == 0 && arguments.jacobian {
             let matrix = jacobian(&tessellation, &snapshot.positions, &model);

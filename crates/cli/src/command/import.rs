@@ -32,10 +32,10 @@ struct TableArguments {
     /// The table.
     file: PathBuf,
     /// Length of a pixel: coordinates are multiplied by it.
-    #[arg(long, value_name = "LENGTH")]
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pixel_size: Option<f64>,
     /// Time between frames.
-    #[arg(long, value_name = "TIME")]
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     frame_interval: Option<f64>,
     /// Unit of length after scaling.
     #[arg(long, value_name = "UNIT")]
@@ -47,7 +47,7 @@ struct TableArguments {
     #[arg(long, value_name = "up|down")]
     y_axis: Option<YAxis>,
     /// Periodic box (default: an open field of view).
-    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"])]
+    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
     box_lengths: Option<Vec<f64>>,
     /// Name of the column with the track's number.
     #[arg(long, value_name = "NAME")]

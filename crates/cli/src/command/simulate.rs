@@ -40,6 +40,9 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
+/// Cells times frames that are kept in memory: 16 GB of positions and velocities.
+const LARGEST_RUN: usize = 500_000_000;
+
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
@@ -64,7 +67,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         _ => [(arguments.cells as f64).sqrt(); 2],
     };
     if arguments.cells == 0 {
-        return Err(Failure::new("--cells is 0, but at least one cell is needed"));
+        return Err(Failure::new("--cells is 0, but at least one cell is needed")
+            .with_hint("leave --cells out for 100 cells"));
+    }
+    if arguments.cells.checked_mul(arguments.frames.max(1)).is_none_or(|kept| kept > LARGEST_RUN) {
+        return Err(Failure::new(format!(
+            "--frames {} of --cells {} are more positions than the {LARGEST_RUN} that can be kept",
+            arguments.frames, arguments.cells
+        ))
+        .with_hint("keep fewer frames, or run fewer cells"));
     }
     let cell_box = PeriodicBox::new(lengths)?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;

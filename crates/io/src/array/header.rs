@@ -31,9 +31,8 @@ impl Header {
             .ok_or_else(|| malformed("no dictionary in braces"))?;
         let (mut item, mut fortran_order, mut shape) = (None, None, None);
         for entry in split_entries(inner) {
-            let (key, value) = entry
-                .split_once(':')
-                .ok_or_else(|| malformed(format!("\"{entry}\" has no colon")))?;
+            let (key, value) =
+                entry.split_once(':').ok_or_else(|| malformed(format!("\"{entry}\" has no colon")))?;
             let value = value.trim();
             match unquote(key.trim()) {
                 Some("descr") => item = Some(Item::parse(unquote(value).unwrap_or(value))?),
@@ -53,10 +52,9 @@ impl Header {
         let needed = self.length();
         match needed {
             Some(length) if length == found => Ok(()),
-            Some(length) if length < found => Err(FormatFault::Trailing {
-                shape: self.shape.clone(),
-                extra: found - length,
-            }),
+            Some(length) if length < found => {
+                Err(FormatFault::Trailing { shape: self.shape.clone(), extra: found - length })
+            }
             _ => Err(FormatFault::Truncated {
                 shape: self.shape.clone(),
                 item_type: self.item.name.clone(),
@@ -71,11 +69,7 @@ impl Header {
         if self.shape.contains(&0) {
             return Some(0);
         }
-        self.shape
-            .iter()
-            .try_fold(self.item.size as u64, |bytes, &length| {
-                bytes.checked_mul(length as u64)
-            })
+        self.shape.iter().try_fold(self.item.size as u64, |bytes, &length| bytes.checked_mul(length as u64))
     }
 }
 
@@ -89,10 +83,7 @@ fn split(file: &[u8]) -> Result<(&str, &[u8]), FormatFault> {
         let first = begin.to_vec();
         return Err(FormatFault::NotNpy { first });
     }
-    let cut = |needed: usize| FormatFault::HeaderCut {
-        needed: needed as u64,
-        found: file.len() as u64,
-    };
+    let cut = |needed: usize| FormatFault::HeaderCut { needed: needed as u64, found: file.len() as u64 };
     let rest = file.get(6..).unwrap_or_default();
     // Version 1 gives the length of the dictionary in two bytes, the later ones in four.
     let (start, length) = match rest {
@@ -134,9 +125,7 @@ fn split_entries(text: &str) -> Vec<&str> {
 }
 
 fn unquote(text: &str) -> Option<&str> {
-    ['\'', '"']
-        .into_iter()
-        .find_map(|quote| text.strip_prefix(quote)?.strip_suffix(quote))
+    ['\'', '"'].into_iter().find_map(|quote| text.strip_prefix(quote)?.strip_suffix(quote))
 }
 
 fn parse_flag(text: &str) -> Result<bool, FormatFault> {
@@ -149,10 +138,7 @@ fn parse_flag(text: &str) -> Result<bool, FormatFault> {
 
 fn parse_shape(text: &str) -> Result<Vec<usize>, FormatFault> {
     let bad = || malformed(format!("shape is {text}"));
-    let inner = text
-        .strip_prefix('(')
-        .and_then(|rest| rest.strip_suffix(')'))
-        .ok_or_else(bad)?;
+    let inner = text.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(bad)?;
     // Python 2 wrote long integers as 3L.
     split_entries(inner)
         .into_iter()
@@ -164,7 +150,5 @@ fn parse_shape(text: &str) -> Result<Vec<usize>, FormatFault> {
 }
 
 fn malformed(detail: impl Into<String>) -> FormatFault {
-    FormatFault::HeaderMalformed {
-        detail: detail.into(),
-    }
+    FormatFault::HeaderMalformed { detail: detail.into() }
 }

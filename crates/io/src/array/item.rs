@@ -32,10 +32,7 @@ enum ByteOrder {
 impl Item {
     /// Reads a type description such as `<f8`, `>i4` or `|u1`.
     pub(super) fn parse(name: &str) -> Result<Self, FormatFault> {
-        let unsupported = || FormatFault::UnsupportedType {
-            found: name.to_owned(),
-            needed: REALS,
-        };
+        let unsupported = || FormatFault::UnsupportedType { found: name.to_owned(), needed: REALS };
         let mut letters = name.chars();
         let order = match letters.next() {
             Some('<' | '|') => ByteOrder::Little,
@@ -55,21 +52,14 @@ impl Item {
             "u8" => (Kind::Unsigned, 8),
             _ => return Err(unsupported()),
         };
-        Ok(Self {
-            name: name.to_owned(),
-            kind,
-            size,
-            order,
-        })
+        Ok(Self { name: name.to_owned(), kind, size, order })
     }
 
     /// The elements as f64. Integers beyond 2^53 are rounded.
     pub(super) fn reals(&self, bytes: &[u8]) -> Vec<f64> {
         let words = bytes.chunks_exact(self.size).map(|word| self.word(word));
         match (self.kind, self.size) {
-            (Kind::Float, 4) => words
-                .map(|word| f64::from(f32::from_bits(word as u32)))
-                .collect(),
+            (Kind::Float, 4) => words.map(|word| f64::from(f32::from_bits(word as u32))).collect(),
             (Kind::Float, _) => words.map(f64::from_bits).collect(),
             (Kind::Signed, _) => words.map(|word| self.signed(word) as f64).collect(),
             (Kind::Unsigned, _) => words.map(|word| word as f64).collect(),
@@ -80,15 +70,10 @@ impl Item {
     pub(super) fn integers(&self, bytes: &[u8]) -> Result<Vec<i64>, FormatFault> {
         let words = bytes.chunks_exact(self.size).map(|word| self.word(word));
         match self.kind {
-            Kind::Float => Err(FormatFault::UnsupportedType {
-                found: self.name.clone(),
-                needed: INTEGERS,
-            }),
+            Kind::Float => Err(FormatFault::UnsupportedType { found: self.name.clone(), needed: INTEGERS }),
             Kind::Signed => Ok(words.map(|word| self.signed(word)).collect()),
             Kind::Unsigned => words
-                .map(|value| {
-                    i64::try_from(value).map_err(|_| FormatFault::IntegerTooLarge { value })
-                })
+                .map(|value| i64::try_from(value).map_err(|_| FormatFault::IntegerTooLarge { value }))
                 .collect(),
         }
     }

@@ -112,10 +112,7 @@ pub enum ShapeFault {
         expected: &'static str,
     },
     /// The last axis is not x, y.
-    #[error(
-        "has shape {}, expected {expected}: the last axis must hold x, y",
-        ShapeText(found)
-    )]
+    #[error("has shape {}, expected {expected}: the last axis must hold x, y", ShapeText(found))]
     NotPairs {
         /// The shape found.
         found: Vec<usize>,
@@ -131,11 +128,7 @@ pub enum ShapeFault {
         axis: &'static str,
     },
     /// The shape differs from that of the positions.
-    #[error(
-        "has shape {}, but the positions have shape {}",
-        ShapeText(found),
-        ShapeText(positions)
-    )]
+    #[error("has shape {}, but the positions have shape {}", ShapeText(found), ShapeText(positions))]
     Mismatch {
         /// The shape found.
         found: Vec<usize>,

@@ -96,10 +96,9 @@ impl OutputFault {
             Self::Rename { done: 0, .. } => {
                 Some("the earlier results are untouched; choose another --out".into())
             }
-            Self::Rename { .. } => Some(
-                "the directory now mixes new and earlier results; run again with another --out"
-                    .into(),
-            ),
+            Self::Rename { .. } => {
+                Some("the directory now mixes new and earlier results; run again with another --out".into())
+            }
         }
     }
 }
@@ -112,9 +111,7 @@ fn refusal(source: &io::Error) -> String {
         io::ErrorKind::StorageFull | io::ErrorKind::QuotaExceeded => {
             "free some space or choose an --out directory on another disk"
         }
-        io::ErrorKind::ReadOnlyFilesystem => {
-            "this disk is read-only; choose an --out directory elsewhere"
-        }
+        io::ErrorKind::ReadOnlyFilesystem => "this disk is read-only; choose an --out directory elsewhere",
         _ => "choose another --out directory",
     }
     .into()

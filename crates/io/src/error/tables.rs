@@ -95,9 +95,7 @@ impl TableFault {
                  for another table format use import tracks"
             }
             Self::FieldCount { .. } => "the row was probably cut; export the table again",
-            Self::NotANumber { text, .. } if text.contains(',') => {
-                "write decimal points, not decimal commas"
-            }
+            Self::NotANumber { text, .. } if text.contains(',') => "write decimal points, not decimal commas",
             Self::NotANumber { .. } => "correct or remove this row",
             Self::TooManyFrames { .. } => {
                 "is the frame column a time? name the column that counts images from zero"

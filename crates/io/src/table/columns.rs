@@ -52,30 +52,13 @@ pub(super) struct Columns {
 }
 
 impl Columns {
-    pub(super) fn find(
-        header: &ByteRecord,
-        layout: Layout,
-        names: &ColumnNames,
-    ) -> Result<Self, TableFault> {
+    pub(super) fn find(header: &ByteRecord, layout: Layout, names: &ColumnNames) -> Result<Self, TableFault> {
         const X: &[&str] = &["x", "position_x", "pos_x", "x_position", "centroid_x"];
         const Y: &[&str] = &["y", "position_y", "pos_y", "y_position", "centroid_y"];
         let (track, frame, x, y): (&[&str], &[&str], &[&str], &[&str]) = match layout {
-            Layout::TrackMate => (
-                &["track_id"],
-                &["frame"],
-                &["position_x", "x"],
-                &["position_y", "y"],
-            ),
+            Layout::TrackMate => (&["track_id"], &["frame"], &["position_x", "x"], &["position_y", "y"]),
             Layout::Tracks => (
-                &[
-                    "track_id",
-                    "track",
-                    "particle",
-                    "particle_id",
-                    "cell_id",
-                    "cell",
-                    "id",
-                ],
+                &["track_id", "track", "particle", "particle_id", "cell_id", "cell", "id"],
                 &["frame", "t", "time_index", "time_point"],
                 X,
                 Y,
@@ -99,15 +82,8 @@ impl Columns {
                 exact.or_else(like)
             });
             match index {
-                Some(index) => Ok(Column {
-                    index,
-                    name: found[index].clone(),
-                }),
-                None => Err(TableFault::MissingColumn {
-                    role,
-                    looked,
-                    found: found.clone(),
-                }),
+                Some(index) => Ok(Column { index, name: found[index].clone() }),
+                None => Err(TableFault::MissingColumn { role, looked, found: found.clone() }),
             }
         };
         Ok(Self {
@@ -120,9 +96,7 @@ impl Columns {
 
     /// Whether a row repeats names or units rather than giving a spot.
     pub(super) fn all_texts(&self, row: &ByteRecord) -> bool {
-        [&self.frame, &self.x, &self.y]
-            .iter()
-            .all(|column| column.text(row).parse::<f64>().is_err())
+        [&self.frame, &self.x, &self.y].iter().all(|column| column.text(row).parse::<f64>().is_err())
     }
 
     /// What a row has under x, where TrackMate's extra header rows put the unit of length.
@@ -176,18 +150,11 @@ impl Column {
     }
 
     fn fault(&self, text: &str, expected: &'static str) -> TableFault {
-        TableFault::NotANumber {
-            column: self.name.clone(),
-            text: text.to_owned(),
-            expected,
-        }
+        TableFault::NotANumber { column: self.name.clone(), text: text.to_owned(), expected }
     }
 }
 
 /// A column name without what people write differently.
 fn plain(name: &str) -> String {
-    name.chars()
-        .filter(|letter| !matches!(letter, ' ' | '_' | '-'))
-        .flat_map(char::to_lowercase)
-        .collect()
+    name.chars().filter(|letter| !matches!(letter, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
 }

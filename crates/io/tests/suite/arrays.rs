@@ -35,11 +35,7 @@ fn float64_written_elsewhere_is_read_exactly() {
     let path = scratch.write_array("a.npy", &array);
     let read = read_reals(&path).unwrap();
     assert_eq!(read.shape(), [2, 3, 2]);
-    assert!(
-        read.iter()
-            .zip(&array)
-            .all(|(a, b)| a.to_bits() == b.to_bits())
-    );
+    assert!(read.iter().zip(&array).all(|(a, b)| a.to_bits() == b.to_bits()));
 }
 
 #[test]
@@ -102,10 +98,7 @@ fn big_endian_floats_are_read() {
     let path = scratch.write("a.npy", npy(&dictionary(">f8", "False", "(3,)"), &body));
     let read = read_reals(&path).unwrap();
     assert_eq!((read[0], read[1], read[2].is_nan()), (1.5, -2e300, true));
-    let body: Vec<u8> = [1.5_f32, -2.25]
-        .iter()
-        .flat_map(|v| v.to_be_bytes())
-        .collect();
+    let body: Vec<u8> = [1.5_f32, -2.25].iter().flat_map(|v| v.to_be_bytes()).collect();
     let path = scratch.write("b.npy", npy(&dictionary(">f4", "False", "(2,)"), &body));
     assert_eq!(read_reals(&path).unwrap(), array![1.5, -2.25].into_dyn());
 }
@@ -136,16 +129,8 @@ fn one_frame_may_leave_out_its_axis() {
 fn missing_file_and_folder_are_told() {
     let scratch = Scratch::new();
     let missing = scratch.path("nowhere.npy");
-    assert_told(
-        read_reals(&missing),
-        &["nowhere.npy: no such file"],
-        "check the spelling",
-    );
-    assert_told(
-        read_reals(scratch.root()),
-        &["is a folder, a file is needed"],
-        "inside the folder",
-    );
+    assert_told(read_reals(&missing), &["nowhere.npy: no such file"], "check the spelling");
+    assert_told(read_reals(scratch.root()), &["is a folder, a file is needed"], "inside the folder");
 }
 
 #[test]
@@ -176,9 +161,7 @@ fn a_file_cut_anywhere_is_told_and_never_read() {
         let error = read_vectors(&path).unwrap_err();
         let message = error.to_string();
         assert!(
-            ["is empty", "ends inside its header", "is truncated"]
-                .iter()
-                .any(|fact| message.contains(fact)),
+            ["is empty", "ends inside its header", "is truncated"].iter().any(|fact| message.contains(fact)),
             "{length}: {message}"
         );
         assert!(error.hint().unwrap().contains("cut"));
@@ -199,11 +182,7 @@ fn a_huge_claim_is_refused_without_allocating() {
     let most = usize::MAX;
     let header = dictionary("<f8", "False", &format!("({most}, {most}, {most})"));
     let path = scratch.write("a.npy", npy(&header, &[0; 16]));
-    assert_told(
-        read_reals(&path),
-        &["more bytes than can be counted, but 16 bytes"],
-        "cut",
-    );
+    assert_told(read_reals(&path), &["more bytes than can be counted, but 16 bytes"], "cut");
     let header = dictionary("<f8", "False", &format!("(0, {most}, {most})"));
     let path = scratch.write("a.npy", npy(&header, &[]));
     assert_told(read_reals(&path), &["impossible shape"], "numpy.save");
@@ -216,11 +195,7 @@ fn a_huge_claim_is_refused_without_allocating() {
 fn bytes_behind_the_array_are_told() {
     let scratch = Scratch::new();
     let path = scratch.write("a.npy", npy(&dictionary("<f8", "False", "(2,)"), &[0; 19]));
-    assert_told(
-        read_reals(&path),
-        &["has 3 bytes behind the array of shape (2,)"],
-        "numpy.save",
-    );
+    assert_told(read_reals(&path), &["has 3 bytes behind the array of shape (2,)"], "numpy.save");
 }
 
 #[test]
@@ -252,30 +227,12 @@ fn malformed_headers_are_told() {
     let scratch = Scratch::new();
     for (header, fact) in [
         ("nonsense", "no dictionary"),
-        (
-            "{'descr': '<f8', 'fortran_order': False}",
-            "no entry 'shape'",
-        ),
-        (
-            "{'descr': '<f8', 'shape': (2,)}",
-            "no entry 'fortran_order'",
-        ),
-        (
-            "{'fortran_order': False, 'shape': (2,)}",
-            "no entry 'descr'",
-        ),
-        (
-            "{'descr': '<f8', 'fortran_order': 1, 'shape': (2,)}",
-            "fortran_order is 1",
-        ),
-        (
-            "{'descr': '<f8', 'fortran_order': False, 'shape': (-2,)}",
-            "shape is (-2,)",
-        ),
-        (
-            "{'descr': '<f8', 'fortran_order': False, 'shape': 2}",
-            "shape is 2",
-        ),
+        ("{'descr': '<f8', 'fortran_order': False}", "no entry 'shape'"),
+        ("{'descr': '<f8', 'shape': (2,)}", "no entry 'fortran_order'"),
+        ("{'fortran_order': False, 'shape': (2,)}", "no entry 'descr'"),
+        ("{'descr': '<f8', 'fortran_order': 1, 'shape': (2,)}", "fortran_order is 1"),
+        ("{'descr': '<f8', 'fortran_order': False, 'shape': (-2,)}", "shape is (-2,)"),
+        ("{'descr': '<f8', 'fortran_order': False, 'shape': 2}", "shape is 2"),
         ("{'descr': '<f8', 'extra': 1}", "unknown entry \"'extra'\""),
         ("{'descr'}", "has no colon"),
     ] {
@@ -291,21 +248,12 @@ fn malformed_headers_are_told() {
 #[test]
 fn wrong_shapes_of_vectors_are_told_with_what_was_expected() {
     let scratch = Scratch::new();
-    let shape =
-        |lengths: &[usize]| scratch.write_array("a.npy", &ArrayD::<f64>::zeros(IxDyn(lengths)));
+    let shape = |lengths: &[usize]| scratch.write_array("a.npy", &ArrayD::<f64>::zeros(IxDyn(lengths)));
     let expected = "expected (cells, 2) or (frames, cells, 2)";
     let dimensions = "axes are frames, cells";
     for (lengths, facts, advice) in [
-        (
-            &[5][..],
-            &["shape (5,) with 1 dim", expected][..],
-            dimensions,
-        ),
-        (
-            &[1, 2, 3, 2],
-            &["(1, 2, 3, 2) with 4 dim", expected],
-            dimensions,
-        ),
+        (&[5][..], &["shape (5,) with 1 dim", expected][..], dimensions),
+        (&[1, 2, 3, 2], &["(1, 2, 3, 2) with 4 dim", expected], dimensions),
         (&[], &["shape () with 0 dim"], dimensions),
         (&[5, 4], &["(5, 4)", "last axis must hold x, y"], dimensions),
         (&[4, 5, 3], &["(4, 5, 3)", expected], "z, leave it out"),
@@ -327,9 +275,7 @@ fn random_bytes_never_break_the_reader() {
     for _ in 0..2000 {
         let mut bytes = whole.clone();
         for _ in 0..2 {
-            state = state
-                .wrapping_mul(6364136223846793005)
-                .wrapping_add(1442695040888963407);
+            state = state.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
             let place = (state >> 33) as usize % 128;
             bytes[place] = (state >> 56) as u8;
         }

@@ -10,11 +10,7 @@ const NAN: f64 = f64::NAN;
 const INF: f64 = f64::INFINITY;
 
 fn open_source(scratch: &Scratch) -> Source {
-    Source {
-        folder: Some(scratch.root().to_path_buf()),
-        boundary: Some(Boundary::Open),
-        ..Source::default()
-    }
+    Source { folder: Some(scratch.root().to_path_buf()), boundary: Some(Boundary::Open), ..Source::default() }
 }
 
 /// Loads one array of positions in an open field of view.
@@ -25,9 +21,7 @@ fn load_positions(positions: &Array3<f64>) -> Result<DataSet, Error> {
 }
 
 fn three_frames() -> Array3<f64> {
-    Array3::from_shape_fn((3, 4, 2), |(f, c, a)| {
-        1.5 * c as f64 + 0.125 * f as f64 + 0.75 * a as f64
-    })
+    Array3::from_shape_fn((3, 4, 2), |(f, c, a)| 1.5 * c as f64 + 0.125 * f as f64 + 0.75 * a as f64)
 }
 
 fn full_data() -> DataSet {
@@ -40,12 +34,8 @@ fn full_data() -> DataSet {
     DataSet {
         positions,
         velocities: Some(velocities),
-        labels: Some(Array2::from_shape_fn((3, 4), |(f, c)| {
-            f as i64 - 2 * c as i64
-        })),
-        boundary: Boundary::Periodic {
-            lengths: [10.0, 0.1 + 0.2 + 20.0],
-        },
+        labels: Some(Array2::from_shape_fn((3, 4), |(f, c)| f as i64 - 2 * c as i64)),
+        boundary: Boundary::Periodic { lengths: [10.0, 0.1 + 0.2 + 20.0] },
         frame_interval: 1.0 / 3.0,
         length_unit: "\"µm\" \\ '".into(),
         time_unit: "line\nbreak".into(),
@@ -69,10 +59,7 @@ fn round_trip(data: &DataSet) -> DataSet {
     let mut out = OutputDirectory::create(&path).unwrap();
     data.save(&mut out).unwrap();
     out.commit().unwrap();
-    let source = Source {
-        folder: Some(path),
-        ..Source::default()
-    };
+    let source = Source { folder: Some(path), ..Source::default() };
     source.load().unwrap()
 }
 
@@ -132,14 +119,8 @@ fn y_down_is_turned_up_in_memory_and_down_on_disk() {
     let scratch = Scratch::new();
     scratch.write_array("positions.npy", &array![[1.0, 2.0], [3.0, 0.0]]);
     scratch.write_array("velocities.npy", &array![[5.0, 6.0], [NAN, NAN]]);
-    scratch.write(
-        "dataset.toml",
-        "boundary = \"periodic\"\nbox = [9, 9]\ny_axis = \"down\"",
-    );
-    let source = Source {
-        folder: Some(scratch.root().to_path_buf()),
-        ..Source::default()
-    };
+    scratch.write("dataset.toml", "boundary = \"periodic\"\nbox = [9, 9]\ny_axis = \"down\"");
+    let source = Source { folder: Some(scratch.root().to_path_buf()), ..Source::default() };
     let data = source.load().unwrap();
     assert_eq!(data.positions, array![[[1.0, -2.0], [3.0, 0.0]]]);
     assert!(data.positions[[0, 1, 1]].is_sign_positive());
@@ -169,10 +150,7 @@ fn files_one_by_one_need_no_folder() {
     assert_eq!((data.frames(), data.cells()), (3, 4));
     assert_eq!(data.velocities, Some(three_frames()));
     let row = [1, 2, 3, 4];
-    assert_eq!(
-        data.labels,
-        Some(Array2::from_shape_fn((3, 4), |(_, c)| row[c]))
-    );
+    assert_eq!(data.labels, Some(Array2::from_shape_fn((3, 4), |(_, c)| row[c])));
     let paths: Vec<_> = data.inputs.iter().map(|input| input.path.clone()).collect();
     assert_eq!(paths, [positions, velocities, labels]);
 }
@@ -182,10 +160,7 @@ fn a_file_flag_wins_over_the_folder() {
     let scratch = Scratch::new();
     scratch.write_array("positions.npy", &three_frames());
     let other = scratch.write_array("other.npy", &(three_frames() + 1.0));
-    let source = Source {
-        positions: Some(other),
-        ..open_source(&scratch)
-    };
+    let source = Source { positions: Some(other), ..open_source(&scratch) };
     assert_eq!(source.load().unwrap().positions, three_frames() + 1.0);
 }
 
@@ -208,53 +183,27 @@ fn a_folder_without_settings_needs_a_boundary() {
     let scratch = Scratch::new();
     scratch.write_array("positions.npy", &three_frames());
     assert!(open_source(&scratch).load().is_ok());
-    let source = Source {
-        boundary: None,
-        ..open_source(&scratch)
-    };
+    let source = Source { boundary: None, ..open_source(&scratch) };
     let facts = ["the boundary is not given: neither by", "dataset.toml"];
     assert_told(source.load(), &facts, "--open or --box");
-    let source = Source {
-        positions: Some(scratch.path("positions.npy")),
-        ..Source::default()
-    };
+    let source = Source { positions: Some(scratch.path("positions.npy")), ..Source::default() };
     assert_told(source.load(), &["the boundary is not given"], "--open");
 }
 
 #[test]
 fn missing_places_are_told() {
     let scratch = Scratch::new();
-    let source = Source {
-        folder: Some(scratch.path("nowhere")),
-        ..open_source(&scratch)
-    };
-    assert_told(
-        source.load(),
-        &["nowhere: no such file or folder"],
-        "spelling",
-    );
+    let source = Source { folder: Some(scratch.path("nowhere")), ..open_source(&scratch) };
+    assert_told(source.load(), &["nowhere: no such file or folder"], "spelling");
     let facts = ["positions.npy: no such file"];
     assert_told(open_source(&scratch).load(), &facts, "positions.npy");
-    let source = Source {
-        boundary: Some(Boundary::Open),
-        ..Source::default()
-    };
-    assert_told(
-        source.load(),
-        &["no positions are given"],
-        "--positions FILE",
-    );
+    let source = Source { boundary: Some(Boundary::Open), ..Source::default() };
+    assert_told(source.load(), &["no positions are given"], "--positions FILE");
     let file = scratch.write_array("positions.npy", &three_frames());
-    let source = Source {
-        folder: Some(file),
-        ..open_source(&scratch)
-    };
+    let source = Source { folder: Some(file), ..open_source(&scratch) };
     let facts = ["positions.npy: is a file, a data set folder is needed"];
     assert_told(source.load(), &facts, "--positions FILE");
-    let source = Source {
-        velocities: Some(scratch.path("v.npy")),
-        ..open_source(&scratch)
-    };
+    let source = Source { velocities: Some(scratch.path("v.npy")), ..open_source(&scratch) };
     assert_told(source.load(), &["v.npy: no such file"], "spelling");
 }
 
@@ -273,11 +222,7 @@ fn infinities_are_told_with_frame_and_cell() {
         positions[[2, 3, 0]] = x;
         positions[[2, 3, 1]] = y;
         let fact = format!("frame 2, cell 3: infinite value ({x}, {y})");
-        assert_told(
-            load_positions(&positions),
-            &["positions.npy", &fact],
-            "NaN in both",
-        );
+        assert_told(load_positions(&positions), &["positions.npy", &fact], "NaN in both");
     }
     let scratch = Scratch::new();
     scratch.write_array("positions.npy", &array![[1.0, 2.0], [3.0, 4.0]]);
@@ -316,10 +261,7 @@ fn velocities_must_have_the_shape_of_the_positions() {
     let scratch = Scratch::new();
     scratch.write_array("positions.npy", &three_frames());
     scratch.write_array("velocities.npy", &array![[1.0, 2.0], [3.0, 4.0]]);
-    let facts = [
-        "velocities.npy: has shape (1, 2, 2)",
-        "positions have shape (3, 4, 2)",
-    ];
+    let facts = ["velocities.npy: has shape (1, 2, 2)", "positions have shape (3, 4, 2)"];
     assert_told(open_source(&scratch).load(), &facts, "same cell");
 }
 
@@ -334,19 +276,12 @@ fn labels_must_count_the_cells() {
     let labels = Array2::from_shape_fn((3, 4), |(f, c)| (10 * f + c) as i64);
     let data = load(labels.clone().into_dyn()).unwrap();
     assert_eq!(data.labels, Some(labels));
-    let facts = [
-        "labels.npy: has shape (5,)",
-        "positions have shape (3, 4, 2)",
-    ];
+    let facts = ["labels.npy: has shape (5,)", "positions have shape (3, 4, 2)"];
     assert_told(load(array![1, 2, 3, 4, 5].into_dyn()), &facts, "same cell");
     let facts = ["labels.npy: has shape (4, 3)", "(3, 4, 2)"];
     assert_told(load(Array2::zeros((4, 3)).into_dyn()), &facts, "same cell");
     let facts = ["(3, 4, 1) with 3 dimensions, expected (cells,) or (frames, cells)"];
-    assert_told(
-        load(Array3::zeros((3, 4, 1)).into_dyn()),
-        &facts,
-        "axes are",
-    );
+    assert_told(load(Array3::zeros((3, 4, 1)).into_dyn()), &facts, "axes are");
     scratch.write_array("labels.npy", &array![1.0, 2.0, 3.0, 4.0]);
     let facts = ["labels.npy", "type <f8, integers"];
     assert_told(open_source(&scratch).load(), &facts, "int64");
@@ -359,18 +294,11 @@ fn a_box_that_cannot_be_right_is_told() {
     let positions = array![[[NAN, NAN], [NAN, NAN]], [[0.0, -1.0], [3.0, 15.0]]];
     scratch.write_array("positions.npy", &positions);
     let load = |lengths, unwrapped| {
-        let source = Source {
-            boundary: Some(Boundary::Periodic { lengths }),
-            unwrapped,
-            ..open_source(&scratch)
-        };
+        let source =
+            Source { boundary: Some(Boundary::Periodic { lengths }), unwrapped, ..open_source(&scratch) };
         source.load()
     };
-    let facts = [
-        "frame 1: the box is too small",
-        "extend over 16 along y",
-        "length is 10",
-    ];
+    let facts = ["frame 1: the box is too small", "extend over 16 along y", "length is 10"];
     assert_told(load([10.0, 10.0], None), &facts, "--unwrapped");
     let facts = ["extend over 3 along x", "box length is 1.5"];
     assert_told(load([1.5, 20.0], None), &facts, "unwrapped = true");

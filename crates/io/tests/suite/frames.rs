@@ -54,11 +54,7 @@ fn what_is_not_a_selection_is_told() {
 #[test]
 fn ranges_without_frames_are_told() {
     assert_told(select("9..4", 20), &["range 9..4 holds no frame"], "4..9");
-    assert_told(
-        select("4..4", 20),
-        &["range 4..4 holds no"],
-        "alone write 4",
-    );
+    assert_told(select("4..4", 20), &["range 4..4 holds no"], "alone write 4");
 }
 
 #[test]

@@ -40,11 +40,7 @@ impl Scratch {
     }
 
     /// Writes an array with ndarray-npy, which is not what the crate reads with.
-    fn write_array<A: WritableElement, D: Dimension>(
-        &self,
-        name: &str,
-        array: &Array<A, D>,
-    ) -> PathBuf {
+    fn write_array<A: WritableElement, D: Dimension>(&self, name: &str, array: &Array<A, D>) -> PathBuf {
         let path = self.path(name);
         write_npy(&path, array).unwrap();
         path

@@ -8,10 +8,8 @@ use voronudge_io::{OutputDirectory, read_integers, read_reals};
 use crate::{Scratch, assert_told};
 
 fn names(path: &std::path::Path) -> Vec<String> {
-    let mut names: Vec<String> = fs::read_dir(path)
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-        .collect();
+    let mut names: Vec<String> =
+        fs::read_dir(path).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
     names.sort();
     names
 }
@@ -23,21 +21,14 @@ fn results_appear_at_the_commit_and_read_back() {
     let mut out = OutputDirectory::create(&path).unwrap();
     let reals = array![[1.5, f64::MIN_POSITIVE], [-0.0, 1e300]];
     out.write_array("reals.npy", reals.view()).unwrap();
-    out.write_integers("integers.npy", array![1, -2, i64::MAX].view())
-        .unwrap();
+    out.write_integers("integers.npy", array![1, -2, i64::MAX].view()).unwrap();
     out.write_text("note.txt", "µm").unwrap();
     out.write_bytes("raw.bin", &[0, 255]).unwrap();
-    assert_eq!(
-        out.staged(),
-        ["reals.npy", "integers.npy", "note.txt", "raw.bin"]
-    );
+    assert_eq!(out.staged(), ["reals.npy", "integers.npy", "note.txt", "raw.bin"]);
     assert!(!path.join("reals.npy").exists());
     let written = out.commit().unwrap();
     assert_eq!(written[0], path.join("reals.npy"));
-    assert_eq!(
-        names(&path),
-        ["integers.npy", "note.txt", "raw.bin", "reals.npy"]
-    );
+    assert_eq!(names(&path), ["integers.npy", "note.txt", "raw.bin", "reals.npy"]);
     assert_eq!(read_reals(&written[0]).unwrap(), reals.into_dyn());
     let integers = read_integers(&written[1]).unwrap();
     assert_eq!(integers, array![1, -2, i64::MAX].into_dyn());
@@ -58,10 +49,7 @@ fn views_of_any_memory_order_read_back() {
     let strided = standard.slice_axis(ndarray::Axis(2), every_second);
     out.write_array("s.npy", strided).unwrap();
     let written = out.commit().unwrap();
-    assert_eq!(
-        read_reals(&written[0]).unwrap(),
-        standard.clone().into_dyn()
-    );
+    assert_eq!(read_reals(&written[0]).unwrap(), standard.clone().into_dyn());
     assert_eq!(read_reals(&written[1]).unwrap(), standard.t().into_dyn());
     assert_eq!(read_reals(&written[2]).unwrap(), strided.into_dyn());
 }

@@ -30,10 +30,7 @@ fn every_key_is_read() {
     .unwrap();
     assert_eq!(data.boundary, Boundary::Periodic { lengths: LENGTHS });
     assert_eq!(data.frame_interval, 5.0);
-    assert_eq!(
-        (data.length_unit.as_str(), data.time_unit.as_str()),
-        ("µm", "min")
-    );
+    assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("µm", "min"));
     assert_eq!((data.y_axis, data.unwrapped), (YAxis::Down, true));
     assert_eq!(data.position_noise, Some(Noise::Relative(0.02)));
     assert_eq!(data.velocity_noise, Some(Noise::Absolute(0.1)));
@@ -43,18 +40,14 @@ fn every_key_is_read() {
 fn all_but_the_boundary_has_a_default() {
     let data = load("boundary = \"open\"").unwrap();
     assert_eq!((data.boundary, data.frame_interval), (Boundary::Open, 1.0));
-    assert_eq!(
-        (data.length_unit.as_str(), data.time_unit.as_str()),
-        ("length", "time")
-    );
+    assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("length", "time"));
     assert_eq!((data.y_axis, data.unwrapped), (YAxis::Up, false));
     assert_eq!((data.position_noise, data.velocity_noise), (None, None));
 }
 
 #[test]
 fn a_flag_wins_over_the_file() {
-    let toml =
-        b"boundary = \"open\"\nframe_interval = 5\nlength_unit = \"um\"\ntime_unit = \"h\"\n\
+    let toml = b"boundary = \"open\"\nframe_interval = 5\nlength_unit = \"um\"\ntime_unit = \"h\"\n\
         y_axis = \"down\"\nunwrapped = true\nposition_noise = 1\nvelocity_noise = 2";
     let flags = Source {
         boundary: Some(Boundary::Periodic { lengths: LENGTHS }),
@@ -70,10 +63,7 @@ fn a_flag_wins_over_the_file() {
     let data = load_with(toml, flags).unwrap();
     assert_eq!(data.boundary, Boundary::Periodic { lengths: LENGTHS });
     assert_eq!(data.frame_interval, 7.0);
-    assert_eq!(
-        (data.length_unit.as_str(), data.time_unit.as_str()),
-        ("px", "s")
-    );
+    assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("px", "s"));
     assert_eq!((data.y_axis, data.unwrapped), (YAxis::Up, false));
     assert_eq!(data.position_noise, Some(Noise::Absolute(3.0)));
     assert_eq!(data.velocity_noise, Some(Noise::Relative(0.5)));
@@ -81,10 +71,7 @@ fn a_flag_wins_over_the_file() {
 
 #[test]
 fn a_boundary_flag_mends_an_incomplete_file() {
-    let flags = Source {
-        boundary: Some(Boundary::Open),
-        ..Source::default()
-    };
+    let flags = Source { boundary: Some(Boundary::Open), ..Source::default() };
     assert!(load_with(b"boundary = \"periodic\"", flags).is_ok());
 }
 
@@ -92,32 +79,16 @@ fn a_boundary_flag_mends_an_incomplete_file() {
 fn unknown_keys_are_told_with_line_and_known_keys() {
     let facts = ["dataset.toml, line 3: unknown key \"frame_intervall\""];
     let toml = "boundary = \"open\"\n\nframe_intervall = 2\n";
-    assert_told(
-        load(toml),
-        &facts,
-        "boundary, box, frame_interval, length_unit",
-    );
+    assert_told(load(toml), &facts, "boundary, box, frame_interval, length_unit");
     let facts = ["dataset.toml, line 2: unknown key \"microscope\""];
-    assert_told(
-        load("boundary = \"open\"\n[microscope]\n"),
-        &facts,
-        "y_axis",
-    );
+    assert_told(load("boundary = \"open\"\n[microscope]\n"), &facts, "y_axis");
 }
 
 #[test]
 fn malformed_toml_is_told_with_its_line() {
     let facts = ["dataset.toml, line 2: malformed TOML"];
-    assert_told(
-        load("boundary = \"open\"\ny_axis = up\n"),
-        &facts,
-        "quotation",
-    );
-    assert_told(
-        load("y_axis = \"up\"\ny_axis = \"up\"\n"),
-        &facts,
-        "key = value",
-    );
+    assert_told(load("boundary = \"open\"\ny_axis = up\n"), &facts, "quotation");
+    assert_told(load("y_axis = \"up\"\ny_axis = \"up\"\n"), &facts, "key = value");
     assert_told(load("y_axis = \"up\"\nbox = [1, 2"), &facts, "key = value");
     let not_text = load_with(b"\xff\xfe", Source::default());
     assert_told(not_text, &["dataset.toml: is not UTF-8 text"], "UTF-8");
@@ -130,23 +101,11 @@ fn wrong_types_are_told() {
         ("box = 3.0", "box is a number, expected two lengths"),
         ("box = [1, 2, 3]", "box is an array of another length"),
         ("box = [1, \"2\"]", "box is an array with other things"),
-        (
-            "frame_interval = \"2\"",
-            "frame_interval is a text, expected a number",
-        ),
-        (
-            "length_unit = true",
-            "length_unit is true or false, expected a text",
-        ),
+        ("frame_interval = \"2\"", "frame_interval is a text, expected a number"),
+        ("length_unit = true", "length_unit is true or false, expected a text"),
         ("y_axis = 1979-05-27", "y_axis is a date, expected a text"),
-        (
-            "unwrapped = \"yes\"",
-            "unwrapped is a text, expected true or false",
-        ),
-        (
-            "position_noise = [1]",
-            "position_noise is an array, expected a number",
-        ),
+        ("unwrapped = \"yes\"", "unwrapped is a text, expected true or false"),
+        ("position_noise = [1]", "position_noise is an array, expected a number"),
         ("velocity_noise = {a = 1}", "velocity_noise is a table"),
     ] {
         assert_told(load(entry), &["dataset.toml, line 1", fact], "");
@@ -162,35 +121,16 @@ fn impossible_values_are_told() {
         ("box = [inf, 2]", ["box length is inf", positive]),
         ("box = [2, nan]", ["box length is NaN", positive]),
         ("frame_interval = 0", ["frame_interval is 0", positive]),
-        (
-            "frame_interval = -inf",
-            ["frame_interval is -inf", positive],
-        ),
-        (
-            "boundary = \"closed\"",
-            ["boundary is \"closed\"", "\"periodic\" or \"open\""],
-        ),
-        (
-            "y_axis = \"Down\"",
-            ["y_axis is \"Down\"", "\"up\" or \"down\""],
-        ),
-        (
-            "position_noise = \"two\"",
-            ["position_noise is \"two\"", "\"2 %\""],
-        ),
+        ("frame_interval = -inf", ["frame_interval is -inf", positive]),
+        ("boundary = \"closed\"", ["boundary is \"closed\"", "\"periodic\" or \"open\""]),
+        ("y_axis = \"Down\"", ["y_axis is \"Down\"", "\"up\" or \"down\""]),
+        ("position_noise = \"two\"", ["position_noise is \"two\"", "\"2 %\""]),
     ] {
         let facts = ["dataset.toml, line 1", facts[0], facts[1]];
         assert_told(load(entry), &facts, "");
     }
-    for entry in [
-        "velocity_noise = -1",
-        "velocity_noise = \"-1 %\"",
-        "velocity_noise = nan",
-    ] {
-        let facts = [
-            "line 1: velocity_noise is",
-            "must be finite and not negative",
-        ];
+    for entry in ["velocity_noise = -1", "velocity_noise = \"-1 %\"", "velocity_noise = nan"] {
+        let facts = ["line 1: velocity_noise is", "must be finite and not negative"];
         assert_told(load(entry), &facts, "leave it out");
     }
 }
@@ -200,11 +140,7 @@ fn boundary_and_box_must_agree() {
     let facts = ["line 1: boundary is \"periodic\" but no box is given"];
     assert_told(load("boundary = \"periodic\""), &facts, "box = [Lx, Ly]");
     let facts = ["line 2: a box is given but the boundary is open"];
-    assert_told(
-        load("boundary = \"open\"\nbox = [9, 9]"),
-        &facts,
-        "remove box",
-    );
+    assert_told(load("boundary = \"open\"\nbox = [9, 9]"), &facts, "remove box");
     let facts = ["line 1: a box is given but the boundary is not given"];
     assert_told(load("box = [9, 9]"), &facts, "boundary = \"periodic\"");
 }
@@ -219,20 +155,11 @@ fn a_missing_boundary_is_told() {
 fn impossible_flags_are_told() {
     let flag = |source| load_with(b"boundary = \"open\"", source);
     let lengths = [f64::NAN, 1.0];
-    let source = Source {
-        boundary: Some(Boundary::Periodic { lengths }),
-        ..Source::default()
-    };
+    let source = Source { boundary: Some(Boundary::Periodic { lengths }), ..Source::default() };
     assert_told(flag(source), &["box length is NaN"], "");
-    let source = Source {
-        frame_interval: Some(0.0),
-        ..Source::default()
-    };
+    let source = Source { frame_interval: Some(0.0), ..Source::default() };
     assert_told(flag(source), &["frame_interval is 0"], "");
-    let source = Source {
-        position_noise: Some(Noise::Relative(-0.1)),
-        ..Source::default()
-    };
+    let source = Source { position_noise: Some(Noise::Relative(-0.1)), ..Source::default() };
     assert_told(flag(source), &["position_noise is -0.1"], "leave it out");
 }
 
@@ -242,11 +169,7 @@ fn noise_reads_its_own_text_exactly() {
     assert_eq!(" 1.5e1 % ".parse::<Noise>().unwrap(), Noise::Relative(0.15));
     assert_eq!("0".parse::<Noise>().unwrap(), Noise::Absolute(0.0));
     assert_eq!(Noise::Relative(0.02).to_string(), "2 %");
-    assert_eq!(
-        Noise::Relative(0.07).to_string(),
-        "7 %",
-        "not 7.000000000000001 %"
-    );
+    assert_eq!(Noise::Relative(0.07).to_string(), "7 %", "not 7.000000000000001 %");
     for bad in ["", "%", "2 percent", "2 % %", "0x1"] {
         let facts = ["noise is", "expected a number"];
         assert_told(bad.parse::<Noise>(), &facts, "");
@@ -258,11 +181,7 @@ fn noise_reads_its_own_text_exactly() {
             Noise::Relative(step as f64 * 1e-320),
             Noise::Absolute((step as f64).exp2().min(f64::MAX)),
         ] {
-            assert_eq!(
-                noise.to_string().parse::<Noise>().unwrap(),
-                noise,
-                "{noise}"
-            );
+            assert_eq!(noise.to_string().parse::<Noise>().unwrap(), noise, "{noise}");
         }
     }
 }

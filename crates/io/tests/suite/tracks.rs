@@ -29,11 +29,7 @@ fn tracks(text: impl AsRef<[u8]>) -> Result<Import, Error> {
 
 fn tracks_with(text: impl AsRef<[u8]>, columns: ColumnNames) -> Result<Import, Error> {
     let scratch = Scratch::new();
-    let options = ImportOptions {
-        columns,
-        y_axis: Some(YAxis::Up),
-        ..ImportOptions::default()
-    };
+    let options = ImportOptions { columns, y_axis: Some(YAxis::Up), ..ImportOptions::default() };
     import_tracks(&scratch.write("tracks.csv", text), &options)
 }
 
@@ -48,10 +44,7 @@ fn assert_positions(import: &Import, expected: &ndarray::Array3<f64>) {
     let positions = &import.dataset.positions;
     assert_eq!(positions.dim(), expected.dim());
     for (found, wanted) in positions.iter().zip(expected) {
-        assert!(
-            found == wanted || (found.is_nan() && wanted.is_nan()),
-            "{positions}"
-        );
+        assert!(found == wanted || (found.is_nan() && wanted.is_nan()), "{positions}");
     }
 }
 
@@ -73,11 +66,8 @@ ID6,6,5,1.0,32.0,42.0,5
 #[test]
 fn a_trackmate_export_becomes_a_data_set() {
     let import = trackmate(EXPORT).unwrap();
-    let expected = array![
-        [[30.0, -40.0], [10.0, -20.0]],
-        [[NAN, NAN], [11.0, -21.0]],
-        [[32.0, -42.0], [NAN, NAN]],
-    ];
+    let expected =
+        array![[[30.0, -40.0], [10.0, -20.0]], [[NAN, NAN], [11.0, -21.0]], [[32.0, -42.0], [NAN, NAN]],];
     assert_positions(&import, &expected);
     assert_eq!(import.track_ids, [5, 7]);
     let summary = ImportSummary {
@@ -92,10 +82,7 @@ fn a_trackmate_export_becomes_a_data_set() {
     assert_eq!(import.summary, summary);
     let data = &import.dataset;
     assert_eq!((data.boundary, data.y_axis), (Boundary::Open, YAxis::Down));
-    assert_eq!(
-        (data.length_unit.as_str(), data.time_unit.as_str()),
-        ("micron", "frame")
-    );
+    assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("micron", "frame"));
     assert_eq!(data.inputs.len(), 1);
     data.check().unwrap();
 }
@@ -115,31 +102,20 @@ fn options_say_what_the_table_does_not() {
         time_unit: Some("min".into()),
         frame_interval: Some(10.0),
         y_axis: Some(YAxis::Up),
-        boundary: Some(Boundary::Periodic {
-            lengths: [100.0, 100.0],
-        }),
+        boundary: Some(Boundary::Periodic { lengths: [100.0, 100.0] }),
         ..ImportOptions::default()
     };
     let data = trackmate_with(EXPORT, &options).unwrap().dataset;
     assert_eq!(data.positions[[0, 0, 0]], 15.0);
     assert_eq!(data.positions[[0, 0, 1]], 20.0);
-    assert_eq!(
-        (data.length_unit.as_str(), data.time_unit.as_str()),
-        ("µm", "min")
-    );
+    assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("µm", "min"));
     assert_eq!((data.frame_interval, data.y_axis), (10.0, YAxis::Up));
     assert_eq!(Some(data.boundary), options.boundary);
     // After scaling, the unit of the table is no longer the unit of the data.
-    let options = ImportOptions {
-        pixel_size: Some(0.5),
-        frame_interval: Some(2.0),
-        ..ImportOptions::default()
-    };
+    let options =
+        ImportOptions { pixel_size: Some(0.5), frame_interval: Some(2.0), ..ImportOptions::default() };
     let data = trackmate_with(EXPORT, &options).unwrap().dataset;
-    assert_eq!(
-        (data.length_unit.as_str(), data.time_unit.as_str()),
-        ("length", "time")
-    );
+    assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("length", "time"));
 }
 
 #[test]
@@ -149,11 +125,7 @@ fn impossible_options_are_told() {
         (Some(NAN), None, "pixel_size is NaN"),
         (None, Some(-1.0), "frame_interval is -1"),
     ] {
-        let options = ImportOptions {
-            pixel_size,
-            frame_interval: interval,
-            ..ImportOptions::default()
-        };
+        let options = ImportOptions { pixel_size, frame_interval: interval, ..ImportOptions::default() };
         let facts = [fact, "finite and above zero"];
         assert_told(trackmate_with(EXPORT, &options), &facts, "");
     }
@@ -206,8 +178,7 @@ fn named_columns_win() {
     let text = "id,who,x,y,x_um,y_um,Image_Number\n9,1,0,0,5,6,0\n";
     let import = tracks_with(text, columns.clone()).unwrap();
     assert_positions(&import, &array![[[5.0, 6.0]]]);
-    let facts =
-        ["tracks.csv, line 1: no column for the track: looked for who, found id, frame, x, y"];
+    let facts = ["tracks.csv, line 1: no column for the track: looked for who, found id, frame, x, y"];
     let text = "id,frame,x,y\n9,1,0,0\n";
     assert_told(tracks_with(text, columns), &facts, "--track-column");
 }
@@ -226,17 +197,10 @@ fn delimiters_and_line_ends_are_recognised() {
 #[test]
 fn row_order_does_not_matter_and_gaps_become_absent_frames() {
     let import = tracks("track,frame,x,y\n20,3,7,8\n-4,1,1,2\n20,1,5,6\n").unwrap();
-    let expected = array![
-        [[1.0, 2.0], [5.0, 6.0]],
-        [[NAN, NAN], [NAN, NAN]],
-        [[NAN, NAN], [7.0, 8.0]],
-    ];
+    let expected = array![[[1.0, 2.0], [5.0, 6.0]], [[NAN, NAN], [NAN, NAN]], [[NAN, NAN], [7.0, 8.0]],];
     assert_positions(&import, &expected);
     assert_eq!(import.track_ids, [-4, 20]);
-    assert_eq!(
-        (import.summary.first_frame, import.summary.empty_frames),
-        (1, 1)
-    );
+    assert_eq!((import.summary.first_frame, import.summary.empty_frames), (1, 1));
 }
 
 #[test]
@@ -249,15 +213,8 @@ fn spots_of_no_track_are_counted() {
 
 #[test]
 fn missing_columns_are_told_with_those_found() {
-    let facts = [
-        "spots.csv, line 1: no column for the frame: looked for frame",
-        "found TRACK_ID, T, X, Y",
-    ];
-    assert_told(
-        trackmate("TRACK_ID,T,X,Y\n1,2,3,4\n"),
-        &facts,
-        "import tracks",
-    );
+    let facts = ["spots.csv, line 1: no column for the frame: looked for frame", "found TRACK_ID, T, X, Y"];
+    assert_told(trackmate("TRACK_ID,T,X,Y\n1,2,3,4\n"), &facts, "import tracks");
     let facts = ["no column for the y coordinate", "found track, frame, x"];
     assert_told(tracks("track,frame,x\n1,2,3\n"), &facts, "name the columns");
 }
@@ -278,11 +235,7 @@ fn what_is_not_a_number_is_told_with_its_line() {
         assert_told(tracks(format!("{head}{row}\n")), &[&fact], "this row");
     }
     let facts = ["line 2: column \"x\" holds \"1,5\""];
-    assert_told(
-        tracks("track;frame;x;y\n1;0;1,5;2\n"),
-        &facts,
-        "decimal point",
-    );
+    assert_told(tracks("track;frame;x;y\n1;0;1,5;2\n"), &facts, "decimal point");
 }
 
 #[test]
@@ -313,11 +266,7 @@ fn empty_tables_are_told() {
     }
     assert_told(tracks("track,frame,x,y\n"), &["no data rows"], "filter");
     let (head, _) = EXPORT.split_at(EXPORT.find("ID1").unwrap());
-    assert_told(
-        trackmate(head),
-        &["spots.csv: has a header but no"],
-        "filter",
-    );
+    assert_told(trackmate(head), &["spots.csv: has a header but no"], "filter");
 }
 
 #[test]
@@ -332,11 +281,7 @@ fn absurd_gaps_are_refused_before_allocating() {
     for (first, last) in [(0, 100_000), (least, most)] {
         let text = format!("track,frame,x,y\n1,{first},1,2\n1,{last},1,2\n");
         let fact = format!("frames run from {first} to {last}, more than 100000");
-        assert_told(
-            tracks(text),
-            &["tracks.csv", &fact],
-            "is the frame column a time",
-        );
+        assert_told(tracks(text), &["tracks.csv", &fact], "is the frame column a time");
     }
     assert!(tracks("track,frame,x,y\n1,1,1,2\n1,100000,1,2\n").is_ok());
     let mut text = String::from("track,frame,x,y\n0,99999,1,2\n");

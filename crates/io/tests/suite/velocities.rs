@@ -33,10 +33,7 @@ fn absent(velocity: [f64; 2]) -> bool {
 
 #[test]
 fn each_difference_is_what_its_formula_says() {
-    let data = movie(
-        array![[[0.0, 0.0]], [[1.0, 2.0]], [[4.0, 3.0]]],
-        Boundary::Open,
-    );
+    let data = movie(array![[[0.0, 0.0]], [[1.0, 2.0]], [[4.0, 3.0]]], Boundary::Open);
     let central = derive_velocities(&data, Difference::Central).unwrap();
     assert_eq!(of(&central, 1, 0), [4.0, 3.0]);
     assert!(absent(of(&central, 0, 0)) && absent(of(&central, 2, 0)));
@@ -57,28 +54,17 @@ fn an_absent_frame_takes_away_what_needs_it() {
     let data = movie(positions, Boundary::Open);
     let measured = |difference| -> Vec<bool> {
         let velocities = derive_velocities(&data, difference).unwrap();
-        (0..5)
-            .map(|frame| !absent(of(&velocities, frame, 1)))
-            .collect()
+        (0..5).map(|frame| !absent(of(&velocities, frame, 1))).collect()
     };
     assert_eq!(measured(Difference::Central), [false; 5]);
-    assert_eq!(
-        measured(Difference::Forward),
-        [true, false, false, true, false]
-    );
-    assert_eq!(
-        measured(Difference::Backward),
-        [false, true, false, false, true]
-    );
+    assert_eq!(measured(Difference::Forward), [true, false, false, true, false]);
+    assert_eq!(measured(Difference::Backward), [false, true, false, false, true]);
 }
 
 #[test]
 fn a_step_across_the_periodic_boundary_is_short() {
     let lengths = [10.0, 20.0];
-    let data = movie(
-        array![[[9.5, 0.5]], [[0.5, 19.5]], [[1.5, 18.5]]],
-        Boundary::Periodic { lengths },
-    );
+    let data = movie(array![[[9.5, 0.5]], [[0.5, 19.5]], [[1.5, 18.5]]], Boundary::Periodic { lengths });
     let central = derive_velocities(&data, Difference::Central).unwrap();
     assert_eq!(of(&central, 1, 0), [2.0, -2.0]);
     let forward = derive_velocities(&data, Difference::Forward).unwrap();
@@ -89,10 +75,7 @@ fn a_step_across_the_periodic_boundary_is_short() {
 fn a_central_difference_may_span_more_than_half_the_box() {
     // Two steps of 4 in a box of 10: the way is 8, its shortest image would be −2.
     let lengths = [10.0, 10.0];
-    let data = movie(
-        array![[[0.0, 0.0]], [[4.0, 0.0]], [[8.0, 0.0]]],
-        Boundary::Periodic { lengths },
-    );
+    let data = movie(array![[[0.0, 0.0]], [[4.0, 0.0]], [[8.0, 0.0]]], Boundary::Periodic { lengths });
     let central = derive_velocities(&data, Difference::Central).unwrap();
     assert_eq!(of(&central, 1, 0), [8.0, 0.0]);
 }
@@ -100,10 +83,7 @@ fn a_central_difference_may_span_more_than_half_the_box() {
 #[test]
 fn unwrapped_positions_are_taken_as_they_are() {
     let lengths = [10.0, 10.0];
-    let mut data = movie(
-        array![[[0.0, 0.0]], [[7.0, 0.0]]],
-        Boundary::Periodic { lengths },
-    );
+    let mut data = movie(array![[[0.0, 0.0]], [[7.0, 0.0]]], Boundary::Periodic { lengths });
     data.unwrapped = true;
     let forward = derive_velocities(&data, Difference::Forward).unwrap();
     assert_eq!(of(&forward, 0, 0), [14.0, 0.0]);
@@ -120,20 +100,13 @@ fn wrapping_positions_does_not_change_velocities() {
     for ((_, _, axis), value) in wrapped.indexed_iter_mut() {
         *value = value.rem_euclid(lengths[axis]);
     }
-    for difference in [
-        Difference::Central,
-        Difference::Forward,
-        Difference::Backward,
-    ] {
+    for difference in [Difference::Central, Difference::Forward, Difference::Backward] {
         let open = derive_velocities(&movie(free.clone(), Boundary::Open), difference).unwrap();
         let data = movie(wrapped.clone(), Boundary::Periodic { lengths });
         let periodic = derive_velocities(&data, difference).unwrap();
         for (a, b) in open.iter().zip(&periodic) {
             // Coordinates up to 20 carry rounding of 4e-15, divided by an interval of 0.5.
-            assert!(
-                (a - b).abs() < 1e-13 || (a.is_nan() && b.is_nan()),
-                "{a} {b}"
-            );
+            assert!((a - b).abs() < 1e-13 || (a.is_nan() && b.is_nan()), "{a} {b}");
         }
     }
 }
@@ -149,21 +122,13 @@ fn too_few_frames_are_told() {
     let data = movie(array![[[0.0, 0.0]]], Boundary::Open);
     for difference in [Difference::Forward, Difference::Backward] {
         let fact = format!("{difference} differences need 2 frames, the data set has 1");
-        assert_told(
-            derive_velocities(&data, difference),
-            &[&fact],
-            "longer movie",
-        );
+        assert_told(derive_velocities(&data, difference), &[&fact], "longer movie");
     }
 }
 
 #[test]
 fn differences_have_names() {
-    for difference in [
-        Difference::Central,
-        Difference::Forward,
-        Difference::Backward,
-    ] {
+    for difference in [Difference::Central, Difference::Forward, Difference::Backward] {
         let named: Difference = difference.to_string().parse().unwrap();
         assert_eq!(named, difference);
     }

@@ -205,6 +205,7 @@ fn bars(report: &InferReport) -> Vec<ErrorBar> {
         bar("naive fit", nmse.naive, Emphasis::Quiet),
         bar("nudged, at measured r", nmse.un_nudged, main),
         bar("nudged, at nudged r", nmse.nudged, Emphasis::Quiet),
+        bar("noise alone", nmse.noise_floor, Emphasis::Quiet),
     ];
     if let Some(error) = nmse.cross_validated {
         bars.push(ErrorBar {
@@ -218,8 +219,8 @@ fn bars(report: &InferReport) -> Vec<ErrorBar> {
 fn mean_removed(mean: MeanRemoved) -> &'static str {
     match mean {
         MeanRemoved::None => "no mean velocity was removed",
-        MeanRemoved::PerFrame => "the mean velocity of each frame was removed",
-        MeanRemoved::Overall => "the mean velocity over all frames was removed",
+        MeanRemoved::PerFrame => "the median velocity of each frame was removed",
+        MeanRemoved::Overall => "the median velocity over all frames was removed",
     }
 }
 

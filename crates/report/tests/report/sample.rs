@@ -154,6 +154,7 @@ pub fn report() -> InferReport {
             naive: 0.87,
             nudged: 0.12,
             un_nudged: 0.36,
+            noise_floor: 0.29,
             cross_validated: Some(0.31),
             cross_validated_standard_error: Some(0.02),
             mean_removed: MeanRemoved::PerFrame,

@@ -37,7 +37,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     remove_mean: MeanToRemove,
     /// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
-    #[arg(long, value_name = "FACTOR", default_value_t = 3.0)]
+    #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     largest_area: f64,
     /// Steps of the optimiser at the last stage of each fit.
     #[arg(long, default_value_t = 60)]
@@ -80,7 +80,8 @@ impl Arguments {
                 _ => &mut fixed.chirality,
             };
             if slot.replace(*value).is_some() {
-                return Err(Failure::new(format!("{name} is fixed twice")));
+                return Err(Failure::new(format!("--fix: {name} is fixed twice"))
+                    .with_hint("give each parameter at most once"));
             }
         }
         Ok(fixed)
@@ -92,6 +93,13 @@ const UNACCEPTABLE: f64 = 3.0;
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("infer", &arguments.common)?;
+    if !(arguments.largest_area.is_finite() && arguments.largest_area > 0.0) {
+        return Err(Failure::new(format!(
+            "--largest-area is {}, but it must be finite and above zero",
+            arguments.largest_area
+        ))
+        .with_hint("leave it out for 3 times the median area"));
+    }
     let data = arguments.data.load()?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let prepared = prepare::prepare(&arguments, &data, &mut run)?;

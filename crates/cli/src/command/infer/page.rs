@@ -61,9 +61,11 @@ fn headline(report: &InferReport) -> String {
         _ => "No chirality is seen".into(),
     };
     format!(
-        "{chirality}; the preferred shape index P₀/ℓ₀ is {}. The model explains {} of the velocities it has not seen.",
+        "{chirality}; the preferred shape index P₀/ℓ₀ is {}. Of the square of velocities it has not seen, the model misses \
+         {}; measurement noise alone would make it miss {}.",
         significant(report.parameters.shape_index.value, 3),
-        percent((1.0 - held_out).max(0.0))
+        percent(held_out),
+        percent(report.nmse.noise_floor)
     )
 }
 

@@ -55,7 +55,11 @@ impl Prepared {
 pub(super) fn prepare(arguments: &Arguments, data: &DataSet, run: &mut Run) -> Result<Prepared, Failure> {
     let (velocities, derived) = match &data.velocities {
         Some(given) => (given.clone(), None),
-        None => (derive_velocities(data, arguments.difference)?, Some(arguments.difference)),
+        None => {
+            let derived = derive_velocities(data, arguments.difference)
+                .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?;
+            (derived, Some(arguments.difference))
+        }
     };
     if let Some(difference @ (Difference::Forward | Difference::Backward)) = derived {
         run.warn(format!(
@@ -75,7 +79,7 @@ pub(super) fn prepare(arguments: &Arguments, data: &DataSet, run: &mut Run) -> R
             Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.largest_area)
                 .map_err(|error| match error {
                     voronudge_infer::Error::Geometry { source, .. } => {
-                        Failure::from(in_file_numbers(source, &snapshot)).at(place())
+                        Failure::from(snapshot.in_file_numbers(source)).at(place())
                     }
                     other => Failure::from(other).at(place()),
                 })?;
@@ -110,28 +114,19 @@ fn chosen_frames(
     let Some(selection) = &arguments.frames else {
         return Ok((0..data.frames()).filter(|&frame| has_velocity(frame)).collect());
     };
-    let frames = selection.resolve(data.frames())?;
+    let file = arguments.data.positions_file();
+    let frames = selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(file.display()))?;
     if let Some(frame) = frames.iter().find(|&&frame| !has_velocity(frame)) {
         let hint = match derived {
             Some(Difference::Central) => "central differences need the frame before and the frame after",
             Some(_) => "differences need the neighbouring frame",
             None => "choose a frame whose velocities are not all NaN",
         };
-        return Err(Failure::new(format!("frame {frame} has no velocity")).with_hint(hint));
+        let file = if derived.is_some() { file } else { arguments.data.velocities_file() };
+        let place = format!("{}, frame {frame}", file.display());
+        return Err(Failure::new("no cell has a velocity").with_hint(hint).at(place));
     }
     Ok(frames)
-}
-
-/// Cells are numbered as in the file, where absent cells count.
-fn in_file_numbers(error: voronudge_geometry::Error, snapshot: &Snapshot) -> voronudge_geometry::Error {
-    use voronudge_geometry::Error;
-    match error {
-        Error::DuplicateCells { first, second, x, y } => {
-            Error::DuplicateCells { first: snapshot.cells[first], second: snapshot.cells[second], x, y }
-        }
-        Error::Position { cell, x, y } => Error::Position { cell: snapshot.cells[cell], x, y },
-        other => other,
-    }
 }
 
 /// Removes the median velocity of the cells used: the median does not follow a few fast ones.

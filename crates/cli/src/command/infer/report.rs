@@ -66,6 +66,7 @@ pub(super) fn report(run: &Run, data: &DataSet, prepared: &Prepared, result: &In
             naive: result.nmse.naive,
             nudged: result.nmse.nudged,
             un_nudged: result.nmse.un_nudged,
+            noise_floor: result.nmse.noise_floor,
             cross_validated: result.nmse.cross_validated.map(|c| c[0]),
             cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
             mean_removed: prepared.mean_removed,
@@ -163,8 +164,8 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
     };
     let _ = writeln!(
         text,
-        "\nerror (NMSE)  naive {:.3}, nudged {:.4}, same parameters un-nudged {:.3}, held out {held_out}",
-        e.naive, e.nudged, e.un_nudged
+        "\nerror (NMSE)  naive {:.3}, nudged {:.4}, same parameters un-nudged {:.3}, held out {held_out}; noise alone {:.3}",
+        e.naive, e.nudged, e.un_nudged, e.noise_floor
     );
     let _ = writeln!(
         text,

@@ -1,0 +1,132 @@
+//! What a fit is asked and what it answers.
+
+use crate::{Fixed, NoiseLevels, NoiseSource};
+use voronudge_geometry::{Tessellation, Vector};
+use voronudge_model::Parameters;
+
+/// What to fit, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// Parameters held at a value.
+    pub fixed: Fixed,
+    /// Preferred area, a gauge.
+    pub preferred_area: f64,
+    /// σ_r if known; otherwise it is estimated.
+    pub position_noise: Option<f64>,
+    /// σ_v if known; otherwise it is estimated.
+    pub velocity_noise: Option<f64>,
+    /// Steps of the optimiser at each stage.
+    pub max_steps: u64,
+}
+
+/// How a fit ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Status {
+    /// No further step gains anything.
+    Converged,
+    /// The allowed number of steps was used up.
+    StepLimit,
+    /// No step, however short, decreases the objective: usually a kink at a T1 transition.
+    Stalled,
+}
+
+/// A value and its standard error; 95 % intervals are ±1.96 of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Estimate {
+    /// The value.
+    pub value: f64,
+    /// Standard error; zero if the value was fixed.
+    pub standard_error: f64,
+}
+
+/// Estimates of the parameters and of the combination that data determine best.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct ParameterEstimates {
+    /// `K_A`
+    pub area_elasticity: Estimate,
+    /// `K_P`
+    pub perimeter_elasticity: Estimate,
+    /// `P_0`
+    pub preferred_perimeter: Estimate,
+    /// `α`
+    pub chirality: Estimate,
+    /// `K_P α`
+    pub chiral_coefficient: Estimate,
+}
+
+/// Normalised mean squared errors `Σ‖v − v̂‖² / Σ‖v‖²` over the cells used.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Nmse {
+    /// Least squares at the measured positions.
+    pub naive: f64,
+    /// The nudged fit at the nudged positions: a training error, below the noise floor.
+    pub nudged: f64,
+    /// The nudged fit's parameters at the measured positions.
+    pub un_nudged: f64,
+    /// What the noise alone makes of `un_nudged` if the model is right: `(n σ_v² + σ_r² ‖∂v/∂r‖²) / Σ‖v‖²`, linearised
+    /// at the nudged positions.
+    pub noise_floor: f64,
+    /// Velocities held out of the fit, predicted at the measured positions: mean over folds and its standard error.
+    pub cross_validated: Option<[f64; 2]>,
+}
+
+/// A direction in the space of coefficients and how well the data determine it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Direction {
+    /// Eigenvalue of the Fisher information (one over the variance along the direction).
+    pub eigenvalue: f64,
+    /// Components along `K_A`, `K_P P_0`, `K_P`, `K_P α` (scaled).
+    pub components: [f64; 4],
+}
+
+/// One frame after the fit.
+#[derive(Debug, Clone)]
+pub struct FrameResult {
+    /// Nudged positions (N).
+    pub nudged_positions: Vec<Vector<f64>>,
+    /// Tessellation of the nudged positions.
+    pub tessellation: Tessellation,
+    /// Predicted velocities (N) at the nudged positions; NaN next to the rim of an open field.
+    pub predicted: Vec<Vector<f64>>,
+    /// Delaunay edges of the measured positions that the nudges removed, and those they made, as pairs of cells.
+    pub edges_lost: Vec<(u32, u32)>,
+    /// See `edges_lost`.
+    pub edges_gained: Vec<(u32, u32)>,
+}
+
+/// The result of [`infer`].
+#[derive(Debug, Clone)]
+pub struct Inference {
+    /// Fitted parameters.
+    pub parameters: ParameterEstimates,
+    /// The fitted parameters as the model takes them.
+    pub model_parameters: Parameters<f64>,
+    /// Parameters of the naive fit.
+    pub naive: Parameters<f64>,
+    /// Errors.
+    pub nmse: Nmse,
+    /// Noise levels used in the last fit.
+    pub noise: NoiseLevels,
+    /// Where they come from.
+    pub noise_source: NoiseSource,
+    /// Degrees of freedom that the nudges use up.
+    pub degrees_of_freedom: f64,
+    /// Root mean square nudge (vector) over all cells.
+    pub nudge_rms: f64,
+    /// Stiffest direction first.
+    pub directions: Vec<Direction>,
+    /// The frames, in the order given.
+    pub frames: Vec<FrameResult>,
+    /// How the last fit ended.
+    pub status: Status,
+    /// Steps of all fits.
+    pub steps: u64,
+    /// Final objective `(Σ‖v − F‖² + kΣ‖ε‖²) / σ_v²`.
+    pub objective: f64,
+    /// What the objective is expected to be if the model and the noise levels are right: components minus coefficients.
+    pub expected_objective: f64,
+    /// Objective at each step of the last fit, in the units of `objective`.
+    pub trace: Vec<f64>,
+    /// Number of velocities used.
+    pub used: usize,
+}
