@@ -223,3 +223,74 @@ impl Transposed {
         &self.entry[self.start[column]..self.start[column + 1]]
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voronudge_geometry::{Domain, PeriodicBox, Tessellation};
+    use voronudge_model::{Model, Parameters, jacobian};
+
+    /// The eliminated step solves the full dense system.
+    #[test]
+    fn the_step_agrees_with_the_dense_normal_equations() {
+        let positions: Vec<Vector<f64>> = (0..25)
+            .map(|i| {
+                let x = f64::from(i);
+                Vector::new(f64::from(i % 5) + 0.3 * x.sin(), f64::from(i / 5) + 0.3 * (2.0 * x).cos())
+            })
+            .collect();
+        let domain = Domain::Periodic(PeriodicBox::new([5.0, 5.0]).unwrap());
+        let tessellation = Tessellation::new(&positions, domain).unwrap();
+        let model = Model::chiral_voronoi(&Parameters { chirality: 0.7, ..Parameters::default() });
+        let jacobian = jacobian(&tessellation, &positions, &model);
+        let (cells, free, spring, damping) = (25, 2, 0.3, 0.05);
+        // Some velocities are missing.
+        let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = (0..cells)
+            .filter(|cell| cell % 4 != 0)
+            .map(|cell| {
+                let x = cell as f64;
+                (
+                    cell,
+                    Vector::new(x.sin(), x.cos()),
+                    DMatrix::from_fn(2, free, |i, j| (x + i as f64 + 3.0 * j as f64).cos()),
+                )
+            })
+            .collect();
+        let nudges: Vec<Vector<f64>> = (0..cells).map(|i| Vector::new(0.01 * i as f64, -0.02)).collect();
+        let linearised =
+            Linearisation::new(&Local { jacobian: &jacobian, rows: &rows, nudges: &nudges, spring, free })
+                .unwrap();
+        let dense = DMatrix::from_row_slice(2 * cells, 2 * cells, &jacobian.to_dense());
+        let n = 2 * cells;
+        let (mut full, mut right) =
+            (DMatrix::<f64>::zeros(n + free, n + free), DVector::<f64>::zeros(n + free));
+        for (cell, residual, x) in &rows {
+            let mut wide = DMatrix::zeros(2, n + free);
+            wide.view_mut((0, 0), (2, n)).copy_from(&dense.rows(2 * cell, 2));
+            wide.view_mut((0, n), (2, free)).copy_from(x);
+            full += wide.transpose() * &wide;
+            right += wide.transpose() * residual;
+        }
+        for i in 0..n {
+            full[(i, i)] += spring + damping;
+            right[i] -= spring * nudges[i / 2][i % 2];
+        }
+        let expected = full.lu().solve(&right).unwrap();
+        let eliminated = linearised.eliminate(damping).unwrap();
+        let free_step = eliminated.schur.clone().lu().solve(&eliminated.gradient).unwrap();
+        let step = eliminated.nudge_step(&free_step);
+        let scale = expected.amax();
+        assert!((0..free).all(|i| (free_step[i] - expected[n + i]).abs() < 1e-10 * scale));
+        assert!((0..n).all(|i| (step[i] - expected[i]).abs() < 1e-10 * scale));
+        // tr J (JᵀJ + kI)⁻¹ Jᵀ, dense.
+        let mut seen = DMatrix::zeros(2 * rows.len(), n);
+        for (k, (cell, ..)) in rows.iter().enumerate() {
+            seen.view_mut((2 * k, 0), (2, n)).copy_from(&dense.rows(2 * cell, 2));
+        }
+        let hat = &seen
+            * (seen.transpose() * &seen + DMatrix::identity(n, n) * spring).try_inverse().unwrap()
+            * seen.transpose();
+        let df = crate::degrees_of_freedom::degrees_of_freedom(&linearised, spring).unwrap();
+        assert!((df - hat.trace()).abs() < 1e-8, "{df} {}", hat.trace());
+    }
+}
