@@ -3,6 +3,7 @@
 mod check;
 mod fixtures;
 mod oracle;
+mod study;
 
 use clap::{Parser, Subcommand};
 use std::path::{Path, PathBuf};
@@ -24,6 +25,15 @@ enum Command {
         #[arg(long, value_delimiter = ',', value_enum)]
         only: Vec<check::Check>,
     },
+    /// Run a statistical study and print its table.
+    Study {
+        /// Which study.
+        #[arg(value_enum)]
+        which: study::Study,
+        /// Number of seeds.
+        #[arg(long, default_value_t = 10)]
+        seeds: u64,
+    },
     /// Make everything in fixtures/ from recorded seeds; twice gives the same bytes.
     Fixtures {
         /// Folder to write to.
@@ -39,6 +49,7 @@ fn main() -> ExitCode {
     let root = root();
     let outcome = match Arguments::parse().command {
         Command::Check { only } => check::run(&root, &only),
+        Command::Study { which, seeds } => study::run(which, seeds),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),
     };
     match outcome {

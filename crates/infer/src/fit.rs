@@ -41,7 +41,7 @@ pub(crate) fn nudged_fit(
     for (index, factor) in CONTINUATION.into_iter().enumerate() {
         let last = index + 1 == CONTINUATION.len();
         objective.spring = levels.spring() * factor * factor;
-        let (done, mut trace) = (fit.steps, Vec::new());
+        let (done, mut trace) = (fit.steps, std::mem::take(&mut fit.trace));
         let mut watch = |step: u64, value: f64| {
             trace.push(value);
             observe(Progress { stage, step: (done + step, all_steps), objective: value / expected })

@@ -125,7 +125,7 @@ pub struct Inference {
     pub objective: f64,
     /// What the objective is expected to be if the model and the noise levels are right: components minus coefficients.
     pub expected_objective: f64,
-    /// Objective at each step of the last fit, in the units of `objective`.
+    /// Objective after each step of the last fit, in the units of `objective`, with the springs in force at that step.
     pub trace: Vec<f64>,
     /// Number of velocities used.
     pub used: usize,

@@ -242,7 +242,7 @@ pub struct Fit {
     pub objective: f64,
     /// The objective that a good fit is expected to reach (data minus parameters).
     pub expected_objective: f64,
-    /// Objective at the start and after each iteration.
+    /// Objective after each iteration of the last fit, with the springs in force at that iteration.
     pub trace: Vec<f64>,
 }
 

@@ -8,9 +8,9 @@ use crate::snapshot::{Snapshot, domain};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write as _;
-use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_io::{FrameSelection, OutputDirectory};
-use voronudge_model::gradient_check::{GradientReport, check};
+use voronudge_model::gradient_check::{GradientReport, Place, check};
 use voronudge_report::infer_report::RunRecord;
 use voronudge_simulate::{RandomPlacement, generator};
 
@@ -22,7 +22,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
     /// Frames to check: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: the first].
-    #[arg(long, value_name = "FRAMES")]
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
     #[command(flatten)]
     parameters: ParameterArguments,
@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut out = arguments.common.out.as_ref().map(OutputDirectory::create).transpose()?;
     let given = arguments.data.dataset.is_some() || arguments.data.positions.is_some();
     let data = given.then(|| arguments.data.load()).transpose()?;
-    let mut subjects: Vec<(String, Vec<Vector<f64>>, Domain)> = Vec::new();
+    let mut subjects: Vec<(String, Snapshot, Domain)> = Vec::new();
     match &data {
         Some(data) => {
             let file = arguments.data.positions_file();
@@ -70,7 +70,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             };
             for frame in frames {
                 let name = format!("{}, frame {frame}", file.display());
-                subjects.push((name, Snapshot::new(data, frame).positions, domain(data)?));
+                subjects.push((name, Snapshot::new(data, frame), domain(data)?));
             }
         }
         None => {
@@ -78,19 +78,20 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             let cell_box = PeriodicBox::new([side, side])?;
             let positions =
                 RandomPlacement::new(BUILT_IN_CELLS, cell_box).draw(&mut generator(arguments.common.seed))?;
-            let count = positions.len();
-            subjects.push((
-                format!("{count} random cells, periodic"),
-                positions.clone(),
-                Domain::Periodic(cell_box),
-            ));
-            subjects.push((format!("{count} random cells, open"), positions, Domain::Open));
+            for (name, domain) in [("periodic", Domain::Periodic(cell_box)), ("open", Domain::Open)] {
+                let snapshot =
+                    Snapshot { cells: (0..BUILT_IN_CELLS).collect(), positions: positions.clone() };
+                subjects.push((format!("{BUILT_IN_CELLS} random cells, {name}"), snapshot, domain));
+            }
         }
     }
     let mut reports = Vec::new();
-    for (name, positions, domain) in subjects {
-        let report =
-            check(&positions, domain, &parameters).map_err(|error| Failure::from(error).at(&name))?;
+    for (name, snapshot, domain) in subjects {
+        let mut report = check(&snapshot.positions, domain, &parameters)
+            .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(&name))?;
+        for row in &mut report.rows {
+            renumber(&mut row.place, &snapshot.cells);
+        }
         reports.push((name, report));
     }
     let passed = reports.iter().all(|(_, report)| report.passed());
@@ -101,6 +102,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     run.finish(out, &json, &table(&reports))?;
     Ok(if passed { Answer::Positive } else { Answer::Negative })
+}
+
+/// Numbers the cells of a place as in the file, where absent cells count.
+fn renumber(place: &mut Place, cells: &[usize]) {
+    match place {
+        Place::Total { .. } => {}
+        Place::Cell { cell, .. } | Place::Corner { cell, .. } => *cell = cells[*cell],
+        Place::Entry { cell, by, .. } => (*cell, *by) = (cells[*cell], cells[*by]),
+    }
 }
 
 fn rows(name: &str, report: &GradientReport) -> Vec<Check> {

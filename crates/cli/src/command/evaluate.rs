@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
     /// Frames to evaluate: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all].
-    #[arg(long, value_name = "FRAMES")]
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
     #[command(flatten)]
     parameters: ParameterArguments,

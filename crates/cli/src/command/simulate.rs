@@ -14,7 +14,10 @@ use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_io::{Boundary, DataSet, OutputDirectory, YAxis};
 use voronudge_model::Model;
 use voronudge_report::infer_report::RunRecord;
-use voronudge_simulate::{Completion, RandomPlacement, Schedule, Simulation, generator, run as simulate};
+use voronudge_simulate::measure::hexatic_order;
+use voronudge_simulate::{
+    Completion, RandomPlacement, Schedule, Simulation, generator, recommended_time_step, run as simulate,
+};
 
 /// Simulates the chiral Voronoi model in a periodic box from random positions (RK4). The output is a data set.
 #[derive(Debug, Args)]
@@ -29,7 +32,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
     time: f64,
     /// Time step.
-    #[arg(long, default_value_t = 0.02, allow_negative_numbers = true)]
+    #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     dt: f64,
     /// Number of frames to keep, evenly spaced; the last at the end.
     #[arg(long, default_value_t = 10)]
@@ -55,12 +58,13 @@ struct Report {
     frames: usize,
     parameters: ModelParameters,
     mean_square_velocity: Option<f64>,
+    hexatic_order: f64,
     steps: usize,
     steps_per_second: f64,
 }
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let run = Run::begin("simulate", &arguments.common)?;
+    let mut run = Run::begin("simulate", &arguments.common)?;
     let parameters = arguments.parameters.resolve()?;
     let lengths = match arguments.box_lengths.as_deref() {
         Some(&[x, y]) => [x, y],
@@ -84,6 +88,13 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut simulation =
         Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(&parameters))?;
     let schedule = Schedule { time: arguments.time, time_step: arguments.dt, frames: arguments.frames };
+    let advised = recommended_time_step(&parameters, (cell_box.area() / arguments.cells as f64).sqrt());
+    if arguments.dt > advised {
+        run.warn(format!(
+            "the time step {} is above the {advised:.2e} advised for these parameters; chiral flows come out too slow then",
+            arguments.dt
+        ));
+    }
     let mut progress = Progress::new(arguments.common.verbosity());
     let shape = (arguments.frames, arguments.cells, 2);
     let (mut positions, mut velocities) = (Array3::zeros(shape), Array3::zeros(shape));
@@ -128,6 +139,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         frames: arguments.frames,
         parameters: (&parameters).into(),
         mean_square_velocity: summary.mean_square_velocity,
+        hexatic_order: hexatic_order(simulation.tessellation(), simulation.positions()),
         steps: summary.steps,
         steps_per_second: summary.steps as f64 / seconds,
     };

@@ -25,7 +25,7 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
     /// Frames to fit together: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all that have velocities].
-    #[arg(long, value_name = "FRAMES")]
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
     /// How velocities are derived from positions where none are given.
     #[arg(long, value_name = "central|forward|backward", default_value_t = Difference::Central)]

@@ -3,7 +3,7 @@
 use super::Arguments;
 use super::prepare::Prepared;
 use crate::failure::Failure;
-use voronudge_geometry::{CellPolygon, Domain, Vector};
+use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
 use voronudge_infer::Inference;
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
@@ -126,7 +126,9 @@ fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameVie
                 perimeter: if closed { shape.perimeter * scale.length } else { f64::NAN },
                 status: if target.is_some() { CellStatus::Used } else { CellStatus::LeftOut },
                 measured: target.map(velocity),
-                predicted: Some(frame.predicted[cell]).filter(|v| v.x.is_finite()).map(velocity),
+                predicted: Some(frame.predicted[cell])
+                    .filter(|_| observation.visibility[cell] == Visibility::Counted)
+                    .map(velocity),
                 nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
             }
         })

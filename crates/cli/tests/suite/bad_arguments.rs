@@ -1,0 +1,127 @@
+//! Command lines that cannot be meant.
+
+use crate::program::{fixture, voronudge};
+use crate::refusal::{assert_arguments_refused, assert_refused, assert_unreadable};
+use crate::scratch::Folder;
+
+#[track_caller]
+fn assert_infer_refuses(flags: &str, facts: &[&str]) {
+    let flags: Vec<&str> = flags.split_whitespace().collect();
+    assert_refused("infer", &fixture("chiral-liquid"), &flags, facts);
+}
+
+#[track_caller]
+fn assert_line_refused(line: &str, facts: &[&str]) {
+    assert_arguments_refused(line.split_whitespace(), facts);
+}
+
+#[test]
+fn parameters_fixed_wrongly_are_refused() {
+    assert_infer_refuses("--fix K_B=1", &["--fix", "K_B is not a parameter", "K_A, K_P, P_0 and alpha"]);
+    assert_infer_refuses("--fix K_A", &["--fix", "NAME=VALUE"]);
+    assert_infer_refuses("--fix K_A=soft", &["--fix", "soft is not a number"]);
+    assert_infer_refuses("--fix K_A=nan", &["not finite"]);
+    assert_infer_refuses("--fix K_P=0", &["K_P is fixed to zero"]);
+    assert_infer_refuses("--fix K_A=0.1 --fix alpha=1 --fix K_A=0.1", &["--fix", "K_A is fixed twice"]);
+}
+
+#[test]
+fn a_fit_of_nothing_is_refused() {
+    assert_infer_refuses("--fix K_A=0.1 --fix K_P=1 --fix P_0=4 --fix alpha=-1", &["nothing to fit"]);
+}
+
+#[test]
+fn impossible_noise_is_refused() {
+    assert_infer_refuses("--position-noise -0.1", &["--position-noise", "-0.1", "not negative"]);
+    assert_infer_refuses("--velocity-noise -2%", &["--velocity-noise", "-0.02", "not negative"]);
+    assert_infer_refuses("--position-noise nan", &["--position-noise", "finite"]);
+    assert_infer_refuses("--position-noise 0", &["position noise is 0"]);
+    assert_infer_refuses("--velocity-noise much", &["--velocity-noise", "much"]);
+}
+
+#[test]
+fn frames_that_are_no_selection_are_refused() {
+    for flags in ["--frames one", "--frames 3..1", "--frames 1,,2", "--frames -1"] {
+        assert_infer_refuses(flags, &["--frames"]);
+    }
+    assert_infer_refuses("--frames 0,0", &["positions.npy", "frame 0 is named twice"]);
+}
+
+#[test]
+fn a_largest_area_that_is_no_factor_is_refused() {
+    for factor in ["nan", "0", "-1", "inf"] {
+        let flags = format!("--largest-area {factor}");
+        assert_infer_refuses(&flags, &["--largest-area", "finite and above zero"]);
+    }
+}
+
+#[test]
+fn zero_threads_are_refused() {
+    let facts = ["--threads is 0"];
+    assert_unreadable(&fixture("chiral-liquid"), &["--threads", "0"], &facts);
+    assert_line_refused("simulate --threads 0", &facts);
+    assert_line_refused("check-gradients --threads 0", &facts);
+}
+
+#[test]
+fn contradicting_and_unknown_flags_are_refused() {
+    assert_infer_refuses("--box 10 10 --open", &["--box", "--open"]);
+    assert_infer_refuses("--y-axis left", &["--y-axis", "left"]);
+    assert_infer_refuses("--difference sideways", &["--difference", "sideways"]);
+    assert_infer_refuses("--format yaml", &["--format", "yaml", "json"]);
+    assert_infer_refuses("--treads 2", &["--treads"]);
+    assert_line_refused("inferr", &["inferr"]);
+}
+
+#[test]
+fn a_command_without_data_is_refused() {
+    assert_line_refused("infer", &["no data"]);
+    assert_line_refused("evaluate", &["no data"]);
+}
+
+#[test]
+fn parameter_files_that_hold_no_parameters_are_refused() {
+    for (content, fact) in [
+        ("{\"K_A\": 0.1,", "not JSON"),
+        ("[0.1, 1, 4, 1, 0]", "not a table"),
+        ("{}", "none of K_A"),
+        ("{\"parameters\": 3}", "not a table"),
+        ("{\"K_A\": \"soft\"}", "K_A is not a finite number"),
+        ("{\"P_0\": {\"value\": null}}", "P_0 is not a finite number"),
+    ] {
+        let folder = Folder::new();
+        let file = folder.write("tissue.json", content);
+        let flags = ["--parameters", file.to_str().unwrap()];
+        assert_refused("evaluate", &fixture("reference-small"), &flags, &["tissue.json", fact]);
+    }
+    let flags = ["--parameters", "gone.json"];
+    assert_refused("evaluate", &fixture("reference-small"), &flags, &["gone.json"]);
+}
+
+#[test]
+fn parameters_that_are_not_finite_are_refused() {
+    for name in ["K_A", "K_P", "P_0", "A_0", "alpha"] {
+        let flag = format!("--{name}");
+        assert_refused("evaluate", &fixture("reference-small"), &[&flag, "nan"], &[&flag, "NaN"]);
+    }
+}
+
+#[test]
+fn impossible_simulations_are_refused() {
+    assert_line_refused("simulate --cells 0", &["--cells is 0"]);
+    assert_line_refused("simulate --frames 0", &["0 frames"]);
+    assert_line_refused("simulate --dt 0", &["time step is 0"]);
+    assert_line_refused("simulate --time -5", &["duration is -5"]);
+    assert_line_refused("simulate --box 0 4", &["box side x is 0"]);
+    assert_line_refused("simulate --frames 99999999999999", &["--frames 99999999999999"]);
+    assert_line_refused("simulate --cells 3000000000000", &["--cells 3000000000000"]);
+}
+
+#[test]
+fn help_and_version_are_no_faults() {
+    for arguments in [["--help"].as_slice(), &["infer", "--help"], &["--version"]] {
+        let outcome = voronudge(arguments);
+        assert_eq!(outcome.code, Some(0));
+        assert!(outcome.stdout.contains("voronudge") && outcome.stderr.is_empty(), "{outcome:?}");
+    }
+}

@@ -1,0 +1,172 @@
+//! `infer`: what it finds in tissues with a known truth, and the files it leaves.
+
+use crate::program::{fixture, succeed, voronudge};
+use crate::scratch::{Folder, number, read, report};
+use ndarray::{Array2, Array3};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+
+const FILES: [&str; 5] = [
+    "nudged_positions.npy",
+    "predicted_velocities.npy",
+    "report.html",
+    "report.json",
+    "residual_velocities.npy",
+];
+
+/// The chirality coefficient `K_P α` of the chiral liquid.
+const TRUTH: f64 = 3.4;
+
+fn infer(data: &Path, flags: &str) -> Folder {
+    let out = Folder::new();
+    succeed(&format!("infer {flags}"), &[("", data), ("--out", out.path())]);
+    out
+}
+
+fn schema() -> jsonschema::Validator {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/infer.schema.json");
+    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    jsonschema::validator_for(&schema).unwrap()
+}
+
+#[track_caller]
+fn assert_valid(report: &Value) {
+    let faults: Vec<String> =
+        schema().iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{faults:#?}");
+}
+
+#[test]
+fn the_chirality_of_a_noisy_liquid_is_found() {
+    let out = infer(&fixture("chiral-liquid"), "--fix K_A=0.1");
+    assert_eq!(out.names(), FILES);
+    let report = report(out.path());
+    assert_valid(&report);
+    let nudged = number(&report, "/parameters/K_P_alpha/value");
+    let naive = number(&report, "/naive/K_P_alpha");
+    assert!((nudged - TRUTH).abs() < 0.05 * TRUTH, "{nudged}");
+    assert!((nudged - TRUTH).abs() < (naive - TRUTH).abs(), "nudged {nudged}, naive {naive}");
+    let interval = |end: usize| number(&report, &format!("/parameters/K_P_alpha/ci95/{end}"));
+    assert!(interval(0) < TRUTH && TRUTH < interval(1), "{} to {}", interval(0), interval(1));
+    assert_eq!(number(&report, "/parameters/K_A/value"), 0.1);
+    assert_eq!(report["parameters"]["K_A"]["fixed"], true);
+}
+
+#[test]
+fn a_liquid_without_noise_is_found_exactly() {
+    let flags = "--position-noise 0.1% --velocity-noise 0.1%";
+    let report = report(infer(&fixture("chiral-liquid-clean"), flags).path());
+    assert_valid(&report);
+    for (name, truth) in [("K_A", 0.1), ("K_P", 1.0), ("P_0", 4.0), ("alpha", 3.4), ("K_P_alpha", 3.4)] {
+        let found = number(&report, &format!("/parameters/{name}/value"));
+        assert!((found - truth).abs() < 0.02 * truth, "{name} is {found}");
+    }
+    assert!(number(&report, "/nmse/un_nudged") < 1e-4);
+}
+
+#[test]
+fn arrays_belong_to_the_cells_of_the_data_set() {
+    let data = Folder::copy_of("chiral-liquid");
+    data.change("velocities.npy", |v| (v[[5, 0]], v[[5, 1]]) = (f64::NAN, f64::NAN));
+    let out = infer(data.path(), "--fix K_A=0.1");
+    let field = |folder: &Folder, name: &str| read::<f64, ndarray::Ix2>(&folder.file(name));
+    let [nudged, predicted, residual]: [Array2<f64>; 3] =
+        ["nudged_positions.npy", "predicted_velocities.npy", "residual_velocities.npy"]
+            .map(|name| field(&out, name));
+    let (positions, velocities) = (field(&data, "positions.npy"), field(&data, "velocities.npy"));
+    for (place, &velocity) in velocities.indexed_iter() {
+        assert!((nudged[place] - positions[place]).abs() < 0.5, "{place:?}");
+        assert!(predicted[place].is_finite(), "{place:?}");
+        let sum = predicted[place] + residual[place];
+        assert!(if place.0 == 5 { sum.is_nan() } else { (sum - velocity).abs() < 1e-12 }, "{place:?}");
+    }
+    let report = report(out.path());
+    assert_valid(&report);
+    assert_eq!((number(&report, "/cells/used"), number(&report, "/cells/left_out/no_velocity")), (99.0, 1.0));
+}
+
+#[test]
+fn a_fit_that_contradicts_its_noise_is_written_and_ends_with_1() {
+    let out = Folder::new();
+    let data = fixture("chiral-liquid");
+    let noise =
+        "--position-noise 0.1% --velocity-noise 0.1% --max-steps 5".split_whitespace().map(OsStr::new);
+    let arguments = ["infer".as_ref(), data.as_os_str(), "--out".as_ref(), out.path().as_os_str()];
+    let outcome = voronudge(arguments.into_iter().chain(noise));
+    assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
+    assert_eq!(out.names(), FILES);
+    let report = report(out.path());
+    assert_valid(&report);
+    let warning = report["warnings"][0].as_str().unwrap();
+    assert!(warning.contains("expected value") && outcome.stderr.contains(warning), "{}", outcome.stderr);
+}
+
+#[test]
+fn the_page_needs_nothing_from_elsewhere() {
+    let out = infer(&fixture("chiral-liquid"), "--fix K_A=0.1");
+    let page = fs::read_to_string(out.file("report.html")).unwrap();
+    assert!(page.starts_with("<!DOCTYPE html>") || page.starts_with("<!doctype html>"));
+    assert!(page.contains("<svg"));
+    let without_namespaces = page.replace("http://www.w3.org/", "");
+    for outside in ["http://", "https://", "src=\"//", "href=\"//", "url(", "@import"] {
+        assert!(!without_namespaces.contains(outside), "the page refers to {outside}");
+    }
+}
+
+#[test]
+fn the_number_of_threads_changes_no_byte() {
+    let results = ["1", "2", "2"].map(|threads| {
+        let out = infer(&fixture("chiral-liquid"), &format!("--fix K_A=0.1 --seed 7 --threads {threads}"));
+        let report = report(out.path());
+        assert_eq!(
+            (number(&report, "/seed"), number(&report, "/threads").to_string()),
+            (7.0, threads.into())
+        );
+        let arrays = FILES.iter().filter(|name| name.ends_with(".npy"));
+        (
+            arrays.map(|name| fs::read(out.file(name)).unwrap()).collect::<Vec<_>>(),
+            report["parameters"].clone(),
+        )
+    });
+    assert!(results[0] == results[1] && results[1] == results[2]);
+}
+
+#[test]
+fn positions_alone_tell_the_sense_of_chirality() {
+    let out = infer(&fixture("open-field"), "");
+    assert_eq!(out.names(), FILES);
+    let report = report(out.path());
+    assert_valid(&report);
+    // Central differences exist for all frames but the first and the last.
+    assert_eq!(report["cells"]["frames"], serde_json::json!([1, 2, 3]));
+    assert_eq!(report["nmse"]["mean_removed"], "per_frame");
+    assert!(number(&report, "/cells/left_out/polygon_not_closed") > 0.0);
+    assert!(number(&report, "/parameters/K_P_alpha/ci95/0") > 0.0);
+    assert!(number(&report, "/parameters/alpha/ci95/0") > 0.0);
+    // In the files y points down, in the results too; absent cells stay absent.
+    let measured: Array3<f64> = read(&fixture("open-field/positions.npy"));
+    let nudged: Array3<f64> = read(&out.file("nudged_positions.npy"));
+    let predicted: Array3<f64> = read(&out.file("predicted_velocities.npy"));
+    assert_eq!(nudged.dim(), (3, measured.dim().1, 2));
+    assert_eq!(predicted.dim(), nudged.dim());
+    for ((frame, cell, axis), &moved) in nudged.indexed_iter() {
+        let nudge = moved - measured[[frame + 1, cell, axis]];
+        assert_eq!(nudge.is_nan(), measured[[frame + 1, cell, axis]].is_nan());
+        assert!(nudge.is_nan() || nudge.abs() < 10.0, "frame {frame}, cell {cell}: {nudge}");
+    }
+}
+
+#[test]
+fn the_parameters_of_a_report_can_be_used_again() {
+    let data = fixture("chiral-liquid");
+    let (fit, model) = (infer(&data, "--fix K_A=0.1"), Folder::new());
+    let found = fit.file("report.json");
+    succeed("evaluate", &[("", &data), ("--parameters", &found), ("--out", model.path())]);
+    let (fit, model) = (report(fit.path()), report(model.path()));
+    for name in ["K_A", "K_P", "P_0", "A_0", "alpha"] {
+        let used = number(&model, &format!("/parameters/{name}"));
+        assert_eq!(used, number(&fit, &format!("/parameters/{name}/value")), "{name}");
+    }
+}

@@ -1,0 +1,19 @@
+//! What the program promises to those who type or script its commands.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
+mod bad_arguments;
+mod bad_arrays;
+mod bad_folders;
+mod bad_places;
+mod evaluations;
+mod gradient_checks;
+mod imports;
+mod inferences;
+#[cfg(unix)]
+mod interruption;
+mod layouts;
+mod program;
+mod refusal;
+mod scratch;
+mod simulations;
+mod stdout;
