@@ -94,7 +94,7 @@ pub struct FrameResult {
     pub edges_gained: Vec<(u32, u32)>,
 }
 
-/// The result of [`infer`].
+/// The result of [`infer`](crate::infer).
 #[derive(Debug, Clone)]
 pub struct Inference {
     /// Fitted parameters.

@@ -30,7 +30,7 @@ pub struct InferPage<'a> {
     pub summary: &'a [String],
     /// What `report.json` holds.
     pub report: &'a InferReport,
-    /// The frames to draw; each adds about 0.3 kB per cell to the page.
+    /// The frames to draw; each adds about 0.5 kB per cell to the page.
     pub frames: &'a [FrameView],
 }
 
