@@ -16,12 +16,21 @@ pub(crate) struct Run {
     pub warnings: Vec<String>,
 }
 
+/// More threads than any machine of use has cores.
+const MOST_THREADS: usize = 1024;
+
 impl Run {
     pub fn begin(name: &'static str, common: &CommonArguments) -> Result<Self, Failure> {
         if let Some(threads) = common.threads {
             if threads == 0 {
                 return Err(Failure::new("--threads is 0, but at least one thread is needed")
                     .with_hint("leave --threads out to use all cores"));
+            }
+            if threads > MOST_THREADS {
+                return Err(Failure::new(format!(
+                    "--threads is {threads}, but at most {MOST_THREADS} are possible"
+                ))
+                .with_hint("leave --threads out to use all cores"));
             }
             rayon::ThreadPoolBuilder::new()
                 .num_threads(threads)

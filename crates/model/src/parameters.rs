@@ -18,7 +18,7 @@ pub struct Parameters<S> {
     pub preferred_perimeter: S,
     /// Preferred area `A_0` (length²): a gauge that changes no velocity.
     pub preferred_area: f64,
-    /// Cortical chirality `α`; positive turns the contraction counter-clockwise (y axis up).
+    /// Cortical chirality `α`; positive adds the contraction turned clockwise by a quarter (y axis up).
     pub chirality: S,
 }
 

@@ -32,11 +32,11 @@ pub(crate) struct CommonArguments {
     /// Folder for the results; it is made if it does not exist.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Seed of all random numbers.
-    #[arg(long, default_value_t = 0)]
+    /// Seed of random numbers, for commands that draw some; recorded by all.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
     /// Number of threads (default: all cores). Results do not depend on it.
-    #[arg(long)]
+    #[arg(long, allow_negative_numbers = true)]
     pub threads: Option<usize>,
     /// Print neither progress nor a summary.
     #[arg(long)]

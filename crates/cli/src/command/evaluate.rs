@@ -14,6 +14,8 @@ use voronudge_geometry::{FieldOfView, Tessellation, Vector, areas, perimeters};
 use voronudge_io::{DataSet, FrameSelection, OutputDirectory, YAxis};
 use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
 use voronudge_report::infer_report::RunRecord;
+use voronudge_report::numbers::significant;
+use voronudge_simulate::measure::mean_square_velocity;
 
 /// The model's velocities, areas, perimeters, stress and Jacobian at the positions of a data set.
 ///
@@ -57,6 +59,7 @@ struct Cells {
     frames: Vec<usize>,
     present: Vec<usize>,
     with_velocity: Vec<usize>,
+    counted: Vec<usize>,
 }
 
 /// Parameters under the names of the interface.
@@ -89,6 +92,8 @@ struct Fields {
     areas: Vec<f64>,
     perimeters: Vec<f64>,
     stress: [[f64; 2]; 2],
+    /// Cells that count: in an open field, those away from its rim.
+    counted: Vec<bool>,
 }
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
@@ -117,7 +122,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             if frames.len() > 1 {
                 run.warn(format!("the Jacobian is that of frame {frame} only"));
             }
-            write_jacobian(&mut out, &matrix, data.y_axis)?;
+            write_jacobian(&mut out, &matrix, &snapshot, &data)?;
         }
         fields.push(Fields {
             velocities: velocities(&tessellation, &snapshot.positions, &model),
@@ -127,6 +132,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
                 stress(&tessellation, &snapshot.positions, &model, |cell| view.counts(cell)),
                 data.y_axis,
             ),
+            counted: (0..snapshot.cells.len()).map(|cell| view.counts(cell)).collect(),
             snapshot,
         });
     }
@@ -137,6 +143,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         cells: Cells {
             present: fields.iter().map(|f| f.velocities.len()).collect(),
             with_velocity: fields.iter().map(finite).collect(),
+            counted: fields.iter().map(|f| f.counted.iter().filter(|counted| **counted).count()).collect(),
             frames,
         },
         parameters: (&parameters).into(),
@@ -144,8 +151,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         mean_square_velocity: fields
             .iter()
             .map(|f| {
-                let squares = f.velocities.iter().filter(|v| v.x.is_finite()).map(|v| v.norm_squared());
-                squares.sum::<f64>() / finite(f).max(1) as f64
+                let counted: Vec<Vector<f64>> = f
+                    .velocities
+                    .iter()
+                    .zip(&f.counted)
+                    .filter(|(_, counted)| **counted)
+                    .map(|(v, _)| *v)
+                    .collect();
+                mean_square_velocity(&counted)
             })
             .collect(),
     };
@@ -155,10 +168,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     for (index, frame) in report.cells.frames.iter().enumerate() {
         let _ = writeln!(
             summary,
-            "frame {frame}: {} cells, {} with a velocity, mean square velocity {:.6e}",
+            "frame {frame}: {} cells, {} that count, mean square velocity {}",
             report.cells.present[index],
-            report.cells.with_velocity[index],
-            report.mean_square_velocity[index]
+            report.cells.counted[index],
+            significant(report.mean_square_velocity[index], 4)
         );
     }
     let _ = writeln!(summary, "written to {}", out.path().display());
@@ -190,37 +203,43 @@ fn oriented(tensor: [[f64; 2]; 2], y_axis: YAxis) -> [[f64; 2]; 2] {
     }
 }
 
-fn write_jacobian(out: &mut OutputDirectory, matrix: &BlockMatrix, y_axis: YAxis) -> Result<(), Failure> {
-    let n = 2 * matrix.rows();
-    let sign = |row: usize, column: usize| match y_axis {
-        YAxis::Down if (row + column) % 2 == 1 => -1.0,
-        _ => 1.0,
-    };
-    if n <= DENSE_LIMIT {
-        let mut dense = Array2::from_shape_vec((n, n), matrix.to_dense())
-            .map_err(|error| Failure::new(format!("the Jacobian has an unexpected shape: {error}")))?;
-        dense.indexed_iter_mut().for_each(|((row, column), entry)| *entry *= sign(row, column));
-        out.write_array("jacobian.npy", dense.view())?;
-        return Ok(());
-    }
+/// The Jacobian in the numbering and axes of the files. Rows of cells without a velocity are NaN in the dense form and
+/// missing in the sparse one.
+fn write_jacobian(
+    out: &mut OutputDirectory,
+    matrix: &BlockMatrix,
+    snapshot: &Snapshot,
+    data: &DataSet,
+) -> Result<(), Failure> {
+    let n = 2 * data.cells();
     let (mut rows, mut columns, mut values) = (Vec::new(), Vec::new(), Vec::new());
     for row in 0..matrix.rows() {
         for (column, block) in matrix.row(row) {
             for (k, entry) in block.iter().enumerate() {
-                let (i, j) = (2 * row + k / 2, 2 * column + k % 2);
-                rows.push(i as i64);
-                columns.push(j as i64);
-                values.push(sign(i, j) * entry);
+                let mirrored = data.y_axis == YAxis::Down && (k == 1 || k == 2);
+                rows.push(2 * snapshot.cells[row] + k / 2);
+                columns.push(2 * snapshot.cells[column] + k % 2);
+                values.push(if mirrored { -entry } else { *entry });
             }
         }
     }
+    if n <= DENSE_LIMIT {
+        let mut dense = Array2::from_elem((n, n), f64::NAN);
+        rows.iter().for_each(|&row| dense.row_mut(row).fill(0.0));
+        for ((&row, &column), &value) in rows.iter().zip(&columns).zip(&values) {
+            dense[(row, column)] = value;
+        }
+        out.write_array("jacobian.npy", dense.view())?;
+        return Ok(());
+    }
+    let integers = |indices: Vec<usize>| Array1::from_iter(indices.into_iter().map(|index| index as i64));
     let mut bytes = Cursor::new(Vec::new());
     let failed = |error: ndarray_npy::WriteNpzError| Failure::new(format!("jacobian.npz: {error}"));
     let mut npz = ndarray_npy::NpzWriter::new_compressed(&mut bytes);
-    npz.add_array("row", &Array1::from(rows)).map_err(failed)?;
-    npz.add_array("column", &Array1::from(columns)).map_err(failed)?;
+    npz.add_array("row", &integers(rows)).map_err(failed)?;
+    npz.add_array("column", &integers(columns)).map_err(failed)?;
     npz.add_array("value", &Array1::from(values)).map_err(failed)?;
-    npz.add_array("shape", &Array1::from(vec![n as i64, n as i64])).map_err(failed)?;
+    npz.add_array("shape", &integers(vec![n, n])).map_err(failed)?;
     npz.finish().map_err(failed)?;
     out.write_bytes("jacobian.npz", bytes.get_ref())?;
     Ok(())

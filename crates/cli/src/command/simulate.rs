@@ -23,7 +23,7 @@ use voronudge_simulate::{
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Number of cells.
-    #[arg(long, default_value_t = 100)]
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true)]
     cells: usize,
     /// Periodic box [default: a square of unit area per cell].
     #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
@@ -35,7 +35,7 @@ pub(crate) struct Arguments {
     #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     dt: f64,
     /// Number of frames to keep, evenly spaced; the last at the end.
-    #[arg(long, default_value_t = 10)]
+    #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
     frames: usize,
     #[command(flatten)]
     parameters: ParameterArguments,
@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let advised = recommended_time_step(&parameters, (cell_box.area() / arguments.cells as f64).sqrt());
     if arguments.dt > advised {
         run.warn(format!(
-            "the time step {} is above the {advised:.2e} advised for these parameters; chiral flows come out too slow then",
+            "the time step {} is above the {advised:.2e} advised for these parameters; velocities can come out wrong by tens of per cent",
             arguments.dt
         ));
     }

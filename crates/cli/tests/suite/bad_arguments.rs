@@ -56,11 +56,20 @@ fn a_largest_area_that_is_no_factor_is_refused() {
 }
 
 #[test]
-fn zero_threads_are_refused() {
-    let facts = ["--threads is 0"];
-    assert_unreadable(&fixture("chiral-liquid"), &["--threads", "0"], &facts);
-    assert_line_refused("simulate --threads 0", &facts);
-    assert_line_refused("check-gradients --threads 0", &facts);
+fn impossible_numbers_of_threads_are_refused() {
+    assert_unreadable(&fixture("chiral-liquid"), &["--threads", "0"], &["--threads is 0"]);
+    assert_line_refused("simulate --threads 0", &["--threads is 0"]);
+    assert_line_refused("check-gradients --threads 0", &["--threads is 0"]);
+    assert_line_refused("evaluate --threads 999999999", &["--threads is 999999999", "1024"]);
+}
+
+#[test]
+fn negative_numbers_are_refused_where_counts_are_needed() {
+    for flag in ["--seed", "--threads", "--max-steps"] {
+        assert_infer_refuses(&format!("{flag} -1"), &[flag, "-1"]);
+    }
+    assert_line_refused("simulate --cells -1", &["--cells", "-1"]);
+    assert_line_refused("simulate --frames -1", &["--frames", "-1"]);
 }
 
 #[test]

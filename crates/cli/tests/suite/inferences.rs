@@ -143,8 +143,13 @@ fn positions_alone_tell_the_sense_of_chirality() {
     assert_eq!(report["cells"]["frames"], serde_json::json!([1, 2, 3]));
     assert_eq!(report["nmse"]["mean_removed"], "per_frame");
     assert!(number(&report, "/cells/left_out/polygon_not_closed") > 0.0);
+    // Differences over a finite time bias the rest more than its intervals tell.
     assert!(number(&report, "/parameters/K_P_alpha/ci95/0") > 0.0);
     assert!(number(&report, "/parameters/alpha/ci95/0") > 0.0);
+    for (name, truth, tolerance) in [("K_P_alpha", 0.02, 0.05), ("P_0", 78.0, 0.05), ("alpha", 1.0, 0.3)] {
+        let found = number(&report, &format!("/parameters/{name}/value"));
+        assert!((found - truth).abs() < tolerance * truth, "{name} is {found}");
+    }
     // In the files y points down, in the results too; absent cells stay absent.
     let measured: Array3<f64> = read(&fixture("open-field/positions.npy"));
     let nudged: Array3<f64> = read(&out.file("nudged_positions.npy"));

@@ -12,6 +12,8 @@ use crate::run::Run;
 use crate::snapshot::to_array;
 use clap::{Args, ValueEnum};
 use prepare::Prepared;
+use std::process::Stdio;
+use std::time::Duration;
 use voronudge_geometry::Vector;
 use voronudge_infer::{Fixed, Inference, infer};
 use voronudge_io::{DataSet, Difference, FrameSelection, OutputDirectory};
@@ -36,11 +38,12 @@ pub(crate) struct Arguments {
     /// Which mean velocity to remove first: drift of the stage shows as one.
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     remove_mean: MeanToRemove,
-    /// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
+    /// In an open field of view, polygons larger than this multiple of the median area, or reaching farther than a
+    /// regular hexagon of that size, are taken for the rim.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     largest_area: f64,
     /// Steps of the optimiser at the last stage of each fit.
-    #[arg(long, default_value_t = 60)]
+    #[arg(long, default_value_t = 60, allow_negative_numbers = true)]
     max_steps: u64,
     /// Open report.html when done.
     #[arg(long)]
@@ -156,6 +159,9 @@ fn write_arrays(
     Ok(())
 }
 
+/// Time in which an opener shows whether it works.
+const OPENING: Duration = Duration::from_millis(700);
+
 /// Shows a page in the user's browser, where there is one.
 fn open(page: &std::path::Path) {
     let opener = match std::env::consts::OS {
@@ -163,8 +169,18 @@ fn open(page: &std::path::Path) {
         "windows" => "explorer",
         _ => "xdg-open",
     };
-    let opened = std::process::Command::new(opener).arg(page).spawn();
-    if opened.is_err() {
+    let started = std::process::Command::new(opener)
+        .arg(page)
+        .stdin(Stdio::null())
+        .stdout(Stdio::null())
+        .stderr(Stdio::null())
+        .spawn();
+    // An opener that fails does so at once; one that stays is the browser itself.
+    let failed = started.map_or(true, |mut child| {
+        std::thread::sleep(OPENING);
+        matches!(child.try_wait(), Ok(Some(status)) if !status.success())
+    });
+    if failed {
         eprintln!("no browser could be started; open {} yourself", page.display());
     }
 }

@@ -47,9 +47,9 @@ fn headline(report: &InferReport) -> String {
     let percent = |share: f64| format!("{} %", significant(100.0 * share, 2));
     if held_out + spread >= 0.95 {
         return format!(
-            "The model explains almost nothing of these velocities (held-out error {} of their square): the numbers below \
-             describe no mechanism of this tissue.",
-            percent(held_out)
+            "The model explains almost nothing of these velocities (held-out NMSE {}, where 1 is no explanation at all): the \
+             numbers below describe no mechanism of this tissue.",
+            significant(held_out, 3)
         );
     }
     let alpha = &report.parameters.alpha;
@@ -60,12 +60,26 @@ fn headline(report: &InferReport) -> String {
         (_, true) => format!("With α held at {}", significant(alpha.value, 2)),
         _ => "No chirality is seen".into(),
     };
+    let error = match report.nmse.noise_floor {
+        floor if !floor.is_finite() => {
+            format!("The model misses {} of the square of velocities it has not seen.", percent(held_out))
+        }
+        floor if held_out < 1.2 * floor + spread => format!(
+            "The model misses {} of the square of velocities it has not seen, which is what the noise of the measurement alone \
+             gives ({}).",
+            percent(held_out),
+            percent(floor)
+        ),
+        floor => format!(
+            "The model misses {} of the square of velocities it has not seen; the noise of the measurement alone would give {}: \
+             the model lacks something.",
+            percent(held_out),
+            percent(floor)
+        ),
+    };
     format!(
-        "{chirality}; the preferred shape index P₀/ℓ₀ is {}. Of the square of velocities it has not seen, the model misses \
-         {}; measurement noise alone would make it miss {}.",
-        significant(report.parameters.shape_index.value, 3),
-        percent(held_out),
-        percent(report.nmse.noise_floor)
+        "{chirality}; the preferred shape index P₀/ℓ₀ is {}. {error}",
+        significant(report.parameters.shape_index.value, 3)
     )
 }
 
@@ -90,7 +104,8 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
     let boundary = match prepared.observations.first().map(|o| o.tessellation.domain()) {
         Some(Domain::Periodic(_)) => "The box is periodic.",
         _ => {
-            "The field of view is open: only cells whose polygon and whose neighbours' polygons are closed count."
+            "The field of view is open: only cells count whose polygon and whose neighbours' polygons are closed and of \
+             plausible size and reach."
         }
     };
     vec![format!("{source}; {mean}. {boundary}")]

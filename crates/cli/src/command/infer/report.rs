@@ -66,7 +66,11 @@ pub(super) fn report(run: &Run, data: &DataSet, prepared: &Prepared, result: &In
             naive: result.nmse.naive,
             nudged: result.nmse.nudged,
             un_nudged: result.nmse.un_nudged,
-            noise_floor: result.nmse.noise_floor,
+            noise_floor: match result.noise_source {
+                Source::Given => result.nmse.noise_floor,
+                // Estimated noise contains whatever the model misses: it would always explain everything.
+                Source::Estimated => f64::NAN,
+            },
             cross_validated: result.nmse.cross_validated.map(|c| c[0]),
             cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
             mean_removed: prepared.mean_removed,
@@ -155,17 +159,24 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
             None => "fixed".into(),
         };
         let (value, naive) = (significant(parameter.value, 4), significant(naive, 4));
-        let _ = writeln!(text, "{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
+        let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
+        let _ = writeln!(text, "{}", row.trim_end());
     }
     let e = &report.nmse;
     let held_out = match (e.cross_validated, e.cross_validated_standard_error) {
-        (Some(error), Some(spread)) => format!("{error:.3} ± {spread:.3}"),
+        (Some(error), Some(spread)) => format!("{} ± {}", significant(error, 3), significant(spread, 1)),
         _ => "–".into(),
+    };
+    let floor = match e.noise_floor.is_finite() {
+        true => format!("; noise alone {}", significant(e.noise_floor, 3)),
+        false => String::new(),
     };
     let _ = writeln!(
         text,
-        "\nerror (NMSE)  naive {:.3}, nudged {:.4}, same parameters un-nudged {:.3}, held out {held_out}; noise alone {:.3}",
-        e.naive, e.nudged, e.un_nudged, e.noise_floor
+        "\nerror (NMSE)  naive {}, nudged {}, same parameters un-nudged {}, held out {held_out}{floor}",
+        significant(e.naive, 3),
+        significant(e.nudged, 3),
+        significant(e.un_nudged, 3)
     );
     let _ = writeln!(
         text,

@@ -1,7 +1,5 @@
 //! Parameters put into a simulation come out of the fit.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
-
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;

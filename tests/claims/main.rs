@@ -1,0 +1,5 @@
+//! Claims of the product as a whole: what is put into a simulation comes out of a fit.
+
+#![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
+
+mod recovery;

@@ -1,0 +1,1 @@
+//! Tests of claims that span several crates are in `claims/`.
