@@ -2,21 +2,28 @@
 
 use crate::program::command;
 use crate::scratch::{Folder, names};
+use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// A run that would take hours, with frames close together.
-const LINE: &str = "simulate --cells 100 --time 100000 --dt 0.01 --frames 1000000 --alpha 1";
+/// A run of many minutes, with frames close together.
+const LINE: &str = "simulate --cells 100 --time 10000 --dt 0.01 --frames 100000 --alpha 1";
 
-fn start(out: &std::path::Path) -> Child {
+fn start(out: &Path) -> Child {
     let mut command = command();
     command.args(LINE.split_whitespace()).arg("--out").arg(out);
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
 /// Interrupts the program once it is at work and returns its exit code and what it printed.
-fn interrupt(run: Child) -> (Option<i32>, String, String) {
+fn interrupt(run: Child, out: &Path) -> (Option<i32>, String, String) {
+    let begun = Instant::now();
+    let at_work = || out.is_dir() && names(out).iter().any(|name| name.starts_with(".voronudge-"));
+    while !at_work() {
+        assert!(begun.elapsed() < Duration::from_secs(60));
+        sleep(Duration::from_millis(20));
+    }
     sleep(Duration::from_secs(1));
     let begun = Instant::now();
     let sent = Command::new("kill").args(["-INT", &run.id().to_string()]).status().unwrap();
@@ -31,7 +38,7 @@ fn interrupt(run: Child) -> (Option<i32>, String, String) {
 fn an_interrupted_run_leaves_earlier_results_alone() {
     let out = Folder::new();
     out.write("positions.npy", "earlier");
-    let (code, stdout, stderr) = interrupt(start(out.path()));
+    let (code, stdout, stderr) = interrupt(start(out.path()), out.path());
     assert_eq!((code, stdout.as_str()), (Some(130), ""));
     assert!(stderr.contains("error: interrupted"), "{stderr}");
     assert_eq!(out.names(), ["positions.npy"]);
@@ -41,7 +48,8 @@ fn an_interrupted_run_leaves_earlier_results_alone() {
 #[test]
 fn an_interrupted_run_takes_its_new_folder_away() {
     let parent = Folder::new();
-    let (code, ..) = interrupt(start(&parent.file("results")));
+    let out = parent.file("results");
+    let (code, ..) = interrupt(start(&out), &out);
     assert_eq!(code, Some(130));
     assert_eq!(names(parent.path()), Vec::<String>::new());
 }
