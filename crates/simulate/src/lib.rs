@@ -12,7 +12,7 @@
 //! use std::ops::ControlFlow;
 //! use voronudge_geometry::{Domain, PeriodicBox};
 //! use voronudge_model::{Model, Parameters};
-//! use voronudge_simulate::{RandomPlacement, Schedule, Simulation, generator, run};
+//! use voronudge_simulate::{Event, RandomPlacement, Schedule, Simulation, generator, run};
 //!
 //! let cell_box = PeriodicBox::new([5.0, 5.0])?;
 //! let positions = RandomPlacement::new(25, cell_box).draw(&mut generator(1))?;
@@ -20,8 +20,10 @@
 //! let mut simulation = Simulation::new(positions, Domain::Periodic(cell_box), model)?;
 //! let mut times = Vec::new();
 //! let schedule = Schedule { time: 1.0, time_step: 0.02, frames: 4 };
-//! let summary = run(&mut simulation, &schedule, |frame| {
-//!     times.push(frame.simulation.time());
+//! let summary = run(&mut simulation, &schedule, |event| {
+//!     if let Event::Frame(frame) = event {
+//!         times.push(frame.simulation.time());
+//!     }
 //!     ControlFlow::Continue(())
 //! })?;
 //! assert_eq!(summary.steps, 52); // thirteen steps of 0.25/13 between frames
@@ -39,6 +41,6 @@ mod time_step;
 
 pub use error::Error;
 pub use placement::{Generator, RandomPlacement, generator};
-pub use schedule::{Completion, Frame, Schedule, Summary, run};
+pub use schedule::{Completion, Event, Frame, Schedule, Summary, run};
 pub use simulation::Simulation;
 pub use time_step::recommended_time_step;

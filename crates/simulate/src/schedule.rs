@@ -50,6 +50,20 @@ pub struct Frame<'a> {
     pub simulation: &'a Simulation,
 }
 
+/// What an observer of a run is shown.
+#[derive(Debug, Clone, Copy)]
+pub enum Event<'a> {
+    /// A step was made: how many so far, and how many the schedule has.
+    Step {
+        /// Steps made.
+        done: usize,
+        /// Steps of the schedule.
+        total: usize,
+    },
+    /// A frame of the schedule was reached.
+    Frame(Frame<'a>),
+}
+
 /// How a run ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
@@ -70,7 +84,7 @@ pub struct Summary {
     pub completion: Completion,
 }
 
-/// Runs `simulation` from where it is by `schedule`; `on_frame` sees every frame and may stop the run.
+/// Runs `simulation` from where it is by `schedule`; `observe` sees every step and every frame and may stop the run.
 ///
 /// # Errors
 /// [`Error::NoFrames`], [`Error::Duration`] and [`Error::TimeStep`] for an impossible schedule, and the errors of
@@ -80,14 +94,14 @@ pub struct Summary {
 /// use std::ops::ControlFlow;
 /// use voronudge_geometry::{Domain, PeriodicBox};
 /// use voronudge_model::{Model, Parameters};
-/// use voronudge_simulate::{Completion, RandomPlacement, Schedule, Simulation, generator, run};
+/// use voronudge_simulate::{Completion, Event, RandomPlacement, Schedule, Simulation, generator, run};
 /// let cell_box = PeriodicBox::new([4.0, 4.0])?;
 /// let positions = RandomPlacement::new(16, cell_box).draw(&mut generator(1))?;
 /// let model = Model::chiral_voronoi(&Parameters::default());
 /// let mut simulation = Simulation::new(positions, Domain::Periodic(cell_box), model)?;
 /// let schedule = Schedule { time: 100.0, time_step: 0.02, frames: 1000 };
-/// let summary = run(&mut simulation, &schedule, |frame| match frame.index {
-///     2 => ControlFlow::Break(()),
+/// let summary = run(&mut simulation, &schedule, |event| match event {
+///     Event::Frame(frame) if frame.index == 2 => ControlFlow::Break(()),
 ///     _ => ControlFlow::Continue(()),
 /// })?;
 /// assert_eq!(summary.completion, Completion::Stopped);
@@ -97,14 +111,14 @@ pub struct Summary {
 pub fn run(
     simulation: &mut Simulation,
     schedule: &Schedule,
-    mut on_frame: impl FnMut(Frame<'_>) -> ControlFlow<()>,
+    mut observe: impl FnMut(Event<'_>) -> ControlFlow<()>,
 ) -> Result<Summary, Error> {
     let steps_per_frame = schedule.steps_per_frame()?;
     let time_step = schedule.frame_interval() / steps_per_frame as f64;
     let total = steps_per_frame * schedule.frames;
     let (mut steps, mut samples, mut sum) = (0, 0, 0.0);
     let mut completion = Completion::Finished;
-    for index in 0..schedule.frames {
+    'run: for index in 0..schedule.frames {
         for _ in 0..steps_per_frame {
             simulation.step(time_step)?;
             steps += 1;
@@ -112,8 +126,12 @@ pub fn run(
                 sum += mean_square_velocity(simulation.velocities());
                 samples += 1;
             }
+            if observe(Event::Step { done: steps, total }).is_break() {
+                completion = Completion::Stopped;
+                break 'run;
+            }
         }
-        if on_frame(Frame { index, simulation }).is_break() {
+        if observe(Event::Frame(Frame { index, simulation })).is_break() {
             completion = Completion::Stopped;
             break;
         }

@@ -6,7 +6,7 @@ use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{
-    Completion, Error, RandomPlacement, Schedule, Simulation, Summary, generator, measure, run,
+    Completion, Error, Event, RandomPlacement, Schedule, Simulation, Summary, generator, measure, run,
 };
 
 fn tissue(preferred_perimeter: f64, chirality: f64) -> Simulation {
@@ -45,15 +45,29 @@ fn frames_are_evenly_spaced_and_steps_no_larger_than_asked() {
     let mut simulation = tissue(3.5, 0.2);
     let mut times = Vec::new();
     let schedule = Schedule { time: 0.3, time_step: 0.03, frames: 3 };
-    let summary = run(&mut simulation, &schedule, |frame| {
-        assert_eq!(frame.index, times.len());
-        times.push(frame.simulation.time());
+    let summary = run(&mut simulation, &schedule, |event| {
+        if let Event::Frame(frame) = event {
+            assert_eq!(frame.index, times.len());
+            times.push(frame.simulation.time());
+        }
         ControlFlow::Continue(())
     });
     assert_eq!(summary.unwrap().steps, 12);
     for (time, expected) in times.iter().zip([0.1, 0.2, 0.3]) {
         assert!((time - expected).abs() < 1e-14);
     }
+}
+
+#[test]
+fn a_run_can_be_stopped_between_frames() {
+    let mut simulation = tissue(3.5, 0.2);
+    let schedule = Schedule { time: 10.0, time_step: 0.02, frames: 1 };
+    let summary = run(&mut simulation, &schedule, |event| match event {
+        Event::Step { done: 7, total: 500 } => ControlFlow::Break(()),
+        _ => ControlFlow::Continue(()),
+    })
+    .unwrap();
+    assert_eq!((summary.steps, summary.completion), (7, Completion::Stopped));
 }
 
 #[test]

@@ -9,6 +9,7 @@ use crate::run::Run;
 use clap::Args;
 use ndarray::Array3;
 use serde::Serialize;
+use std::ops::ControlFlow;
 use std::time::Instant;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_io::{Boundary, DataSet, OutputDirectory, YAxis};
@@ -16,7 +17,8 @@ use voronudge_model::Model;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_simulate::measure::hexatic_order;
 use voronudge_simulate::{
-    Completion, RandomPlacement, Schedule, Simulation, generator, recommended_time_step, run as simulate,
+    Completion, Event, RandomPlacement, Schedule, Simulation, generator, recommended_time_step,
+    run as simulate,
 };
 
 /// Simulates the chiral Voronoi model in a periodic box from random positions (RK4). The output is a data set.
@@ -99,7 +101,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let shape = (arguments.frames, arguments.cells, 2);
     let (mut positions, mut velocities) = (Array3::zeros(shape), Array3::zeros(shape));
     let begun = Instant::now();
-    let summary = simulate(&mut simulation, &schedule, |frame| {
+    let summary = simulate(&mut simulation, &schedule, |event| {
+        let frame = match event {
+            Event::Step { done, total } => return progress.step("simulate", done as u64, total as u64),
+            Event::Frame(frame) => frame,
+        };
         let fill = |array: &mut Array3<f64>, vectors: &[Vector<f64>]| {
             for (cell, v) in vectors.iter().enumerate() {
                 array[(frame.index, cell, 0)] = v.x;
@@ -108,7 +114,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         };
         fill(&mut positions, frame.simulation.positions());
         fill(&mut velocities, frame.simulation.velocities());
-        progress.step("simulate", frame.index as u64 + 1, arguments.frames as u64)
+        ControlFlow::Continue(())
     })?;
     progress.finish();
     if summary.completion == Completion::Stopped {

@@ -39,7 +39,7 @@ impl FileFault {
             Self::Read(source) if source.kind() == io::ErrorKind::PermissionDenied => {
                 Some("you have no permission to read it".into())
             }
-            Self::Read(_) => None,
+            Self::Read(_) => Some("copy the file to a local disk and try again".into()),
         }
     }
 }

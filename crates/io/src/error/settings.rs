@@ -56,9 +56,9 @@ pub enum SettingFault {
 impl SettingFault {
     pub(super) fn hint(&self) -> Option<String> {
         let text = match self {
-            Self::NotPositive { .. } => return None,
+            Self::NotPositive { .. } => "give a positive number, in the units of the data",
             Self::Negative { .. } => "leave it out where the noise is not known",
-            Self::Unknown { .. } => return None,
+            Self::Unknown { .. } => "use one of the names that the message lists",
             Self::MissingBoundary { .. } => {
                 "add boundary = \"open\" or boundary = \"periodic\" with box = [Lx, Ly] to \
                  dataset.toml, or use --open or --box LX LY"
@@ -112,7 +112,9 @@ impl TomlFault {
             Self::UnknownKey { known, .. } => Some(format!("the keys are {}", known.join(", "))),
             Self::Syntax(_) => Some("write key = value; texts need quotation marks".into()),
             Self::NotText => Some("save the file as UTF-8".into()),
-            Self::WrongType { .. } => None,
+            Self::WrongType { .. } => {
+                Some("numbers stand without quotation marks, texts with them, lists in brackets".into())
+            }
             Self::Setting(fault) => fault.hint(),
         }
     }

@@ -101,7 +101,9 @@ impl TableFault {
                 "is the frame column a time? name the column that counts images from zero"
             }
             Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
-            Self::Unreadable(_) => return None,
+            Self::Unreadable(_) => {
+                "open the table in a text editor: it should have one line for each cell and frame"
+            }
         };
         Some(text.into())
     }

@@ -108,7 +108,15 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
              plausible size and reach."
         }
     };
-    vec![format!("{source}; {mean}. {boundary}")]
+    let mut paragraphs = vec![format!("{source}; {mean}. {boundary}")];
+    if prepared.derived.is_some() {
+        paragraphs.push(
+            "Differences of positions average out what is faster than the interval. This biases K_A and K_P first, and the \
+             intervals below do not contain it: compare with frames that are closer in time, where there are any."
+                .into(),
+        );
+    }
+    paragraphs
 }
 
 fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameView {

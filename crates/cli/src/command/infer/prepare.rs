@@ -86,6 +86,13 @@ pub(super) fn prepare(arguments: &Arguments, data: &DataSet, run: &mut Run) -> R
         snapshots.push(snapshot);
         observations.push(observation);
     }
+    let absent: usize = snapshots.iter().map(|snapshot| data.cells() - snapshot.cells.len()).sum();
+    if absent > 0 && matches!(domain, Domain::Periodic(_)) {
+        run.warn(format!(
+            "{absent} cells are absent from frames of the periodic box: if they were there and not seen, the polygons around \
+             the holes are wrong"
+        ));
+    }
     let mean_removed = match (arguments.remove_mean, derived, domain) {
         (MeanToRemove::PerFrame, ..) | (MeanToRemove::Auto, Some(_), Domain::Open) => {
             observations.iter_mut().for_each(remove_median);
