@@ -13,13 +13,13 @@ fn main() {
     divan::main();
 }
 
-/// A jittered square lattice: disordered, without coincident cells, at unit density. `Shuffled` numbers the cells in
-/// random order, so that neighbours are far apart in memory.
-fn tissue(side: usize, order: Order) -> (Vec<Vector<f64>>, Domain) {
+/// A jittered square lattice at unit density. `Shuffled` numbers the cells in random order, so that neighbours are far
+/// apart in memory.
+fn tissue(side: usize, order: Order, jitter: f64) -> (Vec<Vector<f64>>, Domain) {
     let mut rng = Pcg64Mcg::seed_from_u64(7);
     let mut positions: Vec<_> = (0..side * side)
         .map(|i| {
-            let mut at = |k: usize| k as f64 + rng.random_range(0.05..0.95);
+            let mut at = |k: usize| k as f64 + 0.5 + rng.random_range(-jitter..jitter);
             Vector::new(at(i % side), at(i / side))
         })
         .collect();
@@ -38,9 +38,20 @@ enum Order {
     Shuffled,
 }
 
-#[divan::bench(args = [(10, Order::Rows), (100, Order::Rows), (1000, Order::Rows), (1000, Order::Shuffled)], sample_count = 10)]
-fn tessellate(bencher: Bencher, (side, order): (usize, Order)) {
-    let (positions, domain) = tissue(side, order);
+/// A disordered tissue tessellated anew in the same memory, as in a simulation or a fit.
+#[divan::bench(args = [(10, Order::Rows), (100, Order::Rows), (1000, Order::Rows), (1000, Order::Shuffled)], sample_count = 10, sample_size = 3)]
+fn renew(bencher: Bencher, (side, order): (usize, Order)) {
+    let (positions, domain) = tissue(side, order, 0.3);
+    let mut tessellation = Tessellation::new(&positions, domain).expect("distinct cells");
+    bencher
+        .counter(ItemsCount::new(positions.len()))
+        .bench_local(|| tessellation.renew(divan::black_box(&positions)));
+}
+
+/// Almost random points, whose large empty circles need wider strips, in fresh memory.
+#[divan::bench(args = [10, 100, 1000], sample_count = 10)]
+fn new_from_almost_random_points(bencher: Bencher, side: usize) {
+    let (positions, domain) = tissue(side, Order::Rows, 0.45);
     bencher
         .counter(ItemsCount::new(positions.len()))
         .bench(|| Tessellation::new(divan::black_box(&positions), domain));
