@@ -58,7 +58,7 @@ impl SettingFault {
         let text = match self {
             Self::NotPositive { .. } => "give a positive number, in the units of the data",
             Self::Negative { .. } => "leave it out where the noise is not known",
-            Self::Unknown { .. } => "use one of the names that the message lists",
+            Self::Unknown { .. } => "write it as the message says",
             Self::MissingBoundary { .. } => {
                 "add boundary = \"open\" or boundary = \"periodic\" with box = [Lx, Ly] to \
                  dataset.toml, or use --open or --box LX LY"

@@ -103,7 +103,7 @@ fn what_could_not_be_loaded_is_not_saved() {
     let mut out = OutputDirectory::create(scratch.root()).unwrap();
     let mut data = full_data();
     data.frame_interval = 0.0;
-    assert_told(data.save(&mut out), &["frame_interval is 0"], "");
+    assert_told(data.save(&mut out), &["frame_interval is 0"], "positive number");
     let mut data = full_data();
     data.velocities = Some(Array3::zeros((3, 3, 2)));
     let facts = ["velocities.npy: has shape (3, 3, 2)", "shape (3, 4, 2)"];

@@ -108,7 +108,7 @@ fn wrong_types_are_told() {
         ("position_noise = [1]", "position_noise is an array, expected a number"),
         ("velocity_noise = {a = 1}", "velocity_noise is a table"),
     ] {
-        assert_told(load(entry), &["dataset.toml, line 1", fact], "");
+        assert_told(load(entry), &["dataset.toml, line 1", fact], "quotation marks");
     }
 }
 
@@ -126,8 +126,9 @@ fn impossible_values_are_told() {
         ("y_axis = \"Down\"", ["y_axis is \"Down\"", "\"up\" or \"down\""]),
         ("position_noise = \"two\"", ["position_noise is \"two\"", "\"2 %\""]),
     ] {
+        let advice = if facts[1] == positive { "positive number" } else { "as the message says" };
         let facts = ["dataset.toml, line 1", facts[0], facts[1]];
-        assert_told(load(entry), &facts, "");
+        assert_told(load(entry), &facts, advice);
     }
     for entry in ["velocity_noise = -1", "velocity_noise = \"-1 %\"", "velocity_noise = nan"] {
         let facts = ["line 1: velocity_noise is", "must be finite and not negative"];
@@ -156,9 +157,9 @@ fn impossible_flags_are_told() {
     let flag = |source| load_with(b"boundary = \"open\"", source);
     let lengths = [f64::NAN, 1.0];
     let source = Source { boundary: Some(Boundary::Periodic { lengths }), ..Source::default() };
-    assert_told(flag(source), &["box length is NaN"], "");
+    assert_told(flag(source), &["box length is NaN"], "positive number");
     let source = Source { frame_interval: Some(0.0), ..Source::default() };
-    assert_told(flag(source), &["frame_interval is 0"], "");
+    assert_told(flag(source), &["frame_interval is 0"], "positive number");
     let source = Source { position_noise: Some(Noise::Relative(-0.1)), ..Source::default() };
     assert_told(flag(source), &["position_noise is -0.1"], "leave it out");
 }
@@ -172,7 +173,7 @@ fn noise_reads_its_own_text_exactly() {
     assert_eq!(Noise::Relative(0.07).to_string(), "7 %", "not 7.000000000000001 %");
     for bad in ["", "%", "2 percent", "2 % %", "0x1"] {
         let facts = ["noise is", "expected a number"];
-        assert_told(bad.parse::<Noise>(), &facts, "");
+        assert_told(bad.parse::<Noise>(), &facts, "as the message says");
     }
     // Multiplying by 100 rounds for many of these; the text must not.
     for step in 0..2000 {

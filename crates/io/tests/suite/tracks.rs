@@ -127,7 +127,7 @@ fn impossible_options_are_told() {
     ] {
         let options = ImportOptions { pixel_size, frame_interval: interval, ..ImportOptions::default() };
         let facts = [fact, "finite and above zero"];
-        assert_told(trackmate_with(EXPORT, &options), &facts, "");
+        assert_told(trackmate_with(EXPORT, &options), &facts, "positive number");
     }
 }
 

@@ -133,5 +133,5 @@ fn differences_have_names() {
         assert_eq!(named, difference);
     }
     let facts = ["difference is \"middle\", expected \"central\", \"forward\""];
-    assert_told("middle".parse::<Difference>(), &facts, "");
+    assert_told("middle".parse::<Difference>(), &facts, "as the message says");
 }
