@@ -1,7 +1,7 @@
 //! The error on velocities that a fit has not seen.
 
 use crate::fit::nudged_fit;
-use crate::least_squares::{self, columns_of, predict};
+use crate::least_squares::{self, residuals};
 use crate::objective::Objective;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Progress};
 use std::ops::ControlFlow;
@@ -60,9 +60,9 @@ pub(crate) fn cross_validate(
         let coefficients = space.coefficients(objective.split(&fit.parameters).0);
         let (mut error, mut total) = (0.0, 0.0);
         for (frame, out) in frames.iter().zip(&held_out) {
-            let columns = columns_of(&frame.tessellation, &frame.positions, terms);
-            for (cell, v) in frame.targets().filter(|(cell, _)| out[*cell]) {
-                error += (v - predict(&columns, coefficients.as_slice(), cell)).norm_squared();
+            let rests = residuals(frame, terms, coefficients.as_slice());
+            for ((_, v), (_, rest)) in frame.targets().zip(rests).filter(|((cell, _), _)| out[*cell]) {
+                error += rest.norm_squared();
                 total += v.norm_squared();
             }
         }

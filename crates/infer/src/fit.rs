@@ -1,7 +1,7 @@
 //! One nudged fit: continuation from loose to tight data, each stage run by argmin.
 
 use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
-use crate::objective::{Objective, Shared};
+use crate::objective::Objective;
 use crate::{Error, NoiseLevels, Progress, Status};
 use argmin::core::{Executor, TerminationReason, TerminationStatus};
 use std::ops::ControlFlow;
@@ -60,7 +60,7 @@ fn optimise(
     observer: Observer<'_>,
 ) -> Result<(Vec<f64>, Status, u64), Error> {
     let solver = LevenbergMarquardt::new(TOLERANCE, observer);
-    let executor = Executor::new(Shared(objective), solver)
+    let executor = Executor::new(objective, solver)
         .configure(|state| state.param(start.to_vec()).max_iters(max_steps))
         .ctrlc(false);
     let mut state = executor

@@ -5,7 +5,7 @@ use crate::cross_validation::cross_validate;
 use crate::degrees_of_freedom::degrees_of_freedom;
 use crate::estimates::{directions, estimates};
 use crate::fit::nudged_fit;
-use crate::least_squares::{self, invert, predict};
+use crate::least_squares::{self, invert, predict, residuals};
 use crate::noise::{FIRST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE, Spent};
 use crate::objective::Objective;
 use crate::{
@@ -76,16 +76,9 @@ pub fn infer(
     let covariance = invert(information.clone())? * variance;
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
-        frames
-            .iter()
-            .map(|frame| {
-                let columns = least_squares::columns_of(&frame.tessellation, &frame.positions, &terms);
-                frame
-                    .targets()
-                    .map(|(cell, v)| (v - predict(&columns, coefficients.as_slice(), cell)).norm_squared())
-                    .sum::<f64>()
-            })
-            .sum::<f64>()
+        let squares =
+            |frame| residuals(frame, &terms, coefficients.as_slice()).map(|(_, rest)| rest.norm_squared());
+        frames.iter().map(|frame| squares(frame).sum::<f64>()).sum()
     };
     let mut sensitivity = 0.0;
     let results = frames
@@ -143,22 +136,14 @@ fn first_levels(
         }
     }
     let coefficients = space.coefficients(naive);
-    let mut residuals: Vec<f64> = frames
+    let mut sizes: Vec<f64> = frames
         .iter()
-        .flat_map(|frame| {
-            let columns = least_squares::columns_of(&frame.tessellation, &frame.positions, terms);
-            frame
-                .targets()
-                .flat_map(|(cell, v)| {
-                    let rest = v - predict(&columns, coefficients.as_slice(), cell);
-                    [rest.x.abs(), rest.y.abs()]
-                })
-                .collect::<Vec<_>>()
-        })
+        .flat_map(|frame| residuals(frame, terms, coefficients.as_slice()))
+        .flat_map(|(_, rest)| [rest.x.abs(), rest.y.abs()])
         .collect();
-    residuals.sort_unstable_by(f64::total_cmp);
+    sizes.sort_unstable_by(f64::total_cmp);
     // The median absolute deviation of a normal distribution is 0.6745 standard deviations.
-    let spread = residuals[residuals.len() / 2] / 0.6745;
+    let spread = sizes[sizes.len() / 2] / 0.6745;
     Ok(NoiseLevels {
         position: request.position_noise.unwrap_or(FIRST_POSITION_NOISE),
         velocity: request.velocity_noise.unwrap_or((0.3 * spread).max(SMALLEST_VELOCITY_NOISE)),

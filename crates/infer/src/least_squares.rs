@@ -2,7 +2,7 @@
 
 use crate::{CoefficientSpace, Error, Observation};
 use nalgebra::{DMatrix, DVector};
-use voronudge_geometry::{Tessellation, Vector};
+use voronudge_geometry::Vector;
 use voronudge_model::{Term, columns};
 
 /// The four fields that the coefficients multiply, at given positions.
@@ -22,7 +22,7 @@ pub(crate) fn fit(
     let p = space.dimension();
     let (mut normal, mut right) = (DMatrix::zeros(p, p), DVector::zeros(p));
     for frame in frames {
-        let columns = columns_of(&frame.tessellation, &frame.positions, terms);
+        let columns = columns(&frame.tessellation, &frame.positions, terms);
         for (cell, target) in frame.targets() {
             let x = free_columns(&columns, space, cell);
             let rest = target - predict(&columns, space.origin().as_slice(), cell);
@@ -33,8 +33,14 @@ pub(crate) fn fit(
     solve(normal, &right).map(|beta| beta.as_slice().to_vec())
 }
 
-pub(crate) fn columns_of(tessellation: &Tessellation, positions: &[Vector<f64>], terms: &[Term]) -> Columns {
-    columns(tessellation, positions, terms)
+/// What coefficients leave unexplained at the measured positions: cell and residual, for each target.
+pub(crate) fn residuals(
+    frame: &Observation,
+    terms: &[Term],
+    coefficients: &[f64],
+) -> impl Iterator<Item = (usize, Vector<f64>)> {
+    let columns = columns(&frame.tessellation, &frame.positions, terms);
+    frame.targets().map(move |(cell, v)| (cell, v - predict(&columns, coefficients, cell)))
 }
 
 /// `X B` for one cell (2, p).

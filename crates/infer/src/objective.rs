@@ -1,13 +1,13 @@
 //! The penalised objective of nudged inference as a problem for argmin.
 
-use crate::least_squares::{Columns, columns_of, free_columns, predict};
+use crate::least_squares::{Columns, free_columns, predict};
 use crate::linearisation::{Linearisation, Local};
 use crate::{CoefficientSpace, Error, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use nalgebra::DMatrix;
 use rayon::prelude::*;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::{Model, Term, jacobian};
+use voronudge_model::{Model, Term, columns, jacobian};
 
 /// `Φ(β, ε) = Σ ‖v − F_β(r + ε)‖² + k Σ ‖ε‖²` over all frames. The parameter vector is β, then ε frame by frame as
 /// x₀, y₀, x₁, …
@@ -55,7 +55,7 @@ impl Objective<'_> {
         let nudges: Vec<Vector<f64>> = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1])).collect();
         let positions: Vec<Vector<f64>> = frame.positions.iter().zip(&nudges).map(|(r, e)| r + e).collect();
         let tessellation = Tessellation::new(&positions, frame.tessellation.domain())?;
-        let columns = columns_of(&tessellation, &positions, self.terms);
+        let columns = columns(&tessellation, &positions, self.terms);
         Ok(Nudged { positions, nudges, tessellation, columns })
     }
 
@@ -115,25 +115,23 @@ impl Objective<'_> {
     }
 }
 
-/// A borrowed objective: argmin takes its problem by value.
-pub(crate) struct Shared<'a, 'b>(pub &'b Objective<'a>);
-
-impl CostFunction for Shared<'_, '_> {
+// argmin takes its problem by value: it is given a reference.
+impl CostFunction for &Objective<'_> {
     type Param = Vec<f64>;
     type Output = f64;
 
     fn cost(&self, parameters: &Vec<f64>) -> Result<f64, ArgminError> {
-        let (residual, nudges) = self.0.parts(parameters);
-        let cost = residual + self.0.spring * nudges;
+        let (residual, nudges) = self.parts(parameters);
+        let cost = residual + self.spring * nudges;
         Ok(if cost.is_nan() { f64::INFINITY } else { cost })
     }
 }
 
-impl Jacobian for Shared<'_, '_> {
+impl Jacobian for &Objective<'_> {
     type Param = Vec<f64>;
     type Jacobian = Vec<Linearisation>;
 
     fn jacobian(&self, parameters: &Vec<f64>) -> Result<Vec<Linearisation>, ArgminError> {
-        Ok(self.0.linearise(parameters)?)
+        Ok(self.linearise(parameters)?)
     }
 }
