@@ -1,70 +1,90 @@
-//! Parameters, coefficients of terms, and which of them are free.
+//! Coefficients of terms, and which of them are free.
 //!
-//! Velocities are linear in the coefficients `c = (K_A, K_P P_0, K_P, K_P α)`. Holding any of K_A, K_P, P_0, α confines c
-//! to an affine space `c = c₀ + B β`, in which β is fitted.
+//! Velocities are linear in the coefficients `c = (K_A, K_P P_0, K_P, K_P α)`. Holding a parameter confines c to an affine
+//! space `c = c₀ + B β`, in which β is fitted; bounds confine β to half-spaces.
 
-use crate::Error;
+use crate::quadratic::HalfSpace;
+use crate::{Constraints, Error, Prior, Quantity};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use voronudge_model::Parameters;
 
-/// Parameters held at a value.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub struct Fixed {
-    /// Area elasticity `K_A`.
-    pub area_elasticity: Option<f64>,
-    /// Perimeter elasticity `K_P`; not zero.
-    pub perimeter_elasticity: Option<f64>,
-    /// Preferred perimeter `P_0`.
-    pub preferred_perimeter: Option<f64>,
-    /// Chirality `α`.
-    pub chirality: Option<f64>,
-}
+/// Components of a direction that count as zero, relative to the largest.
+const ZERO: f64 = 1e-12;
 
-/// The affine space `c = c₀ + B β` of coefficients.
+/// The affine space `c = c₀ + B β` of coefficients, with bounds and priors.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoefficientSpace {
     origin: Vector4<f64>,
     basis: DMatrix<f64>,
+    /// `aᵀc ≥ b`.
+    at_least: Vec<(Vector4<f64>, f64)>,
+    priors: Vec<(Quantity, Prior)>,
 }
 
 impl CoefficientSpace {
-    /// The space that the fixed parameters leave.
+    /// The space that constraints leave.
     ///
     /// # Errors
-    /// [`Error::Fixed`], [`Error::NothingToFit`].
-    pub fn new(fixed: &Fixed) -> Result<Self, Error> {
-        let given =
-            [fixed.area_elasticity, fixed.perimeter_elasticity, fixed.preferred_perimeter, fixed.chirality];
-        if given.into_iter().flatten().any(|value| !value.is_finite()) {
-            return Err(Error::Fixed("a parameter is fixed to a value that is not finite"));
+    /// [`Error::Constraint`], [`Error::NothingToFit`].
+    pub fn new(constraints: &Constraints) -> Result<Self, Error> {
+        constraints.check()?;
+        let mut space = Self {
+            origin: Vector4::zeros(),
+            basis: DMatrix::identity(4, 4),
+            at_least: Vec::new(),
+            priors: constraints.priors.iter().map(|(quantity, prior)| (*quantity, *prior)).collect(),
+        };
+        for (quantity, value) in &constraints.fixed {
+            space = space.hold(*quantity, *value)?;
         }
-        if fixed.perimeter_elasticity == Some(0.0) {
-            return Err(Error::Fixed("K_P is fixed to zero, which leaves P_0 and alpha without meaning"));
-        }
-        let mut origin = Vector4::zeros();
-        let mut directions = Vec::new();
-        match fixed.area_elasticity {
-            Some(k_a) => origin[0] = k_a,
-            None => directions.push(Vector4::new(1.0, 0.0, 0.0, 0.0)),
-        }
-        // P_0 and α, where fixed, move with K_P.
-        let with_k_p =
-            Vector4::new(0.0, fixed.preferred_perimeter.unwrap_or(0.0), 1.0, fixed.chirality.unwrap_or(0.0));
-        if fixed.preferred_perimeter.is_none() {
-            directions.push(Vector4::new(0.0, 1.0, 0.0, 0.0));
-        }
-        match fixed.perimeter_elasticity {
-            Some(k_p) => origin += with_k_p * k_p,
-            None => directions.push(with_k_p),
-        }
-        if fixed.chirality.is_none() {
-            directions.push(Vector4::new(0.0, 0.0, 0.0, 1.0));
-        }
-        if directions.is_empty() {
+        if space.dimension() == 0 {
             return Err(Error::NothingToFit);
         }
-        let basis = DMatrix::from_fn(4, directions.len(), |row, column| directions[column][row]);
-        Ok(Self { origin, basis })
+        for (quantity, [low, high]) in &constraints.bounds {
+            for (value, side) in [(*low, 1.0), (*high, -1.0)] {
+                if value.is_finite() {
+                    let (normal, bound) = quantity.plane(value);
+                    space.at_least.push((normal * side, bound * side));
+                }
+            }
+        }
+        if constraints.bounds.keys().any(|quantity| quantity.is_ratio()) {
+            space.at_least.push((Vector4::ith(2, 1.0), 0.0));
+        }
+        Ok(space)
+    }
+
+    /// The part of the space in which a quantity has a value.
+    ///
+    /// # Errors
+    /// [`Error::Constraint`] if it has another value throughout.
+    pub fn hold(&self, quantity: Quantity, value: f64) -> Result<Self, Error> {
+        let (normal, bound) = quantity.plane(value);
+        let rest = bound - normal.dot(&self.origin);
+        let along = self.basis.transpose() * normal;
+        let size = along.amax();
+        if size <= ZERO * self.basis.amax().max(1.0) {
+            let scale = bound.abs().max(normal.component_mul(&self.origin).amax());
+            return if rest.abs() <= 1e-9 * scale {
+                Ok(self.clone())
+            } else {
+                Err(Error::Constraint("fixed parameters contradict each other"))
+            };
+        }
+        // One direction gives way; rather one that moves the quantity itself than K_P, so that ratios move with K_P.
+        let moves = |k: &usize| {
+            self.basis[(quantity.coefficient(), *k)].abs() > ZERO && along[*k].abs() > ZERO * size
+        };
+        let pivot = (0..self.dimension()).find(moves).unwrap_or_else(|| along.iamax());
+        let direction = self.basis.column(pivot) / along[pivot];
+        let others: Vec<Vector4<f64>> = (0..self.dimension())
+            .filter(|k| *k != pivot)
+            .map(|k| Vector4::from_iterator((self.basis.column(k) - &direction * along[k]).iter().copied()))
+            .collect();
+        let mut held = self.clone();
+        held.origin += &direction * rest;
+        held.basis = DMatrix::from_fn(4, others.len(), |row, column| others[column][row]);
+        Ok(held)
     }
 
     /// Number of free directions.
@@ -77,6 +97,13 @@ impl CoefficientSpace {
         self.origin + &self.basis * DVector::from_column_slice(free)
     }
 
+    /// The β whose coefficients are nearest to c.
+    pub(crate) fn nearest(&self, c: &Vector4<f64>) -> Vec<f64> {
+        let normal = self.basis.transpose() * &self.basis;
+        let right = self.basis.transpose() * (c - self.origin);
+        normal.cholesky().map(|factor| factor.solve(&right).as_slice().to_vec()).unwrap_or_default()
+    }
+
     /// `c₀`.
     pub(crate) fn origin(&self) -> &Vector4<f64> {
         &self.origin
@@ -85,6 +112,20 @@ impl CoefficientSpace {
     /// `B`.
     pub(crate) fn basis(&self) -> &DMatrix<f64> {
         &self.basis
+    }
+
+    /// The bounds as half-spaces of β, those without effect on it left out.
+    pub(crate) fn half_spaces(&self) -> Vec<HalfSpace> {
+        let in_free = |(normal, bound): &(Vector4<f64>, f64)| HalfSpace {
+            normal: self.basis.transpose() * normal,
+            bound: bound - normal.dot(&self.origin),
+        };
+        self.at_least.iter().map(in_free).filter(|half| half.normal.amax() > ZERO).collect()
+    }
+
+    /// Gaussian priors.
+    pub(crate) fn priors(&self) -> &[(Quantity, Prior)] {
+        &self.priors
     }
 
     /// Covariance of the coefficients from that of β.
@@ -96,37 +137,56 @@ impl CoefficientSpace {
 
 /// Parameters of the model from the coefficients of its terms; `P_0` and `α` are ratios to `K_P`.
 pub(crate) fn parameters(coefficients: &Vector4<f64>, preferred_area: f64) -> Parameters<f64> {
+    let value = |quantity: Quantity| quantity.of(coefficients);
     Parameters {
-        area_elasticity: coefficients[0],
-        perimeter_elasticity: coefficients[2],
-        preferred_perimeter: coefficients[1] / coefficients[2],
+        area_elasticity: value(Quantity::AreaElasticity),
+        perimeter_elasticity: value(Quantity::PerimeterElasticity),
+        preferred_perimeter: value(Quantity::PreferredPerimeter),
         preferred_area,
-        chirality: coefficients[3] / coefficients[2],
+        chirality: value(Quantity::Chirality),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use Quantity::{AreaElasticity, ChiralCoefficient, Chirality, PerimeterElasticity, PreferredPerimeter};
 
     #[test]
     fn a_fixed_ratio_moves_with_k_p() {
-        let fixed = Fixed { preferred_perimeter: Some(4.0), chirality: Some(-2.0), ..Fixed::default() };
+        let fixed = Constraints::fixed([(PreferredPerimeter, 4.0), (Chirality, -2.0)]);
         let space = CoefficientSpace::new(&fixed).unwrap();
         assert_eq!(space.dimension(), 2);
         assert_eq!(space.coefficients(&[0.1, 3.0]), Vector4::new(0.1, 12.0, 3.0, -6.0));
     }
 
     #[test]
-    fn nothing_to_fit_and_a_zero_k_p_are_refused() {
-        let all = Fixed {
-            area_elasticity: Some(0.1),
-            perimeter_elasticity: Some(1.0),
-            preferred_perimeter: Some(4.0),
-            chirality: Some(0.0),
+    fn held_quantities_keep_their_values() {
+        let all = [(AreaElasticity, 0.2), (PerimeterElasticity, 1.5), (PreferredPerimeter, 3.9)];
+        for pair in [[all[0], all[1]], [all[1], all[2]], [(ChiralCoefficient, 2.0), (Chirality, 4.0)]] {
+            let space = CoefficientSpace::new(&Constraints::fixed(pair)).unwrap();
+            assert_eq!(space.dimension(), 2);
+            let c = space.coefficients(&[0.7, 1.3]);
+            for (quantity, value) in pair {
+                assert!((quantity.of(&c) - value).abs() < 1e-12, "{quantity:?} {}", quantity.of(&c));
+            }
+            let back = space.nearest(&c);
+            assert!((back[0] - 0.7).abs() < 1e-12 && (back[1] - 1.3).abs() < 1e-12);
+        }
+    }
+
+    #[test]
+    fn contradictions_and_senseless_values_are_refused() {
+        let refused = |fixed: &[(Quantity, f64)]| {
+            CoefficientSpace::new(&Constraints::fixed(fixed.iter().copied())).unwrap_err()
         };
-        assert_eq!(CoefficientSpace::new(&all).unwrap_err(), Error::NothingToFit);
-        let zero = Fixed { perimeter_elasticity: Some(0.0), ..Fixed::default() };
-        assert!(matches!(CoefficientSpace::new(&zero), Err(Error::Fixed(_))));
+        let all =
+            [(AreaElasticity, 0.1), (PerimeterElasticity, 1.0), (PreferredPerimeter, 4.0), (Chirality, 0.0)];
+        assert_eq!(refused(&all), Error::NothingToFit);
+        assert!(matches!(refused(&[(PerimeterElasticity, 0.0)]), Error::Constraint(_)));
+        let contradiction = [(PerimeterElasticity, 1.0), (Chirality, 2.0), (ChiralCoefficient, 3.0)];
+        assert!(matches!(refused(&contradiction), Error::Constraint(_)));
+        let bounds = Constraints { bounds: [(AreaElasticity, [1.0, 0.0])].into(), ..Constraints::default() };
+        assert!(matches!(CoefficientSpace::new(&bounds), Err(Error::Constraint(_))));
     }
 }

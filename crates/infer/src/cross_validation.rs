@@ -1,14 +1,15 @@
 //! The error on velocities that a fit has not seen.
 
-use crate::fit::nudged_fit;
 use crate::least_squares::{self, residuals};
 use crate::objective::Objective;
-use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Progress};
-use std::ops::ControlFlow;
-use voronudge_model::Term;
+use crate::search::{Effort, Watch, search};
+use crate::{Error, Observation};
 
 /// Blocks along each axis into which a single frame is cut.
 const BLOCKS: usize = 2;
+
+/// A fold's parameters follow from one continuation: the flip of a contact hardly changes them.
+const EFFORT: Effort = Effort { max_steps: 12, transitions: false, starts: 1, seed: 0 };
 
 /// Which velocities are held out together.
 enum Folds {
@@ -22,13 +23,10 @@ enum Folds {
 /// otherwise have shaped): the pooled value and its standard error over folds. Whole frames are held out where there are
 /// three or more, contiguous blocks of cells otherwise.
 pub(crate) fn cross_validate(
-    frames: &[Observation],
-    terms: &[Term],
-    space: &CoefficientSpace,
-    levels: &NoiseLevels,
-    max_steps: u64,
-    observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    whole: &Objective<'_>,
+    watch: &mut Watch<'_>,
 ) -> Result<Option<[f64; 2]>, Error> {
+    let Objective { frames, terms, space, .. } = *whole;
     let folds = if frames.len() >= 3 { Folds::Frames(frames.len()) } else { Folds::Blocks };
     let count = match folds {
         Folds::Frames(count) => count,
@@ -40,7 +38,7 @@ pub(crate) fn cross_validate(
             .iter()
             .enumerate()
             .map(|(index, frame)| match folds {
-                Folds::Frames(_) => vec![index == fold; frame.positions.len()],
+                Folds::Frames(_) => vec![index == fold; frame.velocities.values().len()],
                 Folds::Blocks => in_block(frame, fold),
             })
             .collect();
@@ -55,13 +53,13 @@ pub(crate) fn cross_validate(
             return Ok(None);
         }
         let naive = least_squares::fit(&training, terms, space)?;
-        let mut objective = Objective { frames: &training, terms, space, spring: levels.spring() };
-        let fit = nudged_fit(&mut objective, &naive, levels, max_steps, "cross-validation", observe)?;
-        let coefficients = space.coefficients(objective.split(&fit.parameters).0);
+        let objective = Objective { frames: &training, ..*whole };
+        let found = search(&objective, &naive, &EFFORT, "cross-validation", watch)?;
+        let coefficients = space.coefficients(objective.split(&found.parameters).0);
         let (mut error, mut total) = (0.0, 0.0);
         for (frame, out) in frames.iter().zip(&held_out) {
             let rests = residuals(frame, terms, coefficients.as_slice());
-            for ((_, v), (_, rest)) in frame.targets().zip(rests).filter(|((cell, _), _)| out[*cell]) {
+            for ((_, v), (_, rest)) in frame.targets().zip(rests).filter(|((datum, _), _)| out[*datum]) {
                 error += rest.norm_squared();
                 total += v.norm_squared();
             }
@@ -85,7 +83,7 @@ fn in_block(frame: &Observation, fold: usize) -> Vec<bool> {
     let block = [fold % BLOCKS, fold / BLOCKS];
     let bounds: Vec<(f64, f64)> = (0..2)
         .map(|axis| {
-            let mut at: Vec<f64> = frame.targets().map(|(cell, _)| frame.positions[cell][axis]).collect();
+            let mut at: Vec<f64> = frame.targets().map(|(datum, _)| frame.place(datum)[axis]).collect();
             at.sort_unstable_by(f64::total_cmp);
             let quantile = |k: usize| match k {
                 0 => f64::NEG_INFINITY,
@@ -95,16 +93,15 @@ fn in_block(frame: &Observation, fold: usize) -> Vec<bool> {
             (quantile(block[axis]), quantile(block[axis] + 1))
         })
         .collect();
-    frame
-        .positions
-        .iter()
+    (0..frame.velocities.values().len())
+        .map(|datum| frame.place(datum))
         .map(|r| bounds.iter().enumerate().all(|(axis, (low, high))| r[axis] >= *low && r[axis] < *high))
         .collect()
 }
 
 fn without(frame: &Observation, held_out: &[bool]) -> Observation {
     let mut training = frame.clone();
-    for (v, out) in training.velocities.iter_mut().zip(held_out) {
+    for (v, out) in training.velocities.values_mut().iter_mut().zip(held_out) {
         if *out {
             *v = None;
         }

@@ -38,9 +38,9 @@ pub enum Error {
     /// Every parameter is fixed.
     #[error("every parameter is fixed, so there is nothing to fit")]
     NothingToFit,
-    /// Parameters that cannot be fixed together, or to that value.
+    /// Parameters that cannot be held, bounded or weighted like this.
     #[error("{0}")]
-    Fixed(&'static str),
+    Constraint(&'static str),
     /// The columns of the model are linearly dependent on these data.
     #[error("the velocities of the fitted terms are linearly dependent on these data")]
     Degenerate,
@@ -73,7 +73,7 @@ impl Error {
             ),
             Self::NothingMoves => Some("check the velocities, or give frames in which cells move"),
             Self::NothingToFit => Some("leave at least one of K_A, K_P, P_0, alpha free"),
-            Self::Fixed(_) => Some("fix K_A, K_P (not to zero), P_0 or alpha to a finite value"),
+            Self::Constraint(_) => Some("check --fix, --bounds and --prior; K_P must not be held at zero"),
             Self::Degenerate => Some("fix one of the parameters, for example K_A, or give more cells"),
             Self::Noise { .. } => {
                 Some("give the standard deviation of one component, in the units of the data")

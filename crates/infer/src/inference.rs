@@ -2,22 +2,21 @@
 
 use crate::coefficients::parameters;
 use crate::cross_validation::cross_validate;
-use crate::degrees_of_freedom::degrees_of_freedom;
-use crate::estimates::{directions, estimates};
-use crate::fit::nudged_fit;
-use crate::least_squares::{self, invert, predict, residuals};
-use crate::noise::{FIRST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE, Spent};
-use crate::objective::Objective;
+use crate::estimates::Fitted;
+use crate::least_squares::{self, residuals};
+use crate::noisy_fit::{at_limit, fit};
+use crate::objective::{Nudged, Objective};
+use crate::search::Watch;
 use crate::{
-    CoefficientSpace, Error, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource, Observation, Progress,
-    Request,
+    CoefficientSpace, CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource,
+    Observation, Progress, Request, Status,
 };
-use nalgebra::{DMatrix, Vector4};
+use nalgebra::{DVector, Vector4};
 use std::ops::ControlFlow;
-use voronudge_model::{Model, Term, base_terms, jacobian};
+use voronudge_model::base_terms;
 
-/// Rounds of estimating the noise levels.
-const NOISE_ROUNDS: usize = 6;
+/// Standard deviations by which an objective may exceed its expected value.
+const ACCEPTED_EXCESS: f64 = 3.0;
 
 /// Fits the model to snapshots. Frames share the parameters and have nudges of their own.
 ///
@@ -31,7 +30,7 @@ pub fn infer(
     request: &Request,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Inference, Error> {
-    let space = CoefficientSpace::new(&request.fixed)?;
+    let space = CoefficientSpace::new(&request.constraints)?;
     let used: usize = frames.iter().map(|frame| frame.targets().count()).sum();
     let required = 2 * space.dimension() + 2;
     if used < required {
@@ -43,37 +42,31 @@ pub fn infer(
     }
     let terms = base_terms(request.preferred_area);
     let naive = least_squares::fit(frames, &terms, &space)?;
-    let mut levels = first_levels(frames, request, &terms, &space, &naive)?;
-    let estimated = request.position_noise.is_none() || request.velocity_noise.is_none();
-    let mut objective = Objective { frames, terms: &terms, space: &space, spring: levels.spring() };
-    let mut fit = nudged_fit(&mut objective, &naive, &levels, request.max_steps, "fit", observe)?;
-    let mut steps = fit.steps;
-    let mut spent = account(&objective, &fit.parameters, used)?;
-    for _ in 0..if estimated { NOISE_ROUNDS } else { 0 } {
-        let updated = spent.update(&levels);
-        let next = NoiseLevels {
-            position: request.position_noise.unwrap_or(updated.position),
-            velocity: request.velocity_noise.unwrap_or(updated.velocity),
-        };
-        let change = (next.spring() / levels.spring()).ln().abs();
-        levels = next;
-        fit = nudged_fit(&mut objective, &naive, &levels, request.max_steps, "noise and fit", observe)?;
-        steps += fit.steps;
-        spent = account(&objective, &fit.parameters, used)?;
-        if change < 0.05 {
-            break;
-        }
-    }
-    let cross_validated =
-        cross_validate(frames, &terms, &space, &levels, request.max_steps.min(12), observe)?;
-    let (free, nudges) = objective.split(&fit.parameters);
+    let mut watch = Watch { observe };
+    let unset = NoiseLevels { position: 1.0, velocity: 1.0 };
+    let mut objective = Objective { frames, terms: &terms, space: &space, levels: unset };
+    let found = fit(&mut objective, &naive, request, &mut watch)?;
+    let objective = objective;
+    let levels = objective.levels;
+    let cross_validated = match request.cross_validation {
+        CrossValidation::Done => cross_validate(&objective, &mut watch)?,
+        CrossValidation::Skipped => None,
+    };
+    let (free, nudges) = objective.split(&found.parameters);
     let coefficients = space.coefficients(free);
-    let objective_value = (spent.residual + levels.spring() * spent.nudges) / levels.velocity.powi(2);
-    let expected = spent.components - spent.free;
+    let parts = objective.parts(&found.parameters);
+    let variance = levels.velocity.powi(2);
+    let (value, expected) = (found.value / variance, objective.expected() / variance);
     // Where the model misses more than the noise explains, the misfit counts as noise.
-    let variance = levels.velocity.powi(2) * (objective_value / expected.max(1.0)).max(1.0);
-    let information = schur(&objective, &fit.parameters)?;
-    let covariance = invert(information.clone())? * variance;
+    let excess = (value / expected).max(1.0);
+    let equations = objective.linearise(&found.parameters)?;
+    let information = equations.information()? / (variance * excess);
+    let centre = match space.half_spaces().is_empty() {
+        true => DVector::from_column_slice(free),
+        false => equations.unbounded()?,
+    };
+    let fitted =
+        Fitted { space: &space, constraints: &request.constraints, free, information: &information, centre };
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
         let squares =
@@ -81,113 +74,68 @@ pub fn infer(
         frames.iter().map(|frame| squares(frame).sum::<f64>()).sum()
     };
     let mut sensitivity = 0.0;
-    let results = frames
-        .iter()
-        .zip(&nudges)
-        .enumerate()
-        .map(|(index, (frame, nudges))| {
-            frame_result(&objective, frame, nudges, &coefficients)
-                .map(|(result, own)| {
-                    sensitivity += own;
-                    result
-                })
-                .map_err(|source| Error::Geometry { frame: index, source })
-        })
-        .collect::<Result<Vec<_>, _>>()?;
+    let mut results = Vec::with_capacity(frames.len());
+    for (index, (frame, nudges)) in frames.iter().zip(&nudges).enumerate() {
+        let nudged =
+            objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
+        sensitivity += sensitivity_of(&objective, frame, &nudged, &coefficients);
+        results.push(frame_result(frame, nudged, &coefficients));
+    }
     let cells: usize = frames.iter().map(|frame| frame.positions.len()).sum();
+    let estimated = request.noise.position.is_none() || request.noise.velocity.is_none();
+    let deviation = (value - expected) / (2.0 * expected).sqrt();
+    let doubts = [
+        (deviation > ACCEPTED_EXCESS).then_some(Doubt::Objective(deviation)),
+        at_limit(&levels, &request.noise).then_some(Doubt::PositionNoise),
+        (found.status == Status::StepLimit).then_some(Doubt::Steps),
+    ];
     Ok(Inference {
-        parameters: estimates(&coefficients, &space.covariance(&covariance), &request.fixed),
+        parameters: fitted.estimates()?,
         model_parameters: parameters(&coefficients, request.preferred_area),
         naive: parameters(&space.coefficients(&naive), request.preferred_area),
         nmse: Nmse {
             naive: residual_at(&naive) / total,
-            nudged: spent.residual / total,
+            nudged: parts.residual / total,
             un_nudged: residual_at(free) / total,
-            noise_floor: (spent.components * levels.velocity.powi(2) + sensitivity * levels.position.powi(2))
-                / total,
+            noise_floor: (2.0 * used as f64 * variance + sensitivity * levels.position.powi(2)) / total,
             cross_validated,
         },
+        coefficients,
         noise: levels,
         noise_source: if estimated { NoiseSource::Estimated } else { NoiseSource::Given },
-        degrees_of_freedom: spent.degrees_of_freedom,
-        nudge_rms: (spent.nudges / cells as f64).sqrt(),
-        directions: directions(&space, &(information / variance)),
+        degrees_of_freedom: equations.degrees_of_freedom()?,
+        nudge_rms: (parts.nudges / cells as f64).sqrt(),
+        contribution_ratio: objective.spring() * parts.nudges / parts.residual,
+        directions: fitted.directions(),
         frames: results,
-        status: fit.status,
-        steps,
-        objective: objective_value,
+        status: found.status,
+        steps: found.steps,
+        objective: value,
         expected_objective: expected,
-        trace: fit.trace.iter().map(|phi| phi / levels.velocity.powi(2)).collect(),
+        trace: found.trace.iter().map(|phi| phi / variance).collect(),
+        starts: found.starts.iter().map(|phi| phi / variance).collect(),
+        transitions: [found.transitions_tried, found.transitions_made],
+        doubts: doubts.into_iter().flatten().collect(),
         used,
     })
 }
 
-/// Noise levels before any nudged fit: as given, or a usual position noise and the spread of the naive residual.
-fn first_levels(
-    frames: &[Observation],
-    request: &Request,
-    terms: &[Term],
-    space: &CoefficientSpace,
-    naive: &[f64],
-) -> Result<NoiseLevels, Error> {
-    for (name, value) in [("position", request.position_noise), ("velocity", request.velocity_noise)] {
-        if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
-            return Err(Error::Noise { name, value });
-        }
-    }
-    let coefficients = space.coefficients(naive);
-    let mut sizes: Vec<f64> = frames
-        .iter()
-        .flat_map(|frame| residuals(frame, terms, coefficients.as_slice()))
-        .flat_map(|(_, rest)| [rest.x.abs(), rest.y.abs()])
-        .collect();
-    sizes.sort_unstable_by(f64::total_cmp);
-    // The median absolute deviation of a normal distribution is 0.6745 standard deviations.
-    let spread = sizes[sizes.len() / 2] / 0.6745;
-    Ok(NoiseLevels {
-        position: request.position_noise.unwrap_or(FIRST_POSITION_NOISE),
-        velocity: request.velocity_noise.unwrap_or((0.3 * spread).max(SMALLEST_VELOCITY_NOISE)),
-    })
-}
-
-/// Residuals, nudges and degrees of freedom at a solution.
-fn account(objective: &Objective<'_>, parameters: &[f64], used: usize) -> Result<Spent, Error> {
-    let (residual, nudges) = objective.parts(parameters);
-    let degrees_of_freedom = objective
-        .linearise(parameters)?
-        .iter()
-        .map(|frame| degrees_of_freedom(frame, objective.spring))
-        .sum::<Result<f64, _>>()?;
-    Ok(Spent {
-        residual,
-        components: 2.0 * used as f64,
-        nudges,
-        degrees_of_freedom,
-        free: objective.space.dimension() as f64,
-    })
-}
-
-/// The information on β with the nudges eliminated, in units of 1/σ_v².
-fn schur(objective: &Objective<'_>, parameters: &[f64]) -> Result<DMatrix<f64>, Error> {
-    let p = objective.space.dimension();
-    let mut sum = DMatrix::zeros(p, p);
-    for frame in objective.linearise(parameters)? {
-        sum += frame.eliminate(0.0)?.schur;
-    }
-    Ok(sum)
-}
-
-/// One frame at its nudged positions, and `‖∂v/∂r‖²` over the velocities used.
-fn frame_result(
+/// `‖∂v/∂r‖²` over the velocities used.
+fn sensitivity_of(
     objective: &Objective<'_>,
     frame: &Observation,
-    nudges: &[f64],
+    nudged: &Nudged,
     coefficients: &Vector4<f64>,
-) -> Result<(FrameResult, f64), voronudge_geometry::Error> {
-    let nudged = objective.nudge(frame, nudges)?;
-    let predicted = (0..frame.positions.len())
-        .map(|cell| predict(&nudged.columns, coefficients.as_slice(), cell))
-        .collect();
+) -> f64 {
+    let jacobian = nudged.jacobian(objective.terms, coefficients);
+    let squares = |(datum, _)| -> f64 {
+        jacobian.row(datum).map(|(_, block)| block.iter().map(|entry| entry * entry).sum::<f64>()).sum()
+    };
+    frame.targets().map(squares).sum()
+}
+
+/// One frame at its nudged positions.
+fn frame_result(frame: &Observation, nudged: Nudged, coefficients: &Vector4<f64>) -> FrameResult {
     let (before, after) = (frame.tessellation.edges(), nudged.tessellation.edges());
     let missing_from = |edges: &[(u32, u32, [i16; 2])], others: &[(u32, u32, [i16; 2])]| {
         edges
@@ -196,20 +144,12 @@ fn frame_result(
             .map(|edge| (edge.0, edge.1))
             .collect::<Vec<_>>()
     };
-    let model = Model::with_coefficients(objective.terms, coefficients.as_slice());
-    let jacobian = jacobian(&nudged.tessellation, &nudged.positions, &model);
-    let sensitivity = frame
-        .targets()
-        .flat_map(|(cell, _)| {
-            jacobian.row(cell).map(|(_, block)| block.iter().map(|entry| entry * entry).sum::<f64>())
-        })
-        .sum();
-    let result = FrameResult {
+    FrameResult {
         edges_lost: missing_from(&before, &after),
         edges_gained: missing_from(&after, &before),
+        predicted: nudged.velocities(coefficients),
+        predicted_data: nudged.predictions(coefficients),
         nudged_positions: nudged.positions,
         tessellation: nudged.tessellation,
-        predicted,
-    };
-    Ok((result, sensitivity))
+    }
 }

@@ -1,12 +1,11 @@
 //! Sparse Levenberg–Marquardt as a solver for argmin.
 
 use crate::Error;
-use crate::linearisation::Linearisation;
+use crate::normal_equations::{NormalEquations, Step};
 use argmin::core::{
     CostFunction, Error as ArgminError, IterState, Jacobian, KV, Problem, Solver, State, TerminationReason,
     TerminationStatus,
 };
-use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 
 /// How far a fit has come; the caller may stop it.
@@ -31,7 +30,7 @@ pub(crate) struct LevenbergMarquardt<'o> {
     damping: f64,
     growth: f64,
     tolerance: f64,
-    linearised: Option<Vec<Linearisation>>,
+    linearised: Option<NormalEquations>,
     small_steps: u32,
     observer: Observer<'o>,
     interrupted: bool,
@@ -56,44 +55,11 @@ impl<'o> LevenbergMarquardt<'o> {
             interrupted: false,
         }
     }
-
-    /// The step for the present damping and the decrease it promises.
-    fn step(&self, linearised: &[Linearisation]) -> Result<(Vec<f64>, f64), Error> {
-        let unit = linearised.iter().map(Linearisation::mean_diagonal).sum::<f64>() / linearised.len() as f64;
-        let shift = self.damping * unit;
-        let eliminated =
-            linearised.iter().map(|frame| frame.eliminate(shift)).collect::<Result<Vec<_>, _>>()?;
-        let p = linearised[0].free_gradient.len();
-        let (mut schur, mut gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
-        let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
-        for (frame, part) in linearised.iter().zip(&eliminated) {
-            schur += &part.schur;
-            gradient += &part.gradient;
-            free_normal += &frame.free_normal;
-            free_gradient += &frame.free_gradient;
-        }
-        for i in 0..p {
-            schur[(i, i)] += self.damping * free_normal[(i, i)];
-        }
-        let free_step = schur.cholesky().ok_or(Error::Degenerate)?.solve(&gradient);
-        let mut step = free_step.as_slice().to_vec();
-        // A step δ of (H + λD) δ = g promises gᵀδ + λ δᵀDδ.
-        let mut promised: f64 = (0..p)
-            .map(|i| free_step[i] * (free_gradient[i] + self.damping * free_normal[(i, i)] * free_step[i]))
-            .sum();
-        for (frame, part) in linearised.iter().zip(&eliminated) {
-            let own = part.nudge_step(&free_step);
-            promised += own.iter().zip(frame.nudge_gradient()).map(|(s, g)| s * (g + shift * s)).sum::<f64>();
-            step.extend(own);
-        }
-        Ok((step, promised))
-    }
 }
 
 impl<O> Solver<O, FitState> for LevenbergMarquardt<'_>
 where
-    O: CostFunction<Param = Vec<f64>, Output = f64>
-        + Jacobian<Param = Vec<f64>, Jacobian = Vec<Linearisation>>,
+    O: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
 {
     fn name(&self) -> &str {
         "sparse Levenberg-Marquardt"
@@ -123,7 +89,7 @@ where
             .linearised
             .take()
             .ok_or_else(|| Error::Optimiser("the problem was not linearised".into()))?;
-        let (step, promised) = self.step(&linearised)?;
+        let Step { step, promised } = linearised.step(self.damping)?;
         let trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + s).collect();
         let trial_cost = problem.cost(&trial)?;
         let gain = (cost - trial_cost) / promised.max(f64::MIN_POSITIVE);

@@ -12,26 +12,37 @@
 //! Everything here is dimensionless or in the units of what is passed in.
 
 mod coefficients;
+mod constraints;
 mod cross_validation;
-mod degrees_of_freedom;
 mod error;
 mod estimates;
-mod fit;
+mod flow;
+mod gram;
 mod inference;
 mod least_squares;
 mod levenberg_marquardt;
 mod linearisation;
 mod noise;
+mod noisy_fit;
+mod normal_equations;
 mod objective;
 mod observation;
+mod quadratic;
+mod quantity;
+mod request;
 mod result;
 mod scale;
+mod search;
 
-pub use coefficients::{CoefficientSpace, Fixed};
+pub use coefficients::CoefficientSpace;
+pub use constraints::{Constraints, Prior};
 pub use error::Error;
+pub use flow::{Flow, Window};
 pub use inference::infer;
 pub use levenberg_marquardt::Progress;
-pub use noise::{NoiseLevels, NoiseSource};
-pub use observation::Observation;
-pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Request, Status};
+pub use noise::{KnownNoise, NoiseLevels, NoiseSource};
+pub use observation::{Observation, Velocities};
+pub use quantity::Quantity;
+pub use request::{CrossValidation, Loss, Method, Request};
+pub use result::{Direction, Doubt, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;

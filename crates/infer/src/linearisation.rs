@@ -1,52 +1,75 @@
-//! Normal equations of one frame, linearised about the current nudges and coefficients.
+//! The normal equations of one frame, linearised about the current nudges and coefficients.
 //!
-//! With r = v − F, J = ∂F/∂ε and X = ∂F/∂β, a damped Gauss–Newton step solves
+//! With r = v − F, J = ∂F/∂ε, X = ∂F/∂β, the data linearised back to the measured positions are y = r + Jε:
 //!
 //! ```text
-//! [ JᵀJ + (k+λ)I   JᵀX ] [δε]   [ Jᵀr − kε ]
-//! [ XᵀJ            XᵀX ] [δβ] = [ Xᵀr      ]
+//! v ≈ F + X δβ + J δε       y ≈ X δβ + J (ε + δε)
 //! ```
-//!
-//! The sparse block is factorised; the few coefficients follow from the Schur complement, summed over frames.
 
 use crate::Error;
+use crate::gram::gram;
 use nalgebra::{DMatrix, DVector};
-use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_linalg::{Cholesky, CholeskyPattern, SymmetricMatrix};
 use voronudge_model::BlockMatrix;
 
-/// Block columns of JᵀJ per task.
-const CHUNK: usize = 256;
-
 /// The linearised problem of one frame.
+#[derive(Debug)]
 pub(crate) struct Linearisation {
+    /// JᵀJ
     normal: SymmetricMatrix,
     pattern: CholeskyPattern,
-    /// JᵀX (2N × p, by columns), then the gradient Jᵀr − kε as the last column.
+    /// The nudges ε at which it was linearised.
+    nudges: Vec<f64>,
+    /// JᵀX (2N × p, by columns), then Jᵀy as the last column.
     mixed: Vec<f64>,
-    pub free_normal: DMatrix<f64>,
-    pub free_gradient: DVector<f64>,
+    /// XᵀX.
+    free_normal: DMatrix<f64>,
+    /// Xᵀr.
+    free_gradient: DVector<f64>,
+    /// Jᵀr.
+    gradient: Vec<f64>,
+    /// Xᵀy.
+    free_data: DVector<f64>,
+    /// yᵀy.
+    data: f64,
 }
 
 /// What enters the linearisation of one frame.
 pub(crate) struct Local<'a> {
-    /// ∂F/∂r; only the rows of cells with a target matter.
+    /// ∂F/∂r; only the rows with a target matter.
     pub jacobian: &'a BlockMatrix,
-    /// Cells with a target: index, residual, and the free columns (2, p).
+    /// Data with a target: index, residual r, and the free columns (2, p).
     pub rows: &'a [(usize, Vector<f64>, DMatrix<f64>)],
-    pub nudges: &'a [Vector<f64>],
-    pub spring: f64,
+    /// ε, x and y of one cell after the other.
+    pub nudges: &'a [f64],
     pub free: usize,
 }
 
 /// One frame's part of a step before the coefficients' part is known.
 pub(crate) struct Eliminated {
     order: usize,
-    /// (JᵀJ + (k+λ)I)⁻¹ applied to the columns of `mixed`.
+    /// (JᵀJ + (k+λ)I)⁻¹ applied to JᵀX and to Jᵀr − kε.
     solved: Vec<f64>,
+    /// XᵀX − XᵀJ (JᵀJ + (k+λ)I)⁻¹ JᵀX
     pub schur: DMatrix<f64>,
+    /// Its right-hand side.
     pub gradient: DVector<f64>,
+    /// (Jᵀr − kε)ᵀ (JᵀJ + (k+λ)I)⁻¹ (Jᵀr − kε)
+    pub gain: f64,
+}
+
+/// `W⁻¹ = (I + JJᵀ/k)⁻¹` between y and X, and its determinant.
+#[derive(Debug, Clone)]
+pub(crate) struct Whitened {
+    /// XᵀW⁻¹X
+    pub free: DMatrix<f64>,
+    /// XᵀW⁻¹y
+    pub mixed: DVector<f64>,
+    /// yᵀW⁻¹y
+    pub data: f64,
+    /// log det W
+    pub log_determinant: f64,
 }
 
 impl Eliminated {
@@ -65,163 +88,114 @@ impl Eliminated {
 
 impl Linearisation {
     pub fn new(local: &Local<'_>) -> Result<Self, Error> {
-        let normal = normal_matrix(local)?;
+        let normal = gram(local.jacobian, local.rows.iter().map(|row| row.0), local.nudges.len() / 2)?;
         let pattern = CholeskyPattern::new(&normal)?;
         let n = normal.order();
         let p = local.free;
         let mut mixed = vec![0.0; n * (p + 1)];
+        let mut gradient = vec![0.0; n];
         let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
-        for (cell, residual, x) in local.rows {
+        let (mut free_data, mut data) = (DVector::zeros(p), 0.0);
+        for (datum, residual, x) in local.rows {
+            let y = local.jacobian.row(*datum).fold(*residual, |y, (column, b)| {
+                let (ex, ey) = (local.nudges[2 * column], local.nudges[2 * column + 1]);
+                y + Vector::new(b[0] * ex + b[1] * ey, b[2] * ex + b[3] * ey)
+            });
+            data += y.norm_squared();
             free_normal += x.transpose() * x;
             free_gradient += x.transpose() * DVector::from_column_slice(residual.as_slice());
-            for (column, b) in local.jacobian.row(*cell) {
-                let mut add = |right: usize, v: Vector<f64>| {
-                    mixed[right * n + 2 * column] += b[0] * v.x + b[2] * v.y;
-                    mixed[right * n + 2 * column + 1] += b[1] * v.x + b[3] * v.y;
+            free_data += x.transpose() * DVector::from_column_slice(y.as_slice());
+            for (column, b) in local.jacobian.row(*datum) {
+                let transposed = |v: Vector<f64>| [b[0] * v.x + b[2] * v.y, b[1] * v.x + b[3] * v.y];
+                let add = |to: &mut [f64], v: Vector<f64>| {
+                    to.iter_mut().zip(transposed(v)).for_each(|(sum, part)| *sum += part);
                 };
                 for k in 0..p {
-                    add(k, Vector::new(x[(0, k)], x[(1, k)]));
+                    let at = k * n + 2 * column;
+                    add(&mut mixed[at..at + 2], Vector::new(x[(0, k)], x[(1, k)]));
                 }
-                add(p, *residual);
+                let at = p * n + 2 * column;
+                add(&mut mixed[at..at + 2], y);
+                add(&mut gradient[2 * column..2 * column + 2], *residual);
             }
         }
-        for (cell, nudge) in local.nudges.iter().enumerate() {
-            mixed[p * n + 2 * cell] -= local.spring * nudge.x;
-            mixed[p * n + 2 * cell + 1] -= local.spring * nudge.y;
-        }
-        Ok(Self { normal, pattern, mixed, free_normal, free_gradient })
+        let nudges = local.nudges.to_vec();
+        Ok(Self { normal, pattern, nudges, mixed, free_normal, free_gradient, gradient, free_data, data })
     }
 
-    /// Mean diagonal entry, the unit of damping.
+    /// Number of nudge components.
+    pub fn order(&self) -> usize {
+        self.normal.order()
+    }
+
+    /// Mean diagonal entry of JᵀJ.
     pub fn mean_diagonal(&self) -> f64 {
-        self.normal.diagonal().sum::<f64>() / self.normal.order() as f64
+        self.normal.diagonal().sum::<f64>() / self.order() as f64
     }
 
-    /// Jᵀr − kε.
-    pub fn nudge_gradient(&self) -> &[f64] {
-        &self.mixed[self.free_gradient.len() * self.normal.order()..]
+    /// XᵀX.
+    pub fn free_normal(&self) -> &DMatrix<f64> {
+        &self.free_normal
     }
 
-    /// The factor of JᵀJ + (k+λ)I.
-    pub fn factor(&self, damping: f64) -> Result<Cholesky, Error> {
-        let mut damped = self.normal.clone();
-        damped.shift_diagonal(damping);
-        Ok(self.pattern.factor(&damped)?)
+    /// The factor of JᵀJ + kI.
+    pub fn factor(&self, spring: f64) -> Result<Cholesky, Error> {
+        let mut shifted = self.normal.clone();
+        shifted.shift_diagonal(spring);
+        Ok(self.pattern.factor(&shifted)?)
     }
 
-    /// Eliminates the nudges: the Schur complement `XᵀX − XᵀJ (JᵀJ + (k+λ)I)⁻¹ JᵀX` and its right-hand side.
-    pub fn eliminate(&self, damping: f64) -> Result<Eliminated, Error> {
-        let factor = self.factor(damping)?;
-        let (n, p) = (self.normal.order(), self.free_gradient.len());
-        let mut solved = self.mixed.clone();
+    /// Eliminates the nudges from a damped Gauss–Newton step
+    ///
+    /// ```text
+    /// [ JᵀJ + (k+λ)I   JᵀX ] [δε]   [ Jᵀr − kε ]
+    /// [ XᵀJ            XᵀX ] [δβ] = [ Xᵀr      ]
+    /// ```
+    pub fn eliminate(&self, spring: f64, damping: f64) -> Result<Eliminated, Error> {
+        let factor = self.factor(spring + damping)?;
+        let (n, p) = (self.order(), self.free_gradient.len());
+        let mut right = self.mixed[..n * p].to_vec();
+        right.extend(self.gradient.iter().zip(&self.nudges).map(|(g, e)| g - spring * e));
+        let mut solved = right.clone();
         factor.solve(&mut solved);
-        let dot = |a: usize, b: usize| -> f64 {
-            let columns = self.mixed[a * n..(a + 1) * n].iter().zip(&solved[b * n..(b + 1) * n]);
-            columns.map(|(x, y)| x * y).sum()
-        };
+        let dot = |a: usize, b: usize| product(&right, &solved, n, a, b);
         let schur = DMatrix::from_fn(p, p, |a, b| self.free_normal[(a, b)] - dot(a, b));
         let gradient = DVector::from_fn(p, |a, _| self.free_gradient[a] - dot(a, p));
-        Ok(Eliminated { order: n, solved, schur, gradient })
+        Ok(Eliminated { order: n, gain: dot(p, p), schur, gradient, solved })
     }
-}
 
-/// `JᵀJ + kI`, lower triangle.
-fn normal_matrix(local: &Local<'_>) -> Result<SymmetricMatrix, Error> {
-    let jacobian = local.jacobian;
-    let cells = local.nudges.len();
-    let transposed = Transposed::new(jacobian, local.rows.iter().map(|row| row.0), cells);
-    type Part = (Vec<usize>, Vec<usize>, Vec<f64>);
-    let parts: Vec<Part> = (0..cells.div_ceil(CHUNK))
-        .into_par_iter()
-        .map(|chunk| {
-            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
-            let mut place = vec![usize::MAX; cells];
-            let mut entries: Vec<(usize, [f64; 4])> = Vec::new();
-            for column in chunk * CHUNK..((chunk + 1) * CHUNK).min(cells) {
-                entries.push((column, [local.spring, 0.0, 0.0, local.spring]));
-                place[column] = 0;
-                for &(row, at) in transposed.column(column) {
-                    let own = &jacobian.block[at];
-                    for (other, b) in jacobian.row(row).filter(|(other, _)| *other >= column) {
-                        // bᵀ · own
-                        let product = [
-                            b[0] * own[0] + b[2] * own[2],
-                            b[0] * own[1] + b[2] * own[3],
-                            b[1] * own[0] + b[3] * own[2],
-                            b[1] * own[1] + b[3] * own[3],
-                        ];
-                        if place[other] == usize::MAX {
-                            place[other] = entries.len();
-                            entries.push((other, product));
-                        } else {
-                            let sum = &mut entries[place[other]].1;
-                            sum.iter_mut().zip(product).for_each(|(s, x)| *s += x);
-                        }
-                    }
-                }
-                entries.iter().for_each(|(other, _)| place[*other] = usize::MAX);
-                entries.sort_unstable_by_key(|entry| entry.0);
-                for axis in 0..2 {
-                    let first = rows.len();
-                    for (other, block) in &entries {
-                        for component in 0..2 {
-                            if 2 * other + component >= 2 * column + axis {
-                                rows.push(2 * other + component);
-                                values.push(block[2 * component + axis]);
-                            }
-                        }
-                    }
-                    lengths.push(rows.len() - first);
-                }
-                entries.clear();
-            }
-            (lengths, rows, values)
+    /// Generalised least squares about the measured positions, by `W⁻¹ = I − J (JᵀJ + kI)⁻¹ Jᵀ` and
+    /// `det W = det(JᵀJ + kI) / kⁿ`.
+    pub fn whiten(&self, spring: f64) -> Result<Whitened, Error> {
+        let factor = self.factor(spring)?;
+        let (n, p) = (self.order(), self.free_gradient.len());
+        let mut solved = self.mixed.clone();
+        factor.solve(&mut solved);
+        let dot = |a: usize, b: usize| product(&self.mixed, &solved, n, a, b);
+        Ok(Whitened {
+            free: DMatrix::from_fn(p, p, |a, b| self.free_normal[(a, b)] - dot(a, b)),
+            mixed: DVector::from_fn(p, |a, _| self.free_data[a] - dot(a, p)),
+            data: self.data - dot(p, p),
+            log_determinant: factor.log_determinant() - n as f64 * spring.ln(),
         })
-        .collect();
-    let mut column_start = Vec::with_capacity(2 * cells + 1);
-    column_start.push(0);
-    let (mut rows, mut values, mut end) = (Vec::new(), Vec::new(), 0);
-    for (part_lengths, part_rows, part_values) in parts {
-        column_start.extend(part_lengths.iter().map(|length| {
-            end += length;
-            end
-        }));
-        rows.extend(part_rows);
-        values.extend(part_values);
     }
-    Ok(SymmetricMatrix::new(column_start, rows, values)?)
+
+    /// Directions of the nudges that the data determine, `df = n − k tr (JᵀJ + kI)⁻¹`, which is n less the derivative of
+    /// `log det(JᵀJ + kI)` with respect to log k.
+    pub fn degrees_of_freedom(&self, spring: f64) -> Result<f64, Error> {
+        let above = self.factor(spring * STEP.exp())?.log_determinant();
+        let below = self.factor(spring * (-STEP).exp())?.log_determinant();
+        let n = self.order() as f64;
+        Ok((n - (above - below) / (2.0 * STEP)).clamp(0.0, n))
+    }
 }
 
-/// Where each block column has entries: row and index of the block.
-struct Transposed {
-    start: Vec<usize>,
-    entry: Vec<(usize, usize)>,
-}
+/// Step in log k of the derivative of the log determinant; its square is the relative error.
+const STEP: f64 = 2e-4;
 
-impl Transposed {
-    fn new(matrix: &BlockMatrix, rows: impl Iterator<Item = usize> + Clone, columns: usize) -> Self {
-        let mut start = vec![0; columns + 1];
-        for row in rows.clone() {
-            for (column, _) in matrix.row(row) {
-                start[column + 1] += 1;
-            }
-        }
-        for column in 0..columns {
-            start[column + 1] += start[column];
-        }
-        let (mut next, mut entry) = (start.clone(), vec![(0, 0); start[columns]]);
-        for row in rows {
-            for (at, (column, _)) in (matrix.row_start[row]..).zip(matrix.row(row)) {
-                entry[next[column]] = (row, at);
-                next[column] += 1;
-            }
-        }
-        Self { start, entry }
-    }
-
-    fn column(&self, column: usize) -> &[(usize, usize)] {
-        &self.entry[self.start[column]..self.start[column + 1]]
-    }
+/// The product of column a of one matrix and column b of another, both of n rows.
+fn product(left: &[f64], right: &[f64], n: usize, a: usize, b: usize) -> f64 {
+    left[a * n..(a + 1) * n].iter().zip(&right[b * n..(b + 1) * n]).map(|(x, y)| x * y).sum()
 }
 
 #[cfg(test)]
@@ -256,10 +230,9 @@ mod tests {
                 )
             })
             .collect();
-        let nudges: Vec<Vector<f64>> = (0..cells).map(|i| Vector::new(0.01 * i as f64, -0.02)).collect();
-        let linearised =
-            Linearisation::new(&Local { jacobian: &jacobian, rows: &rows, nudges: &nudges, spring, free })
-                .unwrap();
+        let nudges: Vec<f64> = (0..cells).flat_map(|i| [0.01 * i as f64, -0.02]).collect();
+        let local = Local { jacobian: &jacobian, rows: &rows, nudges: &nudges, free };
+        let linearised = Linearisation::new(&local).unwrap();
         let dense = DMatrix::from_row_slice(2 * cells, 2 * cells, &jacobian.to_dense());
         let n = 2 * cells;
         let (mut full, mut right) =
@@ -273,10 +246,10 @@ mod tests {
         }
         for i in 0..n {
             full[(i, i)] += spring + damping;
-            right[i] -= spring * nudges[i / 2][i % 2];
+            right[i] -= spring * nudges[i];
         }
         let expected = full.lu().solve(&right).unwrap();
-        let eliminated = linearised.eliminate(damping).unwrap();
+        let eliminated = linearised.eliminate(spring, damping).unwrap();
         let free_step = eliminated.schur.clone().lu().solve(&eliminated.gradient).unwrap();
         let step = eliminated.nudge_step(&free_step);
         let scale = expected.amax();
@@ -290,7 +263,20 @@ mod tests {
         let hat = &seen
             * (seen.transpose() * &seen + DMatrix::identity(n, n) * spring).try_inverse().unwrap()
             * seen.transpose();
-        let df = crate::degrees_of_freedom::degrees_of_freedom(&linearised, spring).unwrap();
-        assert!((df - hat.trace()).abs() < 1e-8, "{df} {}", hat.trace());
+        let df = linearised.degrees_of_freedom(spring).unwrap();
+        assert!((df - hat.trace()).abs() < 1e-6, "{df} {}", hat.trace());
+        // W = I + JJᵀ/k, dense.
+        let m = 2 * rows.len();
+        let w = DMatrix::identity(m, m) + &seen * seen.transpose() / spring;
+        let inverse = w.clone().try_inverse().unwrap();
+        let x = DMatrix::from_fn(m, free, |i, j| rows[i / 2].2[(i % 2, j)]);
+        let residual = DVector::from_fn(m, |i, _| rows[i / 2].1[i % 2]);
+        let y = residual + &seen * DVector::from_column_slice(&nudges);
+        let whitened = linearised.whiten(spring).unwrap();
+        assert!((whitened.free - x.transpose() * &inverse * &x).amax() < 1e-9);
+        assert!((whitened.mixed - x.transpose() * &inverse * &y).amax() < 1e-9);
+        assert!((whitened.data - (y.transpose() * &inverse * &y)[0]).abs() < 1e-9);
+        let determinant = w.cholesky().unwrap().l().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>();
+        assert!((whitened.log_determinant - determinant).abs() < 1e-9);
     }
 }

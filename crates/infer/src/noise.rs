@@ -1,4 +1,21 @@
-//! Errors of the measured positions and velocities.
+//! Errors of the measured positions and velocities, and how both follow from one fit.
+//!
+//! Linearised about the measured positions, the data are `y = Xβ + J u + n` with position errors u and velocity errors
+//! n, so `cov y = σ_v² W` with `W = I + JJᵀ/k`. Restricted maximum likelihood is least in
+//!
+//! ```text
+//! −2 log L = (n − p) log σ_v² + log det W + log det XᵀW⁻¹X + yᵀPy / σ_v²,     P = W⁻¹ − W⁻¹X (XᵀW⁻¹X)⁻¹ XᵀW⁻¹
+//! ```
+//!
+//! For given k the best σ_v² is `yᵀPy / (n − p)`, which leaves a function of k alone.
+
+use crate::Error;
+use crate::least_squares::invert;
+use crate::normal_equations::NormalEquations;
+use argmin::core::{CostFunction, Error as ArgminError, Executor, State};
+use argmin::solver::brent::BrentOpt;
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
 
 /// Where noise levels come from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -25,33 +42,13 @@ impl NoiseLevels {
     }
 }
 
-/// Sums of squares of a fit and what they are expected to be.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Spent {
-    /// Σ ‖v − F‖² and the number of velocity components.
-    pub residual: f64,
-    pub components: f64,
-    /// Σ ‖ε‖² and the degrees of freedom it uses.
-    pub nudges: f64,
-    pub degrees_of_freedom: f64,
-    /// Number of fitted coefficients.
-    pub free: f64,
-}
-
-impl Spent {
-    /// The noise levels for which the sums of squares would be as expected: `σ_v² = Σ‖v − F‖² / (n − df − p)` and
-    /// `σ_r² = Σ‖ε‖² / df`. Repeated with refits, this is the fixed point of restricted maximum likelihood.
-    pub fn update(&self, levels: &NoiseLevels) -> NoiseLevels {
-        let left = (self.components - self.degrees_of_freedom - self.free).max(1.0);
-        // One round changes a level by no more than a factor of three: far from the solution the linearisation behind
-        // the degrees of freedom is not worth more.
-        let limited = |new: f64, old: f64| new.clamp(old / 3.0, old * 3.0);
-        NoiseLevels {
-            position: limited((self.nudges / self.degrees_of_freedom.max(1e-9)).sqrt(), levels.position)
-                .clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE),
-            velocity: limited((self.residual / left).sqrt(), levels.velocity).max(SMALLEST_VELOCITY_NOISE),
-        }
-    }
+/// Noise levels as given beforehand.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct KnownNoise {
+    /// σ_r, if known.
+    pub position: Option<f64>,
+    /// σ_v, if known.
+    pub velocity: Option<f64>,
 }
 
 /// Position noise assumed first, in units of ℓ₀: a careful segmentation.
@@ -65,3 +62,106 @@ pub(crate) const LARGEST_POSITION_NOISE: f64 = 0.15;
 /// Estimates of the velocity noise stay above this, in units of the velocities: with softer springs the nudges could
 /// explain anything.
 pub(crate) const SMALLEST_VELOCITY_NOISE: f64 = 1e-3;
+
+/// The likelihood is first looked at on this many values of log k to either side, this far apart.
+const GRID: i32 = 4;
+const SPACING: f64 = 1.0;
+
+/// Precision of log k.
+const PRECISION: f64 = 1e-3;
+
+/// The restricted likelihood of one linearised problem.
+pub(crate) struct Restricted<'a> {
+    pub equations: &'a NormalEquations,
+    pub components: f64,
+    pub known: KnownNoise,
+}
+
+impl Restricted<'_> {
+    /// The noise levels of greatest restricted likelihood near the present ones. They move by no more than the
+    /// linearisation is worth: a factor of about seven each.
+    pub fn most_likely(&self, present: NoiseLevels) -> Result<NoiseLevels, Error> {
+        let centre = present.spring().ln();
+        let grid: Vec<(f64, f64)> = (-GRID..=GRID)
+            .map(|step| centre + SPACING * f64::from(step))
+            .map(|log_k| Ok((log_k, self.criterion(log_k)?)))
+            .collect::<Result<_, Error>>()?;
+        let best = (0..grid.len()).min_by(|a, b| grid[*a].1.total_cmp(&grid[*b].1)).unwrap_or(0);
+        let bracket = (grid[best.saturating_sub(1)].0, grid[(best + 1).min(grid.len() - 1)].0);
+        let solver = BrentOpt::new(bracket.0, bracket.1).set_tolerance(0.0, PRECISION);
+        let executor = Executor::new(self, solver)
+            .configure(|state| state.param(grid[best].0).max_iters(40))
+            .ctrlc(false);
+        let found = executor.run().map_err(|error| Error::Optimiser(error.to_string()))?;
+        let log_k = found.state.get_best_param().copied().unwrap_or(grid[best].0);
+        self.levels(log_k)
+    }
+
+    /// The levels that belong to k, within their limits.
+    fn levels(&self, log_k: f64) -> Result<NoiseLevels, Error> {
+        let root = (0.5 * log_k).exp();
+        let velocity = match self.known {
+            KnownNoise { velocity: Some(velocity), .. } => velocity,
+            KnownNoise { position: Some(position), .. } => position * root,
+            _ => (self.summed(log_k)?.misfit / self.left()).sqrt(),
+        }
+        .max(self.known.velocity.unwrap_or(SMALLEST_VELOCITY_NOISE));
+        let position = self
+            .known
+            .position
+            .unwrap_or_else(|| (velocity / root).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE));
+        Ok(NoiseLevels { position, velocity })
+    }
+
+    /// n − p.
+    fn left(&self) -> f64 {
+        (self.components - self.equations.dimension() as f64).max(1.0)
+    }
+
+    /// −2 log L, up to a constant.
+    pub fn criterion(&self, log_k: f64) -> Result<f64, Error> {
+        let summed = self.summed(log_k)?;
+        let left = self.left();
+        let variance = match self.known {
+            KnownNoise { velocity: Some(velocity), .. } => velocity * velocity,
+            KnownNoise { position: Some(position), .. } => position * position * log_k.exp(),
+            _ => summed.misfit / left,
+        };
+        Ok(left * variance.ln() + summed.log_determinant + summed.misfit / variance)
+    }
+
+    fn summed(&self, log_k: f64) -> Result<Summed, Error> {
+        let p = self.equations.dimension();
+        let spring = log_k.exp();
+        let parts = self.equations.frames.par_iter().map(|frame| frame.whiten(spring)).collect::<Vec<_>>();
+        let (mut free, mut mixed) = (DMatrix::zeros(p, p), DVector::zeros(p));
+        let (mut data, mut log_determinant) = (0.0, 0.0);
+        for part in parts {
+            let part = part?;
+            free += part.free;
+            mixed += part.mixed;
+            data += part.data;
+            log_determinant += part.log_determinant;
+        }
+        let inverse = invert(free.clone())?;
+        let factor = free.cholesky().ok_or(Error::Degenerate)?;
+        log_determinant += 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
+        let misfit = data - (mixed.transpose() * inverse * &mixed).sum();
+        Ok(Summed { misfit, log_determinant })
+    }
+}
+
+/// yᵀPy, and log det W + log det XᵀW⁻¹X.
+struct Summed {
+    misfit: f64,
+    log_determinant: f64,
+}
+
+impl CostFunction for &Restricted<'_> {
+    type Param = f64;
+    type Output = f64;
+
+    fn cost(&self, log_k: &f64) -> Result<f64, ArgminError> {
+        Ok(self.criterion(*log_k)?)
+    }
+}

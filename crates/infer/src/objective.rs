@@ -2,34 +2,78 @@
 
 use crate::least_squares::{Columns, free_columns, predict};
 use crate::linearisation::{Linearisation, Local};
-use crate::{CoefficientSpace, Error, Observation};
+use crate::normal_equations::{NormalEquations, Priors};
+use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
-use nalgebra::DMatrix;
+use nalgebra::{DMatrix, Vector4};
 use rayon::prelude::*;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::{Model, Term, columns, jacobian};
+use voronudge_model::{BlockMatrix, Model, Term, columns, jacobian};
 
-/// `Φ(β, ε) = Σ ‖v − F_β(r + ε)‖² + k Σ ‖ε‖²` over all frames. The parameter vector is β, then ε frame by frame as
-/// x₀, y₀, x₁, …
+/// `Φ(β, ε) = Σ ‖v − F_β(r + ε)‖² + k Σ ‖ε‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors. The parameter vector
+/// is β, then ε frame by frame as x₀, y₀, x₁, …
 ///
 /// Φ / σ_v² is twice the negative log likelihood, up to a constant.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Objective<'a> {
     pub frames: &'a [Observation],
     pub terms: &'a [Term],
     pub space: &'a CoefficientSpace,
-    /// k = σ_v² / σ_r².
-    pub spring: f64,
+    pub levels: NoiseLevels,
 }
 
 /// One frame at nudged positions.
 pub(crate) struct Nudged {
     pub positions: Vec<Vector<f64>>,
-    pub nudges: Vec<Vector<f64>>,
     pub tessellation: Tessellation,
-    pub columns: Columns,
+    /// The columns of the terms for each cell.
+    pub of_cells: Columns,
+    sampling: Option<Sampled>,
+}
+
+struct Sampled {
+    sampling: crate::flow::Sampling,
+    columns: Columns,
+}
+
+impl Nudged {
+    /// The columns as they are measured.
+    pub fn columns(&self) -> &Columns {
+        self.sampling.as_ref().map_or(&self.of_cells, |sampled| &sampled.columns)
+    }
+
+    /// The derivative of what is measured with respect to the positions.
+    pub fn jacobian(&self, terms: &[Term], coefficients: &Vector4<f64>) -> BlockMatrix {
+        let model = Model::with_coefficients(terms, coefficients.as_slice());
+        let of_cells = jacobian(&self.tessellation, &self.positions, &model);
+        match &self.sampling {
+            None => of_cells,
+            Some(sampled) => sampled.sampling.jacobian(&self.velocities(coefficients), &of_cells),
+        }
+    }
+
+    /// The model's velocity of each cell.
+    pub fn velocities(&self, coefficients: &Vector4<f64>) -> Vec<Vector<f64>> {
+        predictions(&self.of_cells, coefficients)
+    }
+
+    /// The model's velocities as they are measured.
+    pub fn predictions(&self, coefficients: &Vector4<f64>) -> Vec<Vector<f64>> {
+        predictions(self.columns(), coefficients)
+    }
+}
+
+fn predictions(columns: &Columns, coefficients: &Vector4<f64>) -> Vec<Vector<f64>> {
+    let count = columns.first().map_or(0, Vec::len);
+    (0..count).map(|datum| predict(columns, coefficients.as_slice(), datum)).collect()
 }
 
 impl Objective<'_> {
+    /// k = σ_v² / σ_r².
+    pub fn spring(&self) -> f64 {
+        self.levels.spring()
+    }
+
     /// β and the nudges of each frame.
     pub fn split<'p>(&self, parameters: &'p [f64]) -> (&'p [f64], Vec<&'p [f64]>) {
         let (free, mut rest) = parameters.split_at(self.space.dimension());
@@ -50,17 +94,44 @@ impl Objective<'_> {
         self.frames.iter().map(|frame| 2 * frame.positions.len()).sum()
     }
 
-    /// A frame displaced by its nudges, with a new tessellation.
-    pub fn nudge(&self, frame: &Observation, nudges: &[f64]) -> Result<Nudged, voronudge_geometry::Error> {
-        let nudges: Vec<Vector<f64>> = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1])).collect();
-        let positions: Vec<Vector<f64>> = frame.positions.iter().zip(&nudges).map(|(r, e)| r + e).collect();
-        let tessellation = Tessellation::new(&positions, frame.tessellation.domain())?;
-        let columns = columns(&tessellation, &positions, self.terms);
-        Ok(Nudged { positions, nudges, tessellation, columns })
+    /// Number of measured components.
+    pub fn components(&self) -> usize {
+        2 * self.frames.iter().map(|frame| frame.targets().count()).sum::<usize>()
     }
 
-    /// Φ and its parts: the sum of squared residuals and the sum of squared nudges.
-    pub fn parts(&self, parameters: &[f64]) -> (f64, f64) {
+    /// What Φ is expected to be if model and noise levels are right: σ_v² for each component that no coefficient takes up.
+    pub fn expected(&self) -> f64 {
+        let left = self.components() + self.space.priors().len();
+        self.levels.velocity.powi(2) * left.saturating_sub(self.space.dimension()).max(1) as f64
+    }
+
+    /// A frame displaced by its nudges, with a new tessellation.
+    pub fn nudge(&self, frame: &Observation, nudges: &[f64]) -> Result<Nudged, voronudge_geometry::Error> {
+        let nudges = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1]));
+        let positions: Vec<Vector<f64>> = frame.positions.iter().zip(nudges).map(|(r, e)| r + e).collect();
+        let tessellation = Tessellation::new(&positions, frame.tessellation.domain())?;
+        let of_cells = columns(&tessellation, &positions, self.terms);
+        let sampling = frame.sampling(&tessellation, &positions).map(|sampling| Sampled {
+            columns: of_cells.iter().map(|column| sampling.average(column)).collect(),
+            sampling,
+        });
+        Ok(Nudged { positions, tessellation, of_cells, sampling })
+    }
+
+    /// `v − F` of a frame for each target.
+    pub fn residuals<'f>(
+        &self,
+        frame: &'f Observation,
+        nudged: &'f Nudged,
+        coefficients: &'f Vector4<f64>,
+    ) -> impl Iterator<Item = (usize, Vector<f64>)> + 'f {
+        frame
+            .targets()
+            .map(move |(datum, v)| (datum, v - predict(nudged.columns(), coefficients.as_slice(), datum)))
+    }
+
+    /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
+    pub fn parts(&self, parameters: &[f64]) -> Parts {
         let (free, nudges) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
         let parts: Vec<(f64, f64)> = self
@@ -72,47 +143,60 @@ impl Objective<'_> {
                 let Ok(nudged) = self.nudge(frame, nudges) else {
                     return (f64::INFINITY, 0.0);
                 };
-                let residual: f64 = frame
-                    .targets()
-                    .map(|(cell, v)| {
-                        (v - predict(&nudged.columns, coefficients.as_slice(), cell)).norm_squared()
-                    })
-                    .sum();
+                let residual =
+                    self.residuals(frame, &nudged, &coefficients).map(|(_, rest)| rest.norm_squared()).sum();
                 (residual, nudges.iter().map(|e| e * e).sum())
             })
             .collect();
-        parts.into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1))
+        let (residual, nudges) =
+            parts.into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
+        Parts { residual, nudges, priors: Priors::new(self, free).penalty }
     }
 
-    /// The linearised problem of each frame.
-    pub fn linearise(&self, parameters: &[f64]) -> Result<Vec<Linearisation>, Error> {
+    /// Φ; infinite where there is no tessellation.
+    pub fn value(&self, parameters: &[f64]) -> f64 {
+        let parts = self.parts(parameters);
+        let value = parts.residual + self.spring() * parts.nudges + parts.priors;
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
+
+    /// The problem linearised about a point.
+    pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
         let (free, nudges) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
-        self.frames
+        let frames = self
+            .frames
             .par_iter()
             .zip(&nudges)
             .enumerate()
             .map(|(index, (frame, nudges))| {
                 let nudged =
                     self.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
-                let model = Model::with_coefficients(self.terms, coefficients.as_slice());
-                let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = frame
-                    .targets()
-                    .map(|(cell, v)| {
-                        let residual = v - predict(&nudged.columns, coefficients.as_slice(), cell);
-                        (cell, residual, free_columns(&nudged.columns, self.space, cell))
-                    })
+                let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = self
+                    .residuals(frame, &nudged, &coefficients)
+                    .map(|(datum, rest)| (datum, rest, free_columns(nudged.columns(), self.space, datum)))
                     .collect();
                 Linearisation::new(&Local {
-                    jacobian: &jacobian(&nudged.tessellation, &nudged.positions, &model),
+                    jacobian: &nudged.jacobian(self.terms, &coefficients),
                     rows: &rows,
-                    nudges: &nudged.nudges,
-                    spring: self.spring,
+                    nudges,
                     free: self.space.dimension(),
                 })
             })
-            .collect()
+            .collect::<Result<Vec<_>, _>>()?;
+        Ok(NormalEquations::new(self, free, frames))
     }
+}
+
+/// The parts of Φ, without their factors.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Parts {
+    /// Σ ‖v − F‖²
+    pub residual: f64,
+    /// Σ ‖ε‖²
+    pub nudges: f64,
+    /// σ_v² Σ (q − m)² / s²
+    pub priors: f64,
 }
 
 // argmin takes its problem by value: it is given a reference.
@@ -121,17 +205,15 @@ impl CostFunction for &Objective<'_> {
     type Output = f64;
 
     fn cost(&self, parameters: &Vec<f64>) -> Result<f64, ArgminError> {
-        let (residual, nudges) = self.parts(parameters);
-        let cost = residual + self.spring * nudges;
-        Ok(if cost.is_nan() { f64::INFINITY } else { cost })
+        Ok(self.value(parameters))
     }
 }
 
 impl Jacobian for &Objective<'_> {
     type Param = Vec<f64>;
-    type Jacobian = Vec<Linearisation>;
+    type Jacobian = NormalEquations;
 
-    fn jacobian(&self, parameters: &Vec<f64>) -> Result<Vec<Linearisation>, ArgminError> {
+    fn jacobian(&self, parameters: &Vec<f64>) -> Result<NormalEquations, ArgminError> {
         Ok(self.linearise(parameters)?)
     }
 }

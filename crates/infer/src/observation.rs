@@ -1,6 +1,7 @@
 //! One snapshot: where the cells are and how fast they move.
 
 use crate::Error;
+use crate::flow::{Flow, Sampling};
 use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, Visibility};
 
 /// Cells of one frame with their tessellation as measured. Cells are those present in the frame, in any order.
@@ -8,12 +9,49 @@ use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, Visibility};
 pub struct Observation {
     /// Cell centres (N).
     pub positions: Vec<Vector<f64>>,
-    /// Measured velocities (N); `None` where there is none.
-    pub velocities: Vec<Option<Vector<f64>>>,
+    /// Measured velocities.
+    pub velocities: Velocities,
     /// Tessellation of the measured positions.
     pub tessellation: Tessellation,
     /// Whether a cell can be trusted (open fields of view).
     pub visibility: Vec<Visibility>,
+    /// Whether the model can say what a velocity should be.
+    used: Vec<bool>,
+    /// The cell to which a velocity belongs most.
+    owners: Vec<usize>,
+}
+
+/// How velocities were measured.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Velocities {
+    /// One for each cell (N); `None` where there is none.
+    OfCells(Vec<Option<Vector<f64>>>),
+    /// On a grid, by optical flow or particle image velocimetry.
+    OnGrid(Flow),
+}
+
+impl From<Vec<Option<Vector<f64>>>> for Velocities {
+    fn from(velocities: Vec<Option<Vector<f64>>>) -> Self {
+        Self::OfCells(velocities)
+    }
+}
+
+impl Velocities {
+    /// The measured values: one for each cell or each grid point, row by row.
+    pub fn values(&self) -> &[Option<Vector<f64>>] {
+        match self {
+            Self::OfCells(values) => values,
+            Self::OnGrid(flow) => &flow.velocities,
+        }
+    }
+
+    /// The same, to change them.
+    pub fn values_mut(&mut self) -> &mut [Option<Vector<f64>>] {
+        match self {
+            Self::OfCells(values) => values,
+            Self::OnGrid(flow) => &mut flow.velocities,
+        }
+    }
 }
 
 impl Observation {
@@ -25,26 +63,68 @@ impl Observation {
     pub fn new(
         frame: usize,
         positions: Vec<Vector<f64>>,
-        velocities: Vec<Option<Vector<f64>>>,
+        velocities: impl Into<Velocities>,
         domain: Domain,
         largest_area: f64,
     ) -> Result<Self, Error> {
-        if positions.len() != velocities.len() {
-            return Err(Error::Lengths { frame, positions: positions.len(), velocities: velocities.len() });
+        let velocities = velocities.into();
+        let expected = match &velocities {
+            Velocities::OfCells(_) => positions.len(),
+            Velocities::OnGrid(flow) => flow.grid.len(),
+        };
+        if velocities.values().len() != expected {
+            let found = velocities.values().len();
+            return Err(Error::Lengths { frame, positions: expected, velocities: found });
         }
         let tessellation =
             Tessellation::new(&positions, domain).map_err(|source| Error::Geometry { frame, source })?;
         let visibility = FieldOfView::new(&tessellation, &positions, largest_area).visibility().to_vec();
-        Ok(Self { positions, velocities, tessellation, visibility })
+        let (used, owners) = match &velocities {
+            Velocities::OfCells(_) => {
+                let counted = visibility.iter().map(|v| *v == Visibility::Counted);
+                (counted.collect(), (0..positions.len()).collect())
+            }
+            Velocities::OnGrid(flow) => {
+                let sampling = Sampling::new(flow, &tessellation, &positions, &visibility);
+                (sampling.filled().to_vec(), sampling.owners())
+            }
+        };
+        Ok(Self { positions, velocities, tessellation, visibility, used, owners })
     }
 
-    /// The velocity to be explained: of a trusted cell whose velocity was measured.
-    pub fn target(&self, cell: usize) -> Option<Vector<f64>> {
-        self.velocities[cell].filter(|_| self.visibility[cell] == Visibility::Counted)
+    /// The velocity to be explained, of a cell or at a grid point: measured, and within reach of the model.
+    pub fn target(&self, datum: usize) -> Option<Vector<f64>> {
+        self.velocities.values()[datum].filter(|_| self.used[datum])
     }
 
-    /// The cells with a target, and their targets.
+    /// The data with a target, and their targets.
     pub fn targets(&self) -> impl Iterator<Item = (usize, Vector<f64>)> {
-        (0..self.positions.len()).filter_map(|cell| Some((cell, self.target(cell)?)))
+        (0..self.used.len()).filter_map(|datum| Some((datum, self.target(datum)?)))
+    }
+
+    /// Where a velocity was measured: the cell's centre or the grid point.
+    pub fn place(&self, datum: usize) -> Vector<f64> {
+        match &self.velocities {
+            Velocities::OfCells(_) => self.positions[datum],
+            Velocities::OnGrid(flow) => flow.grid.centre(datum),
+        }
+    }
+
+    /// The cell to which a velocity belongs: its own, or the one that weighs most at the grid point.
+    pub(crate) fn owner(&self, datum: usize) -> usize {
+        self.owners[datum]
+    }
+
+    /// What would be measured of cells that are at `positions`: nothing but the cells' velocities, or their averages
+    /// around the grid points.
+    pub(crate) fn sampling(
+        &self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+    ) -> Option<Sampling> {
+        match &self.velocities {
+            Velocities::OfCells(_) => None,
+            Velocities::OnGrid(flow) => Some(Sampling::new(flow, tessellation, positions, &self.visibility)),
+        }
     }
 }

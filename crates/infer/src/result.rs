@@ -1,23 +1,9 @@
-//! What a fit is asked and what it answers.
+//! What a fit answers.
 
-use crate::{Fixed, NoiseLevels, NoiseSource};
+use crate::{NoiseLevels, NoiseSource, Quantity};
+use nalgebra::Vector4;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Parameters;
-
-/// What to fit, and how.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Request {
-    /// Parameters held at a value.
-    pub fixed: Fixed,
-    /// Preferred area, a gauge.
-    pub preferred_area: f64,
-    /// σ_r if known; otherwise it is estimated.
-    pub position_noise: Option<f64>,
-    /// σ_v if known; otherwise it is estimated.
-    pub velocity_noise: Option<f64>,
-    /// Steps of the optimiser at each stage.
-    pub max_steps: u64,
-}
 
 /// How a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,13 +16,22 @@ pub enum Status {
     Stalled,
 }
 
-/// A value and its standard error; 95 % intervals are ±1.96 of it.
+/// A value with its 95 % interval.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// The value.
     pub value: f64,
-    /// Standard error; zero if the value was fixed.
+    /// Standard error to first order, bounds apart; zero if the value was fixed.
     pub standard_error: f64,
+    /// Ends of the 95 % likelihood-ratio interval of the linearised problem; `None` where it is unbounded.
+    pub interval: [Option<f64>; 2],
+}
+
+impl Estimate {
+    /// Whether the interval contains a value.
+    pub fn covers(&self, value: f64) -> bool {
+        self.interval[0].is_none_or(|low| low <= value) && self.interval[1].is_none_or(|high| value <= high)
+    }
 }
 
 /// Estimates of the parameters and of the combination that data determine best.
@@ -52,6 +47,19 @@ pub struct ParameterEstimates {
     pub chirality: Estimate,
     /// `K_P α`
     pub chiral_coefficient: Estimate,
+}
+
+impl ParameterEstimates {
+    /// The estimate of a quantity.
+    pub fn get(&self, quantity: Quantity) -> &Estimate {
+        match quantity {
+            Quantity::AreaElasticity => &self.area_elasticity,
+            Quantity::PerimeterElasticity => &self.perimeter_elasticity,
+            Quantity::PreferredPerimeter => &self.preferred_perimeter,
+            Quantity::Chirality => &self.chirality,
+            Quantity::ChiralCoefficient => &self.chiral_coefficient,
+        }
+    }
 }
 
 /// Normalised mean squared errors `Σ‖v − v̂‖² / Σ‖v‖²` over the cells used.
@@ -86,8 +94,10 @@ pub struct FrameResult {
     pub nudged_positions: Vec<Vector<f64>>,
     /// Tessellation of the nudged positions.
     pub tessellation: Tessellation,
-    /// Predicted velocities (N) at the nudged positions; NaN next to the rim of an open field.
+    /// Predicted velocities of the cells (N) at the nudged positions; NaN next to the rim of an open field.
     pub predicted: Vec<Vector<f64>>,
+    /// The same as they are measured: of the cells, or at the grid points.
+    pub predicted_data: Vec<Vector<f64>>,
     /// Delaunay edges of the measured positions that the nudges removed, and those they made, as pairs of cells.
     pub edges_lost: Vec<(u32, u32)>,
     /// See `edges_lost`.
@@ -105,6 +115,8 @@ pub struct Inference {
     pub naive: Parameters<f64>,
     /// Errors.
     pub nmse: Nmse,
+    /// Coefficients of the terms, `(K_A, K_P P_0, K_P, K_P α)`.
+    pub coefficients: Vector4<f64>,
     /// Noise levels used in the last fit.
     pub noise: NoiseLevels,
     /// Where they come from.
@@ -113,6 +125,9 @@ pub struct Inference {
     pub degrees_of_freedom: f64,
     /// Root mean square nudge (vector) over all cells.
     pub nudge_rms: f64,
+    /// `k Σ‖ε‖² / Σ‖v − F‖²`: the paper chooses k such that this is one; it is `df / (n − df − p)` where the levels are
+    /// right.
+    pub contribution_ratio: f64,
     /// Stiffest direction first.
     pub directions: Vec<Direction>,
     /// The frames, in the order given.
@@ -125,8 +140,27 @@ pub struct Inference {
     pub objective: f64,
     /// What the objective is expected to be if the model and the noise levels are right: components minus coefficients.
     pub expected_objective: f64,
-    /// Objective after each step of the last fit, in the units of `objective`, with the springs in force at that step.
+    /// Objective after each step of the way to the best point, in the units of `objective`: first those of the
+    /// continuation, with the springs in force at each, then one for each round of flipped contacts.
     pub trace: Vec<f64>,
+    /// Objective at the end of each start.
+    pub starts: Vec<f64>,
+    /// Contacts whose flip was tried, and those whose flip was kept.
+    pub transitions: [usize; 2],
+    /// Reasons not to trust the fit; none if it is sound.
+    pub doubts: Vec<Doubt>,
     /// Number of velocities used.
     pub used: usize,
+}
+
+/// A reason not to trust a fit.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Doubt {
+    /// The objective is above its expected value by this many standard deviations: a wrong minimum, noise levels that are
+    /// too small, or a model that lacks something.
+    Objective(f64),
+    /// The estimate of the position noise is at its largest value.
+    PositionNoise,
+    /// The optimiser used up its steps.
+    Steps,
 }

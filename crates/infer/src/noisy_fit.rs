@@ -1,0 +1,121 @@
+//! Fit and noise levels in turn.
+
+use crate::least_squares::residuals;
+use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
+use crate::objective::Objective;
+use crate::search::{Effort, Found, Watch, descend, improve, optimise, search};
+use crate::{Error, KnownNoise, Method, NoiseLevels, Request};
+use std::ops::ControlFlow;
+
+/// Rounds of estimating the noise levels before contacts are flipped, and after.
+const ROUNDS: [usize; 2] = [8, 3];
+
+/// Change of log σ that counts as none.
+const SETTLED: f64 = 0.01;
+
+/// Finds parameters, nudges and, where they are not known, noise levels. The objective has the levels on return.
+pub(crate) fn fit(
+    objective: &mut Objective<'_>,
+    naive: &[f64],
+    request: &Request,
+    watch: &mut Watch<'_>,
+) -> Result<Found, Error> {
+    objective.levels = first_levels(objective, naive, &request.noise)?;
+    let estimated = request.noise.position.is_none() || request.noise.velocity.is_none();
+    let (max_steps, starts) = match request.method {
+        Method::Search { max_steps, starts } => (max_steps, starts),
+        Method::Descent { max_steps, loss } => {
+            // The paper's optimiser takes noise levels as they are: those that a search finds, if none are given.
+            if estimated {
+                let effort = Effort { max_steps: 60, transitions: false, starts: 1, seed: request.seed };
+                let found = search(objective, naive, &effort, "noise", watch)?;
+                settle(objective, found, request, &effort, ROUNDS[0], watch)?;
+            }
+            return descend(objective, naive, loss, max_steps, watch);
+        }
+    };
+    let plain = Effort { max_steps, transitions: false, starts: 1, seed: request.seed };
+    let mut found = search(objective, naive, &plain, "fit", watch)?;
+    if estimated {
+        found = settle(objective, found, request, &plain, ROUNDS[0], watch)?;
+        // The levels have moved on from those of the continuation.
+        let again = search(objective, naive, &plain, "fit", watch)?;
+        found = better(found, again);
+    }
+    improve(objective, &mut found, &Effort { transitions: true, starts, ..plain }, watch)?;
+    if estimated {
+        found = settle(objective, found, request, &plain, ROUNDS[1], watch)?;
+    }
+    Ok(found)
+}
+
+fn better(one: Found, other: Found) -> Found {
+    let steps = one.steps + other.steps;
+    let best = if other.value < one.value { other } else { one };
+    Found { steps, ..best }
+}
+
+/// Estimates noise levels and refits until they stay.
+fn settle(
+    objective: &mut Objective<'_>,
+    mut found: Found,
+    request: &Request,
+    effort: &Effort,
+    rounds: usize,
+    watch: &mut Watch<'_>,
+) -> Result<Found, Error> {
+    for round in 0..rounds {
+        watch.tell("noise", (round as u64, rounds as u64), found.value / objective.expected())?;
+        let equations = objective.linearise(&found.parameters)?;
+        let restricted = Restricted {
+            equations: &equations,
+            components: objective.components() as f64,
+            known: request.noise,
+        };
+        let next = restricted.most_likely(objective.levels)?;
+        let change = (next.position / objective.levels.position).ln().abs()
+            + (next.velocity / objective.levels.velocity).ln().abs();
+        objective.levels = next;
+        let mut silent = |_, _| ControlFlow::Continue(());
+        let optimum = optimise(objective, found.parameters, effort.max_steps, &mut silent)?;
+        found = Found {
+            steps: found.steps + optimum.steps,
+            parameters: optimum.parameters,
+            value: optimum.value,
+            status: optimum.status,
+            ..found
+        };
+        if change < SETTLED {
+            break;
+        }
+    }
+    Ok(found)
+}
+
+/// Whether an estimate of the position noise is at its limit.
+pub(crate) fn at_limit(levels: &NoiseLevels, known: &KnownNoise) -> bool {
+    known.position.is_none() && levels.position >= 0.99 * LARGEST_POSITION_NOISE
+}
+
+/// Noise levels before any nudged fit: as given, or a usual position noise and the spread of the naive residual.
+fn first_levels(objective: &Objective<'_>, naive: &[f64], known: &KnownNoise) -> Result<NoiseLevels, Error> {
+    for (name, value) in [("position", known.position), ("velocity", known.velocity)] {
+        if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+            return Err(Error::Noise { name, value });
+        }
+    }
+    let coefficients = objective.space.coefficients(naive);
+    let mut sizes: Vec<f64> = objective
+        .frames
+        .iter()
+        .flat_map(|frame| residuals(frame, objective.terms, coefficients.as_slice()))
+        .flat_map(|(_, rest)| [rest.x.abs(), rest.y.abs()])
+        .collect();
+    sizes.sort_unstable_by(f64::total_cmp);
+    // The median absolute deviation of a normal distribution is 0.6745 standard deviations.
+    let spread = sizes[sizes.len() / 2] / 0.6745;
+    Ok(NoiseLevels {
+        position: known.position.unwrap_or(FIRST_POSITION_NOISE),
+        velocity: known.velocity.unwrap_or((0.3 * spread).max(SMALLEST_VELOCITY_NOISE)),
+    })
+}

@@ -1,0 +1,136 @@
+//! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
+
+use crate::least_squares::{invert, within_bounds};
+use crate::linearisation::Linearisation;
+use crate::objective::Objective;
+use crate::{CoefficientSpace, Error};
+use nalgebra::{DMatrix, DVector};
+use rayon::prelude::*;
+
+/// The linearised problem of all frames.
+#[derive(Debug)]
+pub(crate) struct NormalEquations {
+    pub frames: Vec<Linearisation>,
+    priors: Priors,
+    spring: f64,
+    free: DVector<f64>,
+    space: CoefficientSpace,
+}
+
+/// A step and the decrease of Φ that it promises.
+pub(crate) struct Step {
+    /// δβ, then δε frame by frame.
+    pub step: Vec<f64>,
+    pub promised: f64,
+}
+
+/// Priors linearised about the present coefficients.
+#[derive(Debug, Clone)]
+pub(crate) struct Priors {
+    /// σ_v² Σ (q − m)² / s²
+    pub penalty: f64,
+    /// Half its second derivative with respect to β.
+    normal: DMatrix<f64>,
+    /// Half its decrease with β.
+    gradient: DVector<f64>,
+}
+
+impl Priors {
+    pub fn new(objective: &Objective<'_>, free: &[f64]) -> Self {
+        let p = objective.space.dimension();
+        let mut sum = Self { penalty: 0.0, normal: DMatrix::zeros(p, p), gradient: DVector::zeros(p) };
+        if objective.space.priors().is_empty() {
+            return sum;
+        }
+        let c = objective.space.coefficients(free);
+        for (quantity, prior) in objective.space.priors() {
+            let scale = objective.levels.velocity / prior.standard_deviation;
+            let rest = (prior.mean - quantity.of(&c)) * scale;
+            let gradient = objective.space.basis().transpose() * quantity.gradient(&c) * scale;
+            sum.penalty += rest * rest;
+            sum.normal += &gradient * gradient.transpose();
+            sum.gradient += gradient * rest;
+        }
+        sum
+    }
+}
+
+impl NormalEquations {
+    pub fn new(objective: &Objective<'_>, free: &[f64], frames: Vec<Linearisation>) -> Self {
+        Self {
+            frames,
+            priors: Priors::new(objective, free),
+            spring: objective.spring(),
+            free: DVector::from_column_slice(free),
+            space: objective.space.clone(),
+        }
+    }
+
+    /// Number of free coefficients.
+    pub fn dimension(&self) -> usize {
+        self.free.len()
+    }
+
+    /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kI for nudges and
+    /// of the diagonal of XᵀX for coefficients.
+    pub fn step(&self, damping: f64) -> Result<Step, Error> {
+        let count: usize = self.frames.iter().map(Linearisation::order).sum();
+        let weighted = |frame: &Linearisation| frame.mean_diagonal() * frame.order() as f64;
+        let unit = self.frames.iter().map(weighted).sum::<f64>() / count as f64 + self.spring;
+        let shift = damping * unit;
+        let eliminated: Vec<_> = self
+            .frames
+            .par_iter()
+            .map(|frame| frame.eliminate(self.spring, shift))
+            .collect::<Result<_, _>>()?;
+        let p = self.free.len();
+        let (mut schur, mut gradient) = (self.priors.normal.clone(), self.priors.gradient.clone());
+        let mut damped = DVector::zeros(p);
+        for (frame, part) in self.frames.iter().zip(&eliminated) {
+            schur += &part.schur;
+            gradient += &part.gradient;
+            damped += frame.free_normal().diagonal() * damping;
+        }
+        let hessian = &schur + DMatrix::from_diagonal(&damped);
+        let free_step = if p == 0 {
+            gradient.clone()
+        } else {
+            let newton = hessian.clone().cholesky().ok_or(Error::Degenerate)?.solve(&gradient);
+            within_bounds(&self.space, &self.free + newton, hessian.clone())? - &self.free
+        };
+        // The damped model of Φ decreases by 2gᵀδ − δᵀ(H + λD)δ; Φ itself by λ δᵀDδ more.
+        let mut promised = 2.0 * gradient.dot(&free_step)
+            - (free_step.transpose() * hessian * &free_step).sum()
+            + free_step.component_mul(&free_step).dot(&damped);
+        let mut step = free_step.as_slice().to_vec();
+        for part in &eliminated {
+            let own = part.nudge_step(&free_step);
+            promised += part.gain + shift * own.iter().map(|e| e * e).sum::<f64>();
+            step.extend(own);
+        }
+        Ok(Step { step, promised })
+    }
+
+    /// The information on β with the nudges eliminated, priors included, in units of 1/σ_v².
+    pub fn information(&self) -> Result<DMatrix<f64>, Error> {
+        let mut sum = self.priors.normal.clone();
+        for frame in &self.frames {
+            sum += frame.eliminate(self.spring, 0.0)?.schur;
+        }
+        Ok(sum)
+    }
+
+    /// The β at which the linearised problem is least, bounds apart.
+    pub fn unbounded(&self) -> Result<DVector<f64>, Error> {
+        let mut gradient = self.priors.gradient.clone();
+        for frame in &self.frames {
+            gradient += frame.eliminate(self.spring, 0.0)?.gradient;
+        }
+        Ok(&self.free + invert(self.information()?)? * gradient)
+    }
+
+    /// Directions of the nudges that the data determine.
+    pub fn degrees_of_freedom(&self) -> Result<f64, Error> {
+        self.frames.iter().map(|frame| frame.degrees_of_freedom(self.spring)).sum()
+    }
+}

@@ -1,0 +1,77 @@
+//! What a fit is asked.
+
+use crate::{Constraints, KnownNoise};
+
+/// What to fit, and how.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Request {
+    /// What is known of the parameters.
+    pub constraints: Constraints,
+    /// Preferred area, a gauge.
+    pub preferred_area: f64,
+    /// Noise levels if known; otherwise they are estimated.
+    pub noise: KnownNoise,
+    /// How the objective is made small.
+    pub method: Method,
+    /// Whether to predict velocities left out of the fit.
+    pub cross_validation: CrossValidation,
+    /// Seed of further starts.
+    pub seed: u64,
+}
+
+/// How the objective is made small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Method {
+    /// Levenberg–Marquardt by continuation, flips of contacts, further starts.
+    Search {
+        /// Steps of the optimiser at each stage.
+        max_steps: u64,
+        /// Starts in all, at least one.
+        starts: usize,
+    },
+    /// First-order descent, as the paper describes it, for comparison.
+    Descent {
+        /// Steps in all.
+        max_steps: u64,
+        /// What is descended.
+        loss: Loss,
+    },
+}
+
+/// The loss of a first-order descent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Loss {
+    /// `‖v − F‖ + κ ‖ε‖` as the paper prints it: norms, with κ such that both contribute alike.
+    Norms,
+    /// `‖v − F‖² + k ‖ε‖²`, the likelihood.
+    Squares,
+}
+
+/// Whether to predict velocities left out of the fit.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum CrossValidation {
+    /// Blocks of cells, or whole frames where there are three or more.
+    Done,
+    /// Not done.
+    Skipped,
+}
+
+impl Request {
+    /// A fit of all parameters with estimated noise. Lengths in units of ℓ₀.
+    pub fn new(constraints: Constraints) -> Self {
+        Self {
+            constraints,
+            preferred_area: 1.0,
+            noise: KnownNoise::default(),
+            method: Method::default(),
+            cross_validation: CrossValidation::Done,
+            seed: 0,
+        }
+    }
+}
+
+impl Default for Method {
+    fn default() -> Self {
+        Self::Search { max_steps: 60, starts: 1 }
+    }
+}

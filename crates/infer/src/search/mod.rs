@@ -1,0 +1,147 @@
+//! The search for the least penalised objective.
+//!
+//! The objective has a kink, often a jump, wherever neighbours change, and so many minima. One fit is led from loose to
+//! tight data; contacts that could as well be others are then flipped one after another; further starts within the
+//! noise do the same. The best is kept.
+
+mod continuation;
+mod descent;
+mod starts;
+mod transitions;
+
+pub(crate) use descent::descend;
+
+use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
+use crate::objective::Objective;
+use crate::{Error, Progress, Status};
+use argmin::core::{Executor, TerminationReason, TerminationStatus};
+use std::ops::ControlFlow;
+
+/// Relative decrease of the objective that counts as none.
+const TOLERANCE: f64 = 1e-5;
+
+/// How far to search.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Steps of one optimisation at the final noise levels.
+    pub max_steps: u64,
+    /// Whether to try other contacts.
+    pub transitions: bool,
+    /// Starts in all.
+    pub starts: usize,
+    pub seed: u64,
+}
+
+/// The best point found, and the way to it.
+#[derive(Debug, Clone)]
+pub(crate) struct Found {
+    pub parameters: Vec<f64>,
+    pub value: f64,
+    pub status: Status,
+    pub steps: u64,
+    /// Φ after each step of the continuation and after each round of transitions of the best start.
+    pub trace: Vec<f64>,
+    pub transitions_tried: usize,
+    pub transitions_made: usize,
+    /// Φ at the end of each start.
+    pub starts: Vec<f64>,
+}
+
+/// Tells the caller of progress, and hears whether to stop.
+pub(crate) struct Watch<'w> {
+    pub observe: &'w mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+}
+
+impl Watch<'_> {
+    pub fn tell(&mut self, stage: &str, step: (u64, u64), objective: f64) -> Result<(), Error> {
+        match (self.observe)(Progress { stage, step, objective }) {
+            ControlFlow::Continue(()) => Ok(()),
+            ControlFlow::Break(()) => Err(Error::Interrupted),
+        }
+    }
+}
+
+/// The best point that the effort finds, from zero nudges and the given β.
+pub(crate) fn search(
+    objective: &Objective<'_>,
+    free: &[f64],
+    effort: &Effort,
+    stage: &str,
+    watch: &mut Watch<'_>,
+) -> Result<Found, Error> {
+    let mut found = continuation::follow(objective, free, effort.max_steps, stage, watch)?;
+    improve(objective, &mut found, effort, watch)?;
+    Ok(found)
+}
+
+/// Goes on from a point: transitions, and further starts.
+pub(crate) fn improve(
+    objective: &Objective<'_>,
+    found: &mut Found,
+    effort: &Effort,
+    watch: &mut Watch<'_>,
+) -> Result<(), Error> {
+    if effort.transitions {
+        transitions::flip(objective, found, effort.max_steps, watch)?;
+    }
+    found.starts = vec![found.value];
+    for start in 1..effort.starts {
+        starts::try_another(objective, found, effort, start, watch)?;
+    }
+    Ok(())
+}
+
+/// One optimisation at fixed noise levels.
+pub(crate) struct Optimum {
+    pub parameters: Vec<f64>,
+    pub value: f64,
+    pub status: Status,
+    pub steps: u64,
+}
+
+impl Optimum {
+    /// As the result of a search.
+    pub fn found(self, trace: Vec<f64>) -> Found {
+        Found {
+            starts: vec![self.value],
+            parameters: self.parameters,
+            value: self.value,
+            status: self.status,
+            steps: self.steps,
+            trace,
+            transitions_tried: 0,
+            transitions_made: 0,
+        }
+    }
+}
+
+/// Levenberg–Marquardt from a point.
+pub(crate) fn optimise(
+    objective: &Objective<'_>,
+    start: Vec<f64>,
+    max_steps: u64,
+    observer: Observer<'_>,
+) -> Result<Optimum, Error> {
+    let solver = LevenbergMarquardt::new(TOLERANCE, observer);
+    let executor = Executor::new(objective, solver)
+        .configure(|state| state.param(start).max_iters(max_steps))
+        .ctrlc(false);
+    let mut state = executor.run().map_err(own_error)?.state;
+    let status = match &state.termination_status {
+        TerminationStatus::Terminated(TerminationReason::Interrupt) => return Err(Error::Interrupted),
+        TerminationStatus::Terminated(TerminationReason::SolverConverged) => Status::Converged,
+        TerminationStatus::Terminated(TerminationReason::SolverExit(_)) => Status::Stalled,
+        _ => Status::StepLimit,
+    };
+    let value = state.best_cost;
+    let parameters = state.take_best_param().ok_or_else(|| Error::Optimiser("no best point".into()))?;
+    Ok(Optimum { parameters, value, status, steps: state.iter })
+}
+
+/// The error within argmin's.
+fn own_error(error: argmin::core::Error) -> Error {
+    match error.downcast::<Error>() {
+        Ok(own) => own,
+        Err(other) => Error::Optimiser(other.to_string()),
+    }
+}
