@@ -132,7 +132,7 @@ fn bars_mark_one_and_print_their_numbers() {
 
 #[test]
 fn intervals_have_symbols_units_and_naive_values() {
-    let row = |symbol: &str, value: f64, ci95: Option<[f64; 2]>, naive: f64| ParameterRow {
+    let row = |symbol: &str, value: f64, ci95: Option<[Option<f64>; 2]>, naive: f64| ParameterRow {
         symbol: symbol.into(),
         unit: "1/um^2".into(),
         value,
@@ -142,13 +142,19 @@ fn intervals_have_symbols_units_and_naive_values() {
         meaning: String::new(),
     };
     let svg = parameter_intervals(&[
-        row("K_P α", 0.071, Some([0.068, 0.074]), -5.0),
-        row("P_0", 3.9, Some([f64::NAN, f64::INFINITY]), f64::NAN),
+        row("K_P α", 0.071, Some([Some(0.068), Some(0.074)]), -5.0),
+        row("P_0", 3.9, Some([Some(f64::NAN), Some(f64::INFINITY)]), f64::NAN),
         row("K_A", 0.1, None, 0.1),
+        row("α", 1.3, Some([None, Some(3.1)]), -40.0),
+        row("K_P", 0.9, Some([Some(0.2), None]), 0.8),
+        row("P_0", 0.0, Some([None, None]), f64::NAN),
+        ParameterRow { estimate: Estimate::AtBound, ..row("K_A", 0.0, Some([Some(0.0), Some(3.1)]), 0.1) },
         row("lost", f64::NAN, None, 0.1),
     ]);
     assert_sound("intervals", &svg);
-    for text in [">P</tspan>", "0.0710 µm⁻²", "−5.00", "(fixed)", "95 % interval"] {
+    let texts =
+        ["0.0710 µm⁻²", "−5.00", "(fixed)", "95 % interval", "below 3.1", "above 0.20", "not bounded"];
+    for text in texts.into_iter().chain([">P</tspan>", "at a bound"]) {
         assert!(svg.contains(text), "{text}");
     }
     assert!(!svg.contains("lost"));
