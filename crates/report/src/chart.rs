@@ -1,13 +1,14 @@
-//! The frame of a chart: axes, ticks and labels drawn by plotters; marks are added on top as
-//! compact paths in the same coordinates.
+//! The frame of a chart: axes and ticks drawn by plotters; marks are added on top as compact paths
+//! in the same coordinates.
 
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
+use crate::colour::INK;
 use crate::numbers::{superscript, tick_labels, ticks};
-use crate::svg::{PathData, Svg};
+use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Plotters counts in whole pixels: it draws this many times larger and is scaled down.
 const DETAIL: f64 = 8.0;
@@ -26,7 +27,7 @@ pub enum AxisScale {
 /// One axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// Label with unit.
+    /// Label with unit; `_x` sets a subscript.
     pub label: String,
     /// First and last value.
     pub range: [f64; 2],
@@ -133,7 +134,19 @@ impl Chart {
         let inner = inner.trim_end().trim_end_matches("</svg>");
         let inner = inner.replace(r#" font-family="sans-serif""#, "").replace(r#" opacity="1""#, "");
         svg.raw(&format!("<g transform=\"scale({})\">{inner}</g>\n", 1.0 / DETAIL));
-        Some(Self { svg, x, y, plot })
+        let mut chart = Self { svg, x, y, plot };
+        chart.label_axes();
+        Some(chart)
+    }
+
+    fn label_axes(&mut self) {
+        let [[left, top], [right, bottom]] = self.plot;
+        let style = TextStyle { size: 12.0, ..TextStyle::label(Anchor::Middle) };
+        self.svg.text([(left + right) / 2.0, bottom + 37.0], &self.x.label, style);
+        let middle = (top + bottom) / 2.0;
+        self.svg.raw(&format!("<g transform=\"rotate(-90 13 {middle:.1})\">"));
+        self.svg.text([13.0, middle], &self.y.label, style);
+        self.svg.raw("</g>\n");
     }
 
     /// Pixel position of a point in axis coordinates.
@@ -157,14 +170,38 @@ impl Chart {
 
     /// Draws a line through points in axis coordinates, broken where one is not finite.
     pub fn curve(&mut self, points: &[[f64; 2]], attributes: &str) {
+        let path = self.broken_line(points, [0.0; 2]);
+        self.svg.path(&path, &format!(r#"fill="none" {attributes}"#));
+    }
+
+    /// Draws a line through points in axis coordinates, cut off at the frame.
+    pub fn clipped_curve(&mut self, points: &[[f64; 2]], attributes: &str) {
+        let [corner, end] = self.plot;
+        let path = self.broken_line(points, corner);
+        let mut inner = Svg::new([end[0] - corner[0], end[1] - corner[1]], "");
+        inner.path(&path, &format!(r#"fill="none" {attributes}"#));
+        self.svg.nest(corner, &inner);
+    }
+
+    /// The path through points in axis coordinates, seen from `corner`, broken where one is not finite.
+    fn broken_line(&self, points: &[[f64; 2]], corner: [f64; 2]) -> PathData {
         let mut path = PathData::new();
-        let places: Vec<[f64; 2]> = points.iter().map(|&point| self.place(point)).collect();
+        let places = points.iter().map(|&point| self.place(point));
+        let places: Vec<[f64; 2]> = places.map(|[x, y]| [x - corner[0], y - corner[1]]).collect();
         for part in places.split(|place| !place.iter().all(|x| x.is_finite())) {
             if part.len() > 1 {
                 path.line(part);
             }
         }
-        self.svg.path(&path, &format!(r#"fill="none" {attributes}"#));
+        path
+    }
+
+    /// Draws the frame again, over marks that cover it.
+    pub fn frame(&mut self) {
+        let [corner, end] = self.plot;
+        let mut path = PathData::new();
+        path.rectangle(corner, end);
+        self.svg.path(&path, &format!(r#"fill="none" stroke="{INK}" stroke-width=".9""#));
     }
 
     /// The finished picture.
@@ -239,9 +276,6 @@ fn draw_axes(
         .axis_style(ink.stroke_width(large(0.9)))
         .set_all_tick_mark_size(large(4.0))
         .label_style(font(11.0).into_font().color(&ink))
-        .axis_desc_style(font(12.0).into_font().color(&ink))
-        .x_desc(x.label.as_str())
-        .y_desc(y.label.as_str())
         .draw()?;
     let (across, down) = chart.plotting_area().get_pixel_range();
     root.present()?;
