@@ -7,7 +7,7 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::prelude::*;
 
 use crate::colour::INK;
-use crate::numbers::{superscript, tick_labels, ticks};
+use crate::numbers::{as_given, superscript, tick_labels, ticks};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Plotters counts in whole pixels: it draws this many times larger and is scaled down.
@@ -142,7 +142,12 @@ impl Chart {
     fn label_axes(&mut self) {
         let [[left, top], [right, bottom]] = self.plot;
         let style = TextStyle { size: 12.0, ..TextStyle::label(Anchor::Middle) };
-        self.svg.text([(left + right) / 2.0, bottom + 37.0], &self.x.label, style);
+        if !self.x.label.is_empty() {
+            self.svg.text([(left + right) / 2.0, bottom + 37.0], &self.x.label, style);
+        }
+        if self.y.label.is_empty() {
+            return;
+        }
         let middle = (top + bottom) / 2.0;
         self.svg.raw(&format!("<g transform=\"rotate(-90 13 {middle:.1})\">"));
         self.svg.text([13.0, middle], &self.y.label, style);
@@ -160,6 +165,12 @@ impl Chart {
     #[must_use]
     pub fn plot(&self) -> [[f64; 2]; 2] {
         self.plot
+    }
+
+    /// The axes, horizontal and vertical.
+    #[must_use]
+    pub fn axes(&self) -> [&Axis; 2] {
+        [&self.x, &self.y]
     }
 
     /// Whether a point lies within both axes.
@@ -283,22 +294,25 @@ fn draw_axes(
     Ok([[small(across.start), small(down.start)], [small(across.end), small(down.end)]])
 }
 
-/// Powers of ten, thinned to `count`; with 2 and 5 times them where the range is short.
+/// Powers of ten, thinned to `count`; with 2 and 5 times them where the range is short, and evenly
+/// spaced where it is so short that hardly one of these lies in it.
 fn logarithmic_ticks([low, high]: [f64; 2], count: usize) -> Vec<f64> {
     let [first, last] = [low.log10().floor(), high.log10().ceil()];
     let decades = (high / low).log10();
     let step = (decades / count as f64).ceil().max(1.0) as usize;
     let factors: &[f64] = if decades <= 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-    (first as i32..=last as i32)
+    let powers: Vec<f64> = (first as i32..=last as i32)
         .step_by(step)
         .flat_map(|power| factors.iter().map(move |factor| factor * 10f64.powi(power)))
         .filter(|&tick| tick >= low * (1.0 - 1e-9) && tick <= high * (1.0 + 1e-9))
-        .collect()
+        .collect();
+    if powers.len() < 2 { ticks([low, high], count) } else { powers }
 }
 
-fn power_label(value: f64) -> String {
+/// A round number as the label of a tick on a logarithmic axis.
+pub(crate) fn power_label(value: f64) -> String {
     if (1e-3..1e5).contains(&value) {
-        return crate::numbers::significant(value, 1);
+        return as_given(value);
     }
     let power = value.log10().floor() as i32;
     match (value / 10f64.powi(power)).round() as i64 {
@@ -342,5 +356,7 @@ mod tests {
     fn logarithmic_ticks_are_round() {
         assert_eq!(logarithmic_ticks([0.9, 60.0], 6), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
         assert_eq!(logarithmic_ticks([1e-3, 1e3], 3).len(), 4);
+        let labels: Vec<String> = logarithmic_ticks([0.62, 0.91], 6).into_iter().map(power_label).collect();
+        assert_eq!(labels, ["0.65", "0.7", "0.75", "0.8", "0.85", "0.9"]);
     }
 }

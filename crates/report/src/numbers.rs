@@ -65,7 +65,11 @@ pub fn with_interval(value: f64, interval: [f64; 2]) -> [String; 3] {
 pub fn interval_text(value: f64, interval: [Option<f64>; 2]) -> [String; 2] {
     let one_sided = |end: f64| {
         let distance = (value - end).abs();
-        if distance > 0.0 { with_interval(end, [end - distance, end]) } else { with_interval(end, [end; 2]) }
+        if distance > 0.0 {
+            with_interval(end, [end - 2.0 * distance, end])
+        } else {
+            with_interval(end, [end; 2])
+        }
     };
     let (value_text, text) = match interval {
         [Some(low), Some(high)] => {

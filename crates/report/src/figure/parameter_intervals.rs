@@ -151,11 +151,11 @@ fn naive_mark(svg: &mut Svg, naive: f64, (range, at): ([f64; 2], [f64; 2])) {
     let is_below = naive < range[0];
     let (x, sign) = if is_below { (left - 4.0, -1.0) } else { (right + 4.0, 1.0) };
     // Above the line of the interval, which may run to the end of the axis.
-    let y = at[1] - 8.0;
+    let y = at[1] - 10.0;
     arrow_head(svg, [x, y], 7.0 * sign, VERMILLION);
     let anchor = if is_below { Anchor::Start } else { Anchor::End };
     let style = TextStyle { size: 10.0, colour: VERMILLION, anchor };
-    svg.text([x - sign * 11.0, y + 3.5], &significant(naive, 3), style);
+    svg.text_with_rim([x - sign * 11.0, y + 3.5], &significant(naive, 3), style, "#fff");
 }
 
 /// Draws a horizontal arrow head of the given length (negative to the left).
