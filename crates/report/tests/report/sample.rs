@@ -12,7 +12,7 @@ use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage,
 const SPACING: f64 = 12.0;
 
 /// Uniform numbers in −1..1 that depend on their index only.
-fn noise(index: usize, stream: u64) -> f64 {
+pub fn noise(index: usize, stream: u64) -> f64 {
     let mut state = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (stream << 17);
     for _ in 0..3 {
         state ^= state >> 30;
