@@ -1,8 +1,18 @@
-//! Writes sample pages from synthetic data: `sample_page DIR` makes `page.html` (about 400 cells,
-//! two frames), `large.html` (1700 cells) and `degenerate.html` (a few cells, unknown numbers).
+//! Writes samples from synthetic data: `sample_page DIR` makes `page.html` (about 400 cells, two
+//! frames), `large.html` (1700 cells), `degenerate.html` (a few cells, unknown numbers) and
+//! `<figure>.svg` for the figures that stand by themselves.
 
+#[path = "../tests/report/figure_sample.rs"]
+mod figure_sample;
 #[path = "../tests/report/sample.rs"]
 mod sample;
+
+use voronudge_report::Units;
+use voronudge_report::chart::AxisScale;
+use voronudge_report::figure::{
+    FlowMap, NudgeHistogram, VelocityField, bootstrap_histogram, flow_map, landscape, method_comparison,
+    nudge_histogram, parameter_intervals, profile,
+};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("usage: sample_page DIR")?;
@@ -18,5 +28,28 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         println!("{name}: {} kB", html.len() / 1000);
         std::fs::write(format!("{folder}/{name}"), html)?;
     }
+    for (name, svg) in figures() {
+        std::fs::write(format!("{folder}/{name}.svg"), svg)?;
+    }
     Ok(())
+}
+
+fn figures() -> Vec<(&'static str, String)> {
+    let units = Units { length: "um".into(), time: "min".into() };
+    let frames = [sample::frame("frame 6", 16)];
+    let flows = [figure_sample::flow(&frames[0])];
+    let scale = FlowMap::scale(&flows);
+    let flow = |field| flow_map(&flows[0], field, scale.as_ref(), &units);
+    vec![
+        ("landscape", landscape(&figure_sample::landscape())),
+        ("profile", profile(&figure_sample::profile())),
+        ("bootstrap", bootstrap_histogram(&figure_sample::bootstrap())),
+        ("comparison", method_comparison(&figure_sample::comparison(AxisScale::Linear))),
+        ("comparison-log", method_comparison(&figure_sample::comparison(AxisScale::Logarithmic))),
+        ("flow-measured", flow(VelocityField::Measured)),
+        ("flow-predicted", flow(VelocityField::Predicted)),
+        ("flow-residual", flow(VelocityField::Residual)),
+        ("intervals", parameter_intervals(&figure_sample::parameter_rows())),
+        ("nudges", nudge_histogram(&NudgeHistogram::new(&frames, 11.0, 0.013))),
+    ]
 }

@@ -22,10 +22,22 @@ impl ArrowScale {
     #[must_use]
     pub fn velocities(frames: &[FrameView]) -> Option<Self> {
         let cells = || frames.iter().flat_map(|frame| &frame.cells);
-        let measured = quantile(cells().filter_map(|cell| cell.measured).map(length), 0.95);
-        let predicted = || quantile(cells().filter_map(|cell| cell.predicted).map(length), 0.95);
-        let speed = measured.filter(|&speed| speed > 0.0).or_else(predicted)?;
-        let stretch = 1.3 * typical_spacing(frames)? / speed;
+        let measured = cells().filter_map(|cell| cell.measured).map(length);
+        let predicted = cells().filter_map(|cell| cell.predicted).map(length);
+        Self::of_speeds(measured, predicted, typical_spacing(frames)?)
+    }
+
+    /// The scale at which the 95th percentile of the `measured` (failing those, `predicted`) speeds
+    /// is 1.3 times `spacing` long. `None` where nothing moves.
+    #[must_use]
+    pub fn of_speeds(
+        measured: impl Iterator<Item = f64>,
+        predicted: impl Iterator<Item = f64>,
+        spacing: f64,
+    ) -> Option<Self> {
+        let measured = quantile(measured, 0.95).filter(|&speed| speed > 0.0);
+        let speed = measured.or_else(|| quantile(predicted, 0.95))?;
+        let stretch = 1.3 * spacing / speed;
         stretch.is_finite().then_some(Self { stretch, reference: nice_below(2.0 * speed)? })
     }
 

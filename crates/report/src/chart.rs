@@ -1,13 +1,14 @@
-//! The frame of a chart: axes, ticks and labels drawn by plotters; marks are added on top as
-//! compact paths in the same coordinates.
+//! The frame of a chart: axes and ticks drawn by plotters; marks are added on top as compact paths
+//! in the same coordinates.
 
 use std::ops::Range;
 
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
 use plotters::prelude::*;
 
-use crate::numbers::{superscript, tick_labels, ticks};
-use crate::svg::{PathData, Svg};
+use crate::colour::INK;
+use crate::numbers::{as_given, superscript, tick_labels, ticks};
+use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Plotters counts in whole pixels: it draws this many times larger and is scaled down.
 const DETAIL: f64 = 8.0;
@@ -26,7 +27,7 @@ pub enum AxisScale {
 /// One axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
-    /// Label with unit.
+    /// Label with unit; `_x` sets a subscript.
     pub label: String,
     /// First and last value.
     pub range: [f64; 2],
@@ -133,7 +134,24 @@ impl Chart {
         let inner = inner.trim_end().trim_end_matches("</svg>");
         let inner = inner.replace(r#" font-family="sans-serif""#, "").replace(r#" opacity="1""#, "");
         svg.raw(&format!("<g transform=\"scale({})\">{inner}</g>\n", 1.0 / DETAIL));
-        Some(Self { svg, x, y, plot })
+        let mut chart = Self { svg, x, y, plot };
+        chart.label_axes();
+        Some(chart)
+    }
+
+    fn label_axes(&mut self) {
+        let [[left, top], [right, bottom]] = self.plot;
+        let style = TextStyle { size: 12.0, ..TextStyle::label(Anchor::Middle) };
+        if !self.x.label.is_empty() {
+            self.svg.text([(left + right) / 2.0, bottom + 37.0], &self.x.label, style);
+        }
+        if self.y.label.is_empty() {
+            return;
+        }
+        let middle = (top + bottom) / 2.0;
+        self.svg.raw(&format!("<g transform=\"rotate(-90 13 {middle:.1})\">"));
+        self.svg.text([13.0, middle], &self.y.label, style);
+        self.svg.raw("</g>\n");
     }
 
     /// Pixel position of a point in axis coordinates.
@@ -149,6 +167,12 @@ impl Chart {
         self.plot
     }
 
+    /// The axes, horizontal and vertical.
+    #[must_use]
+    pub fn axes(&self) -> [&Axis; 2] {
+        [&self.x, &self.y]
+    }
+
     /// Whether a point lies within both axes.
     #[must_use]
     pub fn contains(&self, [x, y]: [f64; 2]) -> bool {
@@ -157,14 +181,38 @@ impl Chart {
 
     /// Draws a line through points in axis coordinates, broken where one is not finite.
     pub fn curve(&mut self, points: &[[f64; 2]], attributes: &str) {
+        let path = self.broken_line(points, [0.0; 2]);
+        self.svg.path(&path, &format!(r#"fill="none" {attributes}"#));
+    }
+
+    /// Draws a line through points in axis coordinates, cut off at the frame.
+    pub fn clipped_curve(&mut self, points: &[[f64; 2]], attributes: &str) {
+        let [corner, end] = self.plot;
+        let path = self.broken_line(points, corner);
+        let mut inner = Svg::new([end[0] - corner[0], end[1] - corner[1]], "");
+        inner.path(&path, &format!(r#"fill="none" {attributes}"#));
+        self.svg.nest(corner, &inner);
+    }
+
+    /// The path through points in axis coordinates, seen from `corner`, broken where one is not finite.
+    fn broken_line(&self, points: &[[f64; 2]], corner: [f64; 2]) -> PathData {
         let mut path = PathData::new();
-        let places: Vec<[f64; 2]> = points.iter().map(|&point| self.place(point)).collect();
+        let places = points.iter().map(|&point| self.place(point));
+        let places: Vec<[f64; 2]> = places.map(|[x, y]| [x - corner[0], y - corner[1]]).collect();
         for part in places.split(|place| !place.iter().all(|x| x.is_finite())) {
             if part.len() > 1 {
                 path.line(part);
             }
         }
-        self.svg.path(&path, &format!(r#"fill="none" {attributes}"#));
+        path
+    }
+
+    /// Draws the frame again, over marks that cover it.
+    pub fn frame(&mut self) {
+        let [corner, end] = self.plot;
+        let mut path = PathData::new();
+        path.rectangle(corner, end);
+        self.svg.path(&path, &format!(r#"fill="none" stroke="{INK}" stroke-width=".9""#));
     }
 
     /// The finished picture.
@@ -239,9 +287,6 @@ fn draw_axes(
         .axis_style(ink.stroke_width(large(0.9)))
         .set_all_tick_mark_size(large(4.0))
         .label_style(font(11.0).into_font().color(&ink))
-        .axis_desc_style(font(12.0).into_font().color(&ink))
-        .x_desc(x.label.as_str())
-        .y_desc(y.label.as_str())
         .draw()?;
     let (across, down) = chart.plotting_area().get_pixel_range();
     root.present()?;
@@ -249,22 +294,25 @@ fn draw_axes(
     Ok([[small(across.start), small(down.start)], [small(across.end), small(down.end)]])
 }
 
-/// Powers of ten, thinned to `count`; with 2 and 5 times them where the range is short.
+/// Powers of ten, thinned to `count`; with 2 and 5 times them where the range is short, and evenly
+/// spaced where it is so short that hardly one of these lies in it.
 fn logarithmic_ticks([low, high]: [f64; 2], count: usize) -> Vec<f64> {
     let [first, last] = [low.log10().floor(), high.log10().ceil()];
     let decades = (high / low).log10();
     let step = (decades / count as f64).ceil().max(1.0) as usize;
     let factors: &[f64] = if decades <= 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-    (first as i32..=last as i32)
+    let powers: Vec<f64> = (first as i32..=last as i32)
         .step_by(step)
         .flat_map(|power| factors.iter().map(move |factor| factor * 10f64.powi(power)))
         .filter(|&tick| tick >= low * (1.0 - 1e-9) && tick <= high * (1.0 + 1e-9))
-        .collect()
+        .collect();
+    if powers.len() < 2 { ticks([low, high], count) } else { powers }
 }
 
-fn power_label(value: f64) -> String {
+/// A round number as the label of a tick on a logarithmic axis.
+pub(crate) fn power_label(value: f64) -> String {
     if (1e-3..1e5).contains(&value) {
-        return crate::numbers::significant(value, 1);
+        return as_given(value);
     }
     let power = value.log10().floor() as i32;
     match (value / 10f64.powi(power)).round() as i64 {
@@ -308,5 +356,7 @@ mod tests {
     fn logarithmic_ticks_are_round() {
         assert_eq!(logarithmic_ticks([0.9, 60.0], 6), [1.0, 2.0, 5.0, 10.0, 20.0, 50.0]);
         assert_eq!(logarithmic_ticks([1e-3, 1e3], 3).len(), 4);
+        let labels: Vec<String> = logarithmic_ticks([0.62, 0.91], 6).into_iter().map(power_label).collect();
+        assert_eq!(labels, ["0.65", "0.7", "0.75", "0.8", "0.85", "0.9"]);
     }
 }

@@ -107,12 +107,24 @@ pub struct CellCounts {
 pub struct Parameter {
     /// Value.
     pub value: f64,
-    /// 95 % interval; `null` for a parameter held fixed.
+    /// 95 % interval; `null` for a parameter held fixed. An end that is infinite (`null`) is not
+    /// bounded by the data.
     pub ci95: Option<[f64; 2]>,
     /// Whether it was held fixed.
     pub fixed: bool,
     /// Unit; empty if dimensionless.
     pub unit: String,
+}
+
+impl Parameter {
+    /// The 95 % interval with `None` for an end that is not bounded; none for a parameter held
+    /// fixed and where an end is not known.
+    #[must_use]
+    pub fn interval(&self) -> Option<[Option<f64>; 2]> {
+        let [low, high] = self.ci95?;
+        let is_known = low < f64::INFINITY && high > f64::NEG_INFINITY;
+        is_known.then(|| [low, high].map(|end| Some(end).filter(|end| end.is_finite())))
+    }
 }
 
 /// The parameters of the model and two combinations of them.

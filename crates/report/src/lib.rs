@@ -20,10 +20,15 @@
 pub mod arrows;
 pub mod chart;
 pub mod colour;
+pub mod colour_bar;
+pub mod contour;
 mod error;
 pub mod figure;
+pub mod histogram;
 pub mod infer_report;
+pub mod key;
 pub mod map;
+pub mod markers;
 pub mod numbers;
 pub mod page;
 pub mod svg;

@@ -24,7 +24,16 @@ impl Viewport {
     /// The viewport that shows all cell centres and a margin of one cell; `None` without cells.
     #[must_use]
     pub fn around(frame: &FrameView) -> Option<Self> {
-        let centres = || frame.cells.iter().map(|cell| cell.centre).filter(|&at| is_finite(at));
+        Self::around_with(frame, &[])
+    }
+
+    /// The viewport that also shows further `points`; `None` without cells and points.
+    #[must_use]
+    pub fn around_with(frame: &FrameView, points: &[[f64; 2]]) -> Option<Self> {
+        let centres = || {
+            let centres = frame.cells.iter().map(|cell| cell.centre).chain(points.iter().copied());
+            centres.filter(|&at| is_finite(at))
+        };
         let bounds = |axis: usize| {
             let low = centres().map(|at| at[axis]).fold(f64::INFINITY, f64::min);
             let high = centres().map(|at| at[axis]).fold(f64::NEG_INFINITY, f64::max);
@@ -89,9 +98,14 @@ impl Map {
     /// An empty map of a frame; `None` if the frame has no cell with a finite position.
     #[must_use]
     pub fn new(frame: &FrameView, title: &str) -> Option<Self> {
-        let view = Viewport::around(frame)?;
+        Some(Self::with_view(Viewport::around(frame)?, frame, title))
+    }
+
+    /// An empty map of a frame as `view` shows it.
+    #[must_use]
+    pub fn with_view(view: Viewport, frame: &FrameView, title: &str) -> Self {
         let title = format!("{title}, {}", frame.label);
-        Some(Self { view, layer: Svg::new(view.size, &title), title })
+        Self { view, layer: Svg::new(view.size, &title), title }
     }
 
     /// Draws faint outlines of all cells, those left out on grey, and the box.

@@ -52,6 +52,49 @@ pub fn with_interval(value: f64, interval: [f64; 2]) -> [String; 3] {
         .map(|number| if number.is_finite() { fixed(number, decimals) } else { NO_VALUE.to_owned() })
 }
 
+/// `value` and its interval as text; an end that is `None` is not bounded.
+///
+/// ```
+/// use voronudge_report::numbers::interval_text;
+/// assert_eq!(interval_text(3.402, [Some(3.281), Some(3.522)]), ["3.40", "3.28 to 3.52"]);
+/// assert_eq!(interval_text(1.0, [None, Some(3.1)]), ["1.00", "below 3.1"]);
+/// assert_eq!(interval_text(1.0, [Some(0.2), None]), ["1.00", "above 0.20"]);
+/// assert_eq!(interval_text(1.0, [None, None]), ["1.00", "not bounded"]);
+/// ```
+#[must_use]
+pub fn interval_text(value: f64, interval: [Option<f64>; 2]) -> [String; 2] {
+    let one_sided = |end: f64| {
+        let distance = (value - end).abs();
+        if distance > 0.0 {
+            with_interval(end, [end - 2.0 * distance, end])
+        } else {
+            with_interval(end, [end; 2])
+        }
+    };
+    let (value_text, text) = match interval {
+        [Some(low), Some(high)] => {
+            let [value, low, high] = with_interval(value, [low, high]);
+            (value, format!("{low} to {high}"))
+        }
+        [None, Some(high)] => (significant(value, 3), format!("below {}", one_sided(high)[0])),
+        [Some(low), None] => (significant(value, 3), format!("above {}", one_sided(low)[0])),
+        [None, None] => (significant(value, 3), "not bounded".to_owned()),
+    };
+    [value_text, text]
+}
+
+/// A label with its unit (as typed) in brackets, if it has one.
+///
+/// ```
+/// use voronudge_report::numbers::label_with_unit;
+/// assert_eq!(label_with_unit("P_0", "um"), "P_0 (µm)");
+/// assert_eq!(label_with_unit("α", ""), "α");
+/// ```
+#[must_use]
+pub fn label_with_unit(label: &str, unit: &str) -> String {
+    if unit.is_empty() { label.to_owned() } else { format!("{label} ({})", unit_text(unit)) }
+}
+
 /// `value` with at most six significant digits and no trailing zeros, for numbers that were given
 /// rather than measured.
 ///

@@ -65,6 +65,12 @@ impl Svg {
         self.size
     }
 
+    /// What a screen reader says.
+    #[must_use]
+    pub fn title(&self) -> &str {
+        &self.title
+    }
+
     /// Adds a path with presentation attributes such as `fill="none" stroke="#333"`.
     /// An empty path adds nothing.
     pub fn path(&mut self, path: &PathData, attributes: &str) {
@@ -91,6 +97,15 @@ impl Svg {
                 subscripts(text, SubscriptMarkup::Svg)
             );
         }
+    }
+
+    /// Adds text with a rim of the colour `rim`, legible on any ground.
+    pub fn text_with_rim(&mut self, at: [f64; 2], text: &str, style: TextStyle, rim: &str) {
+        self.raw(&format!(
+            "<g paint-order=\"stroke\" stroke=\"{rim}\" stroke-width=\"3\" stroke-linejoin=\"round\">"
+        ));
+        self.text(at, text, style);
+        self.raw("</g>\n");
     }
 
     /// Adds SVG elements as they are. The caller vouches for them.

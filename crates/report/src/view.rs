@@ -63,9 +63,7 @@ impl CellView {
     /// Measured minus predicted velocity, where both are known and finite.
     #[must_use]
     pub fn residual(&self) -> Option<[f64; 2]> {
-        let [measured, predicted] = [self.measured?, self.predicted?];
-        let residual = [measured[0] - predicted[0], measured[1] - predicted[1]];
-        is_finite(residual).then_some(residual)
+        residual(self.measured?, self.predicted?)
     }
 
     /// Shape index P/√A.
@@ -131,6 +129,13 @@ impl FrameView {
     pub fn left_out(&self) -> usize {
         self.cells.iter().filter(|cell| !cell.is_used()).count()
     }
+}
+
+/// Measured minus predicted, where it is finite.
+#[must_use]
+pub(crate) fn residual(measured: [f64; 2], predicted: [f64; 2]) -> Option<[f64; 2]> {
+    let residual = [measured[0] - predicted[0], measured[1] - predicted[1]];
+    is_finite(residual).then_some(residual)
 }
 
 /// Whether both components are finite.

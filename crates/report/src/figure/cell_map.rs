@@ -2,9 +2,10 @@
 
 use super::no_data;
 use crate::colour::{ColourScale, Palette};
+use crate::colour_bar::ColourBar;
 use crate::map::{HATCH_STYLE, Legend, MAP_WIDTH, Map, Swatch, hatch};
 use crate::numbers::{tick_labels, ticks};
-use crate::svg::{Anchor, PathData, TextStyle};
+use crate::svg::PathData;
 use crate::view::{FrameView, Units};
 
 /// Left and right end of the colour bar in pixels.
@@ -97,36 +98,9 @@ fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&CellScalar,
 }
 
 fn colour_bar(legend: &mut Legend, colours: &ColourScale, label: &str) {
-    let [left, right] = BAR;
-    let [top, bottom] = [legend.top + 9.0, legend.top + 20.0];
-    let width = (right - left) / ColourScale::LEVELS as f64;
-    for level in 0..ColourScale::LEVELS {
-        let x = left + level as f64 * width;
-        let mut cell = PathData::new();
-        // Half a pixel of overlap hides the seams between the classes.
-        cell.rectangle([x, top], [(x + width + 0.5).min(right), bottom]);
-        legend.svg.path(&cell, &format!(r#"fill="{}""#, colours.colour(level)));
-    }
-    let middle = (top + bottom) / 2.0;
-    let [below, above] = colours.extended();
-    for (is_extended, x, tip, level) in
-        [(below, left, left - 9.0, 0), (above, right, right + 9.0, ColourScale::LEVELS - 1)]
-    {
-        if is_extended {
-            let mut triangle = PathData::new();
-            triangle.polygon(&[[x, top], [tip, middle], [x, bottom]]);
-            legend.svg.path(&triangle, &format!(r#"fill="{}""#, colours.colour(level)));
-        }
-    }
-    let [low, high] = colours.limits();
-    let positions = ticks([low, high], 5);
-    for (&position, text) in positions.iter().zip(tick_labels(&positions)) {
-        let x = left + (position - low) / (high - low) * (right - left);
-        let mut tick = PathData::new();
-        tick.line(&[[x, bottom], [x, bottom + 3.5]]);
-        legend.svg.path(&tick, r##"fill="none" stroke="#222" stroke-width=".8""##);
-        legend.svg.text([x, bottom + 14.5], &text, TextStyle::label(Anchor::Middle));
-    }
-    let at = [(left + right) / 2.0, bottom + 29.0];
-    legend.svg.text(at, label, TextStyle::label(Anchor::Middle));
+    let positions = ticks(colours.limits(), 5);
+    let labels = tick_labels(&positions);
+    let ticks = positions.into_iter().zip(labels).collect();
+    let bar = ColourBar { ends: BAR, top: legend.top + 9.0, ticks, label };
+    bar.draw(&mut legend.svg, colours);
 }

@@ -3,22 +3,32 @@
 //! Figures never fail: numbers that are not finite are skipped, and where nothing is left to draw
 //! the figure says "no data".
 
+mod bootstrap_histogram;
 mod cell_map;
 mod error_bars;
+mod flow_map;
+mod landscape;
+mod method_comparison;
 mod nudge_histogram;
 mod nudge_map;
 mod objective_trace;
 mod parameter_intervals;
 mod predicted_against_measured;
+mod profile;
 mod velocity_map;
 
+pub use bootstrap_histogram::{BootstrapHistogram, bootstrap_histogram};
 pub use cell_map::{CellScalar, cell_map};
 pub use error_bars::{Emphasis, ErrorBar, error_bars};
+pub use flow_map::{FlowMap, flow_map};
+pub use landscape::{Landscape, LandscapeAxis, landscape};
+pub use method_comparison::{MethodComparison, MethodSeries, method_comparison};
 pub use nudge_histogram::{NudgeHistogram, nudge_histogram};
 pub use nudge_map::nudge_map;
 pub use objective_trace::{ObjectiveTrace, objective_trace};
 pub use parameter_intervals::{Estimate, ParameterRow, parameter_intervals};
 pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
+pub use profile::{ProfileCurve, profile};
 pub use velocity_map::{VelocityField, velocity_map};
 
 use crate::svg::{Anchor, Svg, TextStyle};

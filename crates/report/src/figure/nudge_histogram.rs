@@ -3,8 +3,9 @@
 use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::VERMILLION;
-use crate::numbers::{nice_below, quantile, significant};
-use crate::svg::{Anchor, PathData, TextStyle};
+use crate::histogram::Histogram;
+use crate::numbers::{quantile, significant};
+use crate::svg::{Anchor, TextStyle};
 use crate::view::{FrameView, length};
 
 /// The nudges and the noise that was assumed, both in units of the cell size ℓ₀.
@@ -30,30 +31,19 @@ impl NudgeHistogram {
 #[must_use]
 pub fn nudge_histogram(histogram: &NudgeHistogram) -> String {
     let title = "size of the nudges";
-    let finite = || histogram.sizes.iter().copied().filter(|size| size.is_finite());
-    let count = finite().count() as f64;
     let sigma = Some(histogram.sigma_r).filter(|sigma| sigma.is_finite() && *sigma > 0.0);
-    let typical = quantile(finite(), 0.99).unwrap_or(0.0).max(sigma.map_or(0.0, |s| 3.4 * s));
-    let Some(width) = nice_below(typical / 14.0).filter(|_| count > 0.0) else {
+    let largest = quantile(histogram.sizes.iter().copied(), 0.99).unwrap_or(0.0);
+    let end = largest.max(sigma.map_or(0.0, |sigma| 3.4 * sigma));
+    let Some(bars) = Histogram::new(histogram.sizes.iter().copied(), [0.0, end], 14) else {
         return no_data(title);
     };
-    let bins = (typical / width).ceil() as usize;
-    let mut counts = vec![0.0; bins];
-    let mut beyond = 0;
-    for size in finite() {
-        match counts.get_mut((size / width) as usize) {
-            Some(number) => *number += 1.0,
-            None => beyond += 1,
-        }
-    }
-    let end = bins as f64 * width;
+    let end = bars.range()[1];
     let curve: Vec<[f64; 2]> = sigma.map_or_else(Vec::new, |sigma| {
         let density = |x: f64| x / (sigma * sigma) * (-x * x / (2.0 * sigma * sigma)).exp();
         let at = |step: usize| end * step as f64 / 150.0;
-        (0..=150).map(|step| [at(step), count * width * density(at(step))]).collect()
+        (0..=150).map(|step| [at(step), bars.total() * bars.width() * density(at(step))]).collect()
     });
-    let heights = counts.iter().copied().chain(curve.iter().map(|point| point[1]));
-    let highest = heights.fold(1.0, f64::max);
+    let highest = curve.iter().map(|point| point[1]).fold(bars.highest(), f64::max);
     let layout = ChartLayout {
         title,
         size: [440.0, 300.0],
@@ -64,19 +54,10 @@ pub fn nudge_histogram(histogram: &NudgeHistogram) -> String {
     let Some(mut chart) = Chart::new(layout) else {
         return no_data(title);
     };
-    draw(&mut chart, (&counts, width), &curve);
-    legend(&mut chart, sigma, beyond);
+    bars.draw(&mut chart);
+    chart.curve(&curve, &format!(r#"stroke="{VERMILLION}" stroke-width="1.8""#));
+    legend(&mut chart, sigma, bars.outside[1]);
     chart.finish()
-}
-
-fn draw(chart: &mut Chart, (counts, width): (&[f64], f64), curve: &[[f64; 2]]) {
-    let mut bars = PathData::new();
-    for (bin, &number) in counts.iter().enumerate().filter(|(_, number)| **number > 0.0) {
-        let low = bin as f64 * width;
-        bars.rectangle(chart.place([low, number]), chart.place([low + width, 0.0]));
-    }
-    chart.svg.path(&bars, r##"fill="#9db4c6" stroke="#fff" stroke-width=".8""##);
-    chart.curve(curve, &format!(r#"stroke="{VERMILLION}" stroke-width="1.8""#));
 }
 
 fn legend(chart: &mut Chart, sigma: Option<f64>, beyond: usize) {

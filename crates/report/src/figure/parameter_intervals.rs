@@ -1,8 +1,8 @@
 //! Parameters with their 95 % intervals, each on its own small axis.
 
 use super::no_data;
-use crate::colour::{BLUE, GREY, VERMILLION};
-use crate::numbers::{as_given, significant, tick_labels, ticks, unit_text, with_interval};
+use crate::colour::{BLUE, GREY, INK, VERMILLION};
+use crate::numbers::{as_given, interval_text, significant, tick_labels, ticks, unit_text};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Height of a row in pixels.
@@ -17,6 +17,8 @@ const WIDTH: f64 = 540.0;
 pub enum Estimate {
     /// Fitted.
     Fitted,
+    /// Fitted, and stopped by a bound of the values allowed.
+    AtBound,
     /// Held at its value.
     Fixed,
 }
@@ -30,8 +32,8 @@ pub struct ParameterRow {
     pub unit: String,
     /// Fitted (nudged) value.
     pub value: f64,
-    /// 95 % interval; none for a parameter held fixed.
-    pub ci95: Option<[f64; 2]>,
+    /// 95 % interval, an end that is `None` being unbounded; none for a parameter held fixed.
+    pub ci95: Option<[Option<f64>; 2]>,
     /// The value without nudges.
     pub naive: Option<f64>,
     /// Whether it was fitted.
@@ -41,15 +43,17 @@ pub struct ParameterRow {
 }
 
 impl ParameterRow {
-    /// The interval if both ends are finite.
+    /// The interval if the ends it has are finite.
     #[must_use]
-    pub fn interval(&self) -> Option<[f64; 2]> {
-        self.ci95.filter(|ends| ends.iter().all(|end| end.is_finite()))
+    pub fn interval(&self) -> Option<[Option<f64>; 2]> {
+        self.ci95.filter(|ends| ends.iter().flatten().all(|end| end.is_finite()))
     }
 }
 
 /// Point and 95 % interval per parameter, each row on its own axis, with the naive estimate beside
-/// it and zero marked where the axis contains it. Parameters without a finite value are left out.
+/// it and zero marked where the axis contains it. An interval without a bound runs to the end of the
+/// axis with an arrow head; an estimate at a bound has a wall. Parameters without a finite value are
+/// left out.
 #[must_use]
 pub fn parameter_intervals(rows: &[ParameterRow]) -> String {
     let title = "parameters with 95 % intervals";
@@ -67,7 +71,7 @@ pub fn parameter_intervals(rows: &[ParameterRow]) -> String {
 
 fn legend(svg: &mut Svg) {
     let y = 12.0;
-    interval_mark(svg, [[86.0, y], [98.0, y], [110.0, y]]);
+    interval_mark(svg, [Some(86.0), Some(110.0)], [98.0, y]);
     svg.text([117.0, y + 4.0], "nudged, 95 % interval", TextStyle::quiet(Anchor::Start));
     cross(svg, [262.0, y]);
     svg.text([272.0, y + 4.0], "naive (no nudges)", TextStyle::quiet(Anchor::Start));
@@ -103,20 +107,30 @@ fn draw_row(svg: &mut Svg, row: &ParameterRow, top: f64) {
         naive_mark(svg, naive, (range, [place(naive), y]));
     }
     let at = place(row.value);
+    if row.estimate == Estimate::AtBound {
+        wall(svg, [at, y]);
+    }
     match row.interval() {
-        Some([low, high]) => interval_mark(svg, [[place(low), y], [at, y], [place(high), y]]),
+        Some(ends) => interval_mark(svg, ends.map(|end| end.map(place)), [at, y]),
         None => fixed_mark(svg, [at, y]),
     }
     svg.text([right + 12.0, y + 4.0], &value_text(row), TextStyle::label(Anchor::Start));
+    let style = TextStyle { size: 10.0, ..TextStyle::quiet(Anchor::Start) };
+    svg.text([right + 12.0, y + 18.0], &remark(row), style);
 }
 
 /// The interval (or the value) with room, zero if it is near, and the naive value unless it is far.
+/// Where the interval has no bound, there is room for it to run on.
 fn row_range(row: &ParameterRow) -> [f64; 2] {
-    let [low, high] = row.interval().unwrap_or([row.value, row.value]);
+    let ends = row.interval().unwrap_or([Some(row.value); 2]);
+    let [low, high] = [ends[0].unwrap_or(row.value), ends[1].unwrap_or(row.value)];
     let [low, high] = [low.min(row.value), high.max(row.value)];
-    let size = row.value.abs().max(1e-12);
-    let width = (high - low).max(if row.interval().is_some() { 1e-3 } else { 0.5 } * size);
-    let mut range = [low, high];
+    let is_given = row.interval().is_some() && high > low;
+    let size = [row.value.abs(), high - low, row.naive.unwrap_or(0.0).abs()];
+    let size = size.into_iter().find(|&size| size > 0.0 && size.is_finite()).unwrap_or(1.0);
+    let width = (high - low).max(if is_given { 1e-3 } else { 0.5 } * size);
+    let run = |end: Option<f64>| if end.is_none() { 0.6 * width } else { 0.0 };
+    let mut range = [low - run(ends[0]), high + run(ends[1])];
     let mut include = |value: f64, reach: f64| {
         if value.is_finite() && value > low - reach * width && value < high + reach * width {
             range = [range[0].min(value), range[1].max(value)];
@@ -136,27 +150,47 @@ fn naive_mark(svg: &mut Svg, naive: f64, (range, at): ([f64; 2], [f64; 2])) {
     }
     let is_below = naive < range[0];
     let (x, sign) = if is_below { (left - 4.0, -1.0) } else { (right + 4.0, 1.0) };
-    let mut arrow = PathData::new();
-    let back = x - sign * 7.0;
-    arrow.polygon(&[[x, at[1]], [back, at[1] - 4.0], [back, at[1] + 4.0]]);
-    svg.path(&arrow, &format!(r#"fill="{VERMILLION}""#));
+    // Above the line of the interval, which may run to the end of the axis.
+    let y = at[1] - 10.0;
+    arrow_head(svg, [x, y], 7.0 * sign, VERMILLION);
     let anchor = if is_below { Anchor::Start } else { Anchor::End };
     let style = TextStyle { size: 10.0, colour: VERMILLION, anchor };
-    let label = significant(naive, 3);
-    svg.text([back - sign * 4.0, at[1] - 5.0], &label, style);
+    svg.text_with_rim([x - sign * 11.0, y + 3.5], &significant(naive, 3), style, "#fff");
 }
 
-fn interval_mark(svg: &mut Svg, [low, at, high]: [[f64; 2]; 3]) {
+/// Draws a horizontal arrow head of the given length (negative to the left).
+fn arrow_head(svg: &mut Svg, tip: [f64; 2], along: f64, colour: &str) {
+    let back = tip[0] - along;
+    let mut head = PathData::new();
+    head.polygon(&[tip, [back, tip[1] - 4.0], [back, tip[1] + 4.0]]);
+    svg.path(&head, &format!(r#"fill="{colour}""#));
+}
+
+/// Draws an interval whose ends stand at these places, none for an end without a bound.
+fn interval_mark(svg: &mut Svg, ends: [Option<f64>; 2], [at, y]: [f64; 2]) {
     let mut line = PathData::new();
-    line.line(&[low, high]);
-    for end in [low, high] {
-        line.line(&[[end[0], end[1] - 4.0], [end[0], end[1] + 4.0]]);
+    let [low, high] = [ends[0].unwrap_or(AXIS[0] + 4.0), ends[1].unwrap_or(AXIS[1] - 4.0)];
+    line.line(&[[low, y], [high, y]]);
+    for end in ends.into_iter().flatten() {
+        line.line(&[[end, y - 4.0], [end, y + 4.0]]);
     }
     svg.path(&line, &format!(r#"fill="none" stroke="{BLUE}" stroke-width="1.8""#));
+    for (end, tip, along) in [(ends[0], AXIS[0], -8.0), (ends[1], AXIS[1], 8.0)] {
+        if end.is_none() {
+            arrow_head(svg, [tip, y], along, BLUE);
+        }
+    }
     let mut dot = PathData::new();
-    dot.dot(at);
+    dot.dot([at, y]);
     let style = r#"fill="none" stroke-width="8" stroke-linecap="round""#;
     svg.path(&dot, &format!(r#"stroke="{BLUE}" {style}"#));
+}
+
+/// Draws the bound at which an estimate stopped.
+fn wall(svg: &mut Svg, [x, y]: [f64; 2]) {
+    let mut line = PathData::new();
+    line.line(&[[x, y - 10.0], [x, y + 10.0]]);
+    svg.path(&line, &format!(r#"fill="none" stroke="{INK}" stroke-width="2.6""#));
 }
 
 fn fixed_mark(svg: &mut Svg, [x, y]: [f64; 2]) {
@@ -175,8 +209,16 @@ fn cross(svg: &mut Svg, [x, y]: [f64; 2]) {
 fn value_text(row: &ParameterRow) -> String {
     let unit = unit_text(&row.unit);
     match (row.interval(), row.estimate) {
-        (Some(ends), _) => format!("{} {unit}", with_interval(row.value, ends)[0]),
-        (None, Estimate::Fitted) => format!("{} {unit}", significant(row.value, 3)),
+        (Some(ends), _) => format!("{} {unit}", interval_text(row.value, ends)[0]),
         (None, Estimate::Fixed) => format!("{} (fixed)", as_given(row.value)),
+        (None, _) => format!("{} {unit}", significant(row.value, 3)),
     }
+}
+
+/// What the picture of an interval cannot say by itself.
+fn remark(row: &ParameterRow) -> String {
+    let one_sided = row.interval().filter(|ends| ends.iter().any(Option::is_none));
+    let bounds = one_sided.map(|ends| interval_text(row.value, ends)[1].clone());
+    let bound = (row.estimate == Estimate::AtBound).then(|| "at a bound".to_owned());
+    bounds.into_iter().chain(bound).collect::<Vec<_>>().join(", ")
 }

@@ -3,8 +3,8 @@
 use super::no_data;
 use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
 use crate::colour::{BLUE, INK, VERMILLION};
-use crate::map::{Map, Swatch};
-use crate::view::{CellView, FrameView, Units};
+use crate::map::{Legend, Map, Swatch};
+use crate::view::{CellView, FrameView, Units, residual};
 
 /// Which velocities a map shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -31,7 +31,7 @@ impl VelocityField {
         }
     }
 
-    fn colour(self) -> &'static str {
+    pub(super) fn colour(self) -> &'static str {
         match self {
             Self::Measured => INK,
             Self::Predicted => BLUE,
@@ -39,12 +39,17 @@ impl VelocityField {
         }
     }
 
-    fn of(self, cell: &CellView) -> Option<[f64; 2]> {
+    /// This field, given the other two where they are known.
+    pub(super) fn select(self, measured: Option<[f64; 2]>, predicted: Option<[f64; 2]>) -> Option<[f64; 2]> {
         match self {
-            Self::Measured => cell.measured,
-            Self::Predicted => cell.predicted,
-            Self::Residual => cell.residual(),
+            Self::Measured => measured,
+            Self::Predicted => predicted,
+            Self::Residual => residual(measured?, predicted?),
         }
+    }
+
+    fn of(self, cell: &CellView) -> Option<[f64; 2]> {
+        self.select(cell.measured, cell.predicted)
     }
 }
 
@@ -70,11 +75,21 @@ pub fn velocity_map(
         }
     }
     arrows.draw(&mut map.layer, field.colour());
+    arrow_legend(map, frame, (field, scale), units).svg.finish()
+}
+
+/// Scale bar, reference arrow and the entry for cells left out, beneath a map of velocities.
+pub(super) fn arrow_legend(
+    map: Map,
+    frame: &FrameView,
+    (field, scale): (VelocityField, &ArrowScale),
+    units: &Units,
+) -> Legend {
     let mut legend = map.with_legend(48.0);
     legend.scale_bar(units);
     let unit = units.velocity_text();
     let mark = ReferenceMark { unit: &unit, remark: "", colour: field.colour() };
     legend.reference_arrow(160.0, scale, &mark);
     legend.left_out(4.0, frame, Swatch::Grey);
-    legend.svg.finish()
+    legend
 }

@@ -59,7 +59,9 @@ impl InferPage<'_> {
             velocity_unit: report.units.velocity_text(),
             intervals: Figure::new(
                 parameter_intervals(&rows),
-                "Each parameter on its own axis; the dashed upright line is zero.",
+                "Each parameter on its own axis; the dashed upright line is zero. An arrow head says that \
+                 the interval is not bounded there, a thick upright line that the estimate stopped at a \
+                 bound.",
             ),
             parameters: rows.iter().map(TableRow::new).collect(),
             error_figure: self.error_figure(),

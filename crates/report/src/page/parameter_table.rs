@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use crate::figure::{Estimate, ParameterRow};
 use crate::infer_report::{InferReport, Parameter};
-use crate::numbers::{NO_VALUE, as_given, significant, unit_text, with_interval};
+use crate::numbers::{NO_VALUE, as_given, interval_text, significant, unit_text};
 
 /// A parameter as the table shows it.
 #[derive(Serialize)]
@@ -20,13 +20,14 @@ pub(super) struct TableRow {
 impl TableRow {
     /// The texts of a row.
     pub(super) fn new(row: &ParameterRow) -> Self {
-        let (value, interval) = match (row.interval(), row.estimate) {
-            (Some(ends), _) => {
-                let [value, low, high] = with_interval(row.value, ends);
-                (value, format!("{low} to {high}"))
+        let [value, interval] = match (row.interval(), row.estimate) {
+            (Some(ends), Estimate::AtBound) => {
+                let [value, interval] = interval_text(row.value, ends);
+                [value, format!("{interval}, at a bound")]
             }
-            (None, Estimate::Fixed) => (as_given(row.value), "held fixed".to_owned()),
-            (None, Estimate::Fitted) => (significant(row.value, 3), "not determined".to_owned()),
+            (Some(ends), _) => interval_text(row.value, ends),
+            (None, Estimate::Fixed) => [as_given(row.value), "held fixed".to_owned()],
+            (None, _) => [significant(row.value, 3), "not determined".to_owned()],
         };
         Self {
             symbol: row.symbol.clone(),
@@ -50,6 +51,16 @@ pub(super) fn symbol_of(name: &str) -> String {
     }
 }
 
+/// An interval that begins or ends at the estimate itself was cut off there by a bound.
+fn estimate(parameter: &Parameter) -> Estimate {
+    let ends = parameter.interval().unwrap_or_default().map(|end| end == Some(parameter.value));
+    match (parameter.fixed, ends) {
+        (true, _) => Estimate::Fixed,
+        (false, [true, false] | [false, true]) => Estimate::AtBound,
+        (false, _) => Estimate::Fitted,
+    }
+}
+
 /// The rows of the parameter table, the best determined first.
 pub(super) fn parameter_rows(report: &InferReport) -> Vec<ParameterRow> {
     let (fitted, naive) = (&report.parameters, &report.naive);
@@ -57,9 +68,9 @@ pub(super) fn parameter_rows(report: &InferReport) -> Vec<ParameterRow> {
         symbol: symbol_of(name),
         unit: parameter.unit.clone(),
         value: parameter.value,
-        ci95: parameter.ci95,
+        ci95: parameter.interval(),
         naive: Some(naive).filter(|naive| naive.is_finite()),
-        estimate: if parameter.fixed { Estimate::Fixed } else { Estimate::Fitted },
+        estimate: estimate(parameter),
         meaning: meaning.to_owned(),
     };
     vec![

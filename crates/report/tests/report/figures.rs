@@ -1,16 +1,16 @@
 //! What figures must contain, must not contain, and how large they may be.
 
-use crate::sample;
+use crate::{figure_sample, sample};
 use voronudge_report::arrows::ArrowScale;
 use voronudge_report::colour::Palette;
 use voronudge_report::figure::{
-    CellScalar, Emphasis, ErrorBar, Estimate, NudgeHistogram, ObjectiveTrace, ParameterRow, VelocityField,
-    cell_map, error_bars, nudge_histogram, nudge_map, objective_trace, parameter_intervals,
-    predicted_against_measured, velocity_map, velocity_pairs,
+    CellScalar, Emphasis, ErrorBar, NudgeHistogram, ObjectiveTrace, VelocityField, cell_map, error_bars,
+    nudge_histogram, nudge_map, objective_trace, parameter_intervals, predicted_against_measured,
+    velocity_map, velocity_pairs,
 };
 use voronudge_report::{FrameView, Units};
 
-fn units() -> Units {
+pub fn units() -> Units {
     Units { length: "um".into(), time: "min".into() }
 }
 
@@ -42,7 +42,8 @@ fn figures(frame: FrameView) -> Vec<(&'static str, String)> {
     ]
 }
 
-fn assert_sound(name: &str, svg: &str) {
+/// What every figure must be.
+pub fn assert_sound(name: &str, svg: &str) {
     assert!(svg.starts_with("<svg ") && svg.trim_end().ends_with("</svg>"), "{name}");
     assert!(svg.contains("viewBox"), "{name}");
     let drawn = svg.split(" d=\"").skip(1).filter_map(|rest| rest.split('"').next());
@@ -131,24 +132,12 @@ fn bars_mark_one_and_print_their_numbers() {
 }
 
 #[test]
-fn intervals_have_symbols_units_and_naive_values() {
-    let row = |symbol: &str, value: f64, ci95: Option<[f64; 2]>, naive: f64| ParameterRow {
-        symbol: symbol.into(),
-        unit: "1/um^2".into(),
-        value,
-        ci95,
-        naive: Some(naive),
-        estimate: if ci95.is_some() { Estimate::Fitted } else { Estimate::Fixed },
-        meaning: String::new(),
-    };
-    let svg = parameter_intervals(&[
-        row("K_P α", 0.071, Some([0.068, 0.074]), -5.0),
-        row("P_0", 3.9, Some([f64::NAN, f64::INFINITY]), f64::NAN),
-        row("K_A", 0.1, None, 0.1),
-        row("lost", f64::NAN, None, 0.1),
-    ]);
+fn intervals_have_symbols_units_bounds_and_naive_values() {
+    let svg = parameter_intervals(&figure_sample::parameter_rows());
     assert_sound("intervals", &svg);
-    for text in [">P</tspan>", "0.0710 µm⁻²", "−5.00", "(fixed)", "95 % interval"] {
+    let texts =
+        ["0.0710 µm⁻²", "−5.00", "(fixed)", "95 % interval", "below 3.1", "above 0.20", "not bounded"];
+    for text in texts.into_iter().chain([">P</tspan>", "at a bound"]) {
         assert!(svg.contains(text), "{text}");
     }
     assert!(!svg.contains("lost"));

@@ -48,7 +48,9 @@ fn text_is_escaped_and_unknown_numbers_do_not_show() {
     assert!(html.contains("frame &lt;0&gt;"));
     assert!(!html.contains("<script>alert"));
     assert!(!html.contains("NaN") && !html.contains(">inf"));
-    assert!(html.contains("not determined"));
+    for text in ["not determined", "below 3.1", "above 0.20", "not bounded", ", at a bound"] {
+        assert!(html.contains(text), "{text}");
+    }
 }
 
 #[test]
@@ -74,6 +76,9 @@ fn numbers_that_are_not_finite_are_null() {
     let value: Value = serde_json::from_str(&sample::report().to_json().unwrap()).unwrap();
     assert!(value["naive"]["K_A"].is_null());
     assert!(value["parameters"]["K_A"]["ci95"].is_null());
+    let value: Value = serde_json::from_str(&sample::degenerate_report().to_json().unwrap()).unwrap();
+    assert!(value["parameters"]["P_0"]["ci95"][0].is_null());
+    assert_eq!(value["parameters"]["P_0"]["ci95"][1], 3.1);
     assert_eq!(value["command"], "infer");
     assert_eq!(value["nmse"]["mean_removed"], "per_frame");
 }

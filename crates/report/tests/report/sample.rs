@@ -12,7 +12,7 @@ use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage,
 const SPACING: f64 = 12.0;
 
 /// Uniform numbers in −1..1 that depend on their index only.
-fn noise(index: usize, stream: u64) -> f64 {
+pub fn noise(index: usize, stream: u64) -> f64 {
     let mut state = (index as u64).wrapping_mul(0x9e37_79b9_7f4a_7c15) ^ (stream << 17);
     for _ in 0..3 {
         state ^= state >> 30;
@@ -186,7 +186,16 @@ pub fn degenerate_report() -> InferReport {
         [&mut report.parameters.K_P, &mut report.parameters.alpha, &mut report.parameters.K_P_alpha]
     {
         parameter.value = f64::NAN;
-        parameter.ci95 = Some([f64::NEG_INFINITY, f64::INFINITY]);
+        parameter.ci95 = Some([f64::NAN, f64::INFINITY]);
+    }
+    report.parameters.alpha.ci95 = Some([f64::NEG_INFINITY, f64::INFINITY]);
+    let parameters = &mut report.parameters;
+    for (parameter, value, ci95) in [
+        (&mut parameters.P_0, 1.0, [f64::NEG_INFINITY, 3.1]),
+        (&mut parameters.shape_index, 1.0, [0.2, f64::INFINITY]),
+        (&mut parameters.K_A, 0.0, [0.0, 3.1]),
+    ] {
+        *parameter = Parameter { value, ci95: Some(ci95), fixed: false, unit: parameter.unit.clone() };
     }
     report.nmse.naive = 41.0;
     report.nmse.nudged = f64::NAN;

@@ -1,0 +1,130 @@
+//! Measured, predicted and residual velocities on a grid, as an imaging velocimetry gives them.
+
+use super::no_data;
+use super::velocity_map::{VelocityField, arrow_legend};
+use crate::arrows::{ArrowScale, Arrows};
+use crate::colour::GREY;
+use crate::map::{Legend, Map, Viewport};
+use crate::markers::Marker;
+use crate::numbers::quantile;
+use crate::svg::{Anchor, PathData, TextStyle};
+use crate::view::{FrameView, Units, is_finite, length};
+
+/// Size of the crosses of missing points in pixels.
+const CROSS: f64 = 2.2;
+/// Stroke of these crosses.
+const CROSS_WIDTH: f64 = 1.1;
+
+/// Velocities on a rectangular grid over one frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FlowMap<'a> {
+    /// The cells to draw beneath.
+    pub frame: &'a FrameView,
+    /// Positions of the columns.
+    pub x: Vec<f64>,
+    /// Positions of the rows.
+    pub y: Vec<f64>,
+    /// Measured velocities row by row, the rows along `y`.
+    pub measured: Vec<Option<[f64; 2]>>,
+    /// Velocities that the fitted model gives at the same points.
+    pub predicted: Vec<Option<[f64; 2]>>,
+}
+
+impl FlowMap<'_> {
+    /// The scale at which the 95th percentile of the measured (failing those, predicted) speeds is
+    /// 1.3 grid spacings long, the same for all `flows`. `None` where nothing moves.
+    #[must_use]
+    pub fn scale(flows: &[Self]) -> Option<ArrowScale> {
+        let speeds = |of: fn(&Self) -> &[Option<[f64; 2]>]| {
+            let all = flows.iter().flat_map(move |flow| of(flow).iter().flatten());
+            all.map(|&velocity| length(velocity))
+        };
+        let spacing = quantile(flows.iter().filter_map(FlowMap::spacing), 0.5)?;
+        ArrowScale::of_speeds(speeds(|flow| &flow.measured), speeds(|flow| &flow.predicted), spacing)
+    }
+
+    /// Typical distance between grid points.
+    fn spacing(&self) -> Option<f64> {
+        let steps = |values: &[f64]| -> Vec<f64> {
+            values.windows(2).map(|pair| (pair[1] - pair[0]).abs()).collect()
+        };
+        let all = steps(&self.x).into_iter().chain(steps(&self.y));
+        quantile(all, 0.5).filter(|&spacing| spacing > 0.0)
+    }
+
+    /// The grid points and the tips of all arrows but the longest, the same for all fields.
+    fn reach(&self, scale: &ArrowScale) -> Vec<[f64; 2]> {
+        let fields = [VelocityField::Measured, VelocityField::Predicted];
+        let arrows = fields.into_iter().flat_map(|field| self.points(field));
+        let ends = arrows.flat_map(|(place, velocity)| {
+            let velocity = velocity.filter(|&velocity| length(velocity) <= scale.reference);
+            let tip = velocity.map(|[x, y]| [place[0] + x * scale.stretch, place[1] + y * scale.stretch]);
+            [Some(place), tip]
+        });
+        ends.flatten().collect()
+    }
+
+    /// The grid points with their velocity of one kind, where it is known.
+    fn points(&self, field: VelocityField) -> impl Iterator<Item = ([f64; 2], Option<[f64; 2]>)> + '_ {
+        let places = self.y.iter().flat_map(|&y| self.x.iter().map(move |&x| [x, y]));
+        let places = places.enumerate().filter(|&(_, place)| is_finite(place));
+        places.map(move |(index, place)| {
+            let [measured, predicted] =
+                [&self.measured, &self.predicted].map(|all| all.get(index).copied().flatten());
+            (place, field.select(measured, predicted).filter(|&velocity| is_finite(velocity)))
+        })
+    }
+}
+
+/// Arrows of one velocity field from the points of a grid over faint cell outlines; points without
+/// a velocity are grey crosses. Give all panels the same `scale` ([`FlowMap::scale`]).
+#[must_use]
+pub fn flow_map(
+    flow: &FlowMap<'_>,
+    field: VelocityField,
+    scale: Option<&ArrowScale>,
+    units: &Units,
+) -> String {
+    let caption = field.caption();
+    let known = flow.points(field).any(|(_, velocity)| velocity.is_some());
+    let (Some(scale), true) = (scale, known) else {
+        return no_data(caption);
+    };
+    let Some(view) = Viewport::around_with(flow.frame, &flow.reach(scale)) else {
+        return no_data(caption);
+    };
+    let mut map = Map::with_view(view, flow.frame, caption);
+    map.outlines(flow.frame);
+    let (mut arrows, mut crosses, mut missing) = (Arrows::default(), PathData::new(), 0);
+    for (place, velocity) in flow.points(field) {
+        match velocity {
+            Some(velocity) => arrows.push_on(&map.view, place, velocity, scale),
+            None => {
+                Marker::Cross.push(&mut crosses, map.view.place(place), CROSS);
+                missing += 1;
+            }
+        }
+    }
+    map.layer.path(&crosses, &cross_style());
+    arrows.draw(&mut map.layer, field.colour());
+    let mut legend = arrow_legend(map, flow.frame, (field, scale), units);
+    let x = if flow.frame.left_out() > 0 { 160.0 } else { 4.0 };
+    missing_entry(&mut legend, x, missing);
+    legend.svg.finish()
+}
+
+fn cross_style() -> String {
+    format!(r#"fill="none" stroke="{GREY}" stroke-width="{CROSS_WIDTH}""#)
+}
+
+fn missing_entry(legend: &mut Legend, x: f64, count: usize) {
+    if count == 0 {
+        return;
+    }
+    let y = legend.top + 37.5;
+    let mut cross = PathData::new();
+    Marker::Cross.push(&mut cross, [x + 4.0, y], CROSS);
+    legend.svg.path(&cross, &cross_style());
+    let label = format!("no velocity ({count})");
+    legend.svg.text([x + 13.0, y + 4.0], &label, TextStyle::quiet(Anchor::Start));
+}
