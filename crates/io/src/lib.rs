@@ -25,6 +25,7 @@
 mod array;
 mod dataset;
 mod error;
+mod flow;
 mod frames;
 mod input;
 mod noise;
@@ -40,9 +41,10 @@ mod velocity;
 pub use array::{read_integers, read_reals, read_vectors};
 pub use dataset::{Boundary, DataSet, YAxis};
 pub use error::{
-    Error, FileFault, FormatFault, OutputFault, SelectionFault, SettingFault, ShapeFault, TableFault,
-    TomlFault, ValueFault,
+    Error, FileFault, FormatFault, GridFault, OutputFault, SelectionFault, SettingFault, ShapeFault,
+    TableFault, TomlFault, ValueFault,
 };
+pub use flow::FlowField;
 pub use frames::FrameSelection;
 pub use input::InputFile;
 pub use noise::Noise;

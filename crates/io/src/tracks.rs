@@ -7,6 +7,7 @@ use ndarray::Array3;
 
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
+use crate::flow::FlowNames;
 use crate::input::read_input;
 use crate::table::{ColumnNames, Layout, Spot, SpotTable, read_spots};
 use crate::validate::{self, ArrayNames};
@@ -111,7 +112,12 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     })?;
 
     dataset.positions = tracks.positions * scale;
-    dataset.check_arrays(&ArrayNames { positions: path, velocities: path, labels: path })?;
+    dataset.check_arrays(&ArrayNames {
+        positions: path,
+        velocities: path,
+        labels: path,
+        flow: FlowNames::in_folder(),
+    })?;
     dataset.y_axis.turn(&mut dataset.positions);
     Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary })
 }
@@ -126,6 +132,7 @@ fn describe(options: &ImportOptions) -> DataSet {
     DataSet {
         positions: Array3::zeros((0, 0, 2)),
         velocities: None,
+        flow: None,
         labels: None,
         boundary: options.boundary.unwrap_or(Boundary::Open),
         frame_interval: options.frame_interval.unwrap_or(1.0),

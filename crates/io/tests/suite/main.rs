@@ -3,6 +3,7 @@
 
 mod arrays;
 mod datasets;
+mod flows;
 mod frames;
 mod output;
 mod settings;
