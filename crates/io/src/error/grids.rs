@@ -126,14 +126,41 @@ pub enum GridFault {
         frames: usize,
     },
     /// Arrays of several files that differ in size.
-    #[error("has {} × {} pixels, but {} has {} × {}", found[1], found[0], first.display(), expected[1], expected[0])]
+    #[error("has {} rows and {} columns, but the first file has {} and {}", found[0], found[1], expected[0], expected[1])]
     OtherSize {
         /// Rows and columns of the file.
         found: [usize; 2],
-        /// The first file.
-        first: PathBuf,
         /// Rows and columns of the first file.
         expected: [usize; 2],
+    },
+    /// A table after arrays, or an array after tables.
+    #[error("is an array after tables, or a table after arrays")]
+    OtherKind,
+    /// Columns were named, but an array has none.
+    #[error("is an array, but columns of a table are named")]
+    NoColumns,
+    /// A grid spacing was asked for, but a table has its own.
+    #[error("is a table, whose grid stays as it is, but a grid spacing is given")]
+    NoPixels,
+    /// Rows that fill next to nothing of their grid.
+    #[error("has {rows} rows for a grid of {points} points")]
+    Sparse {
+        /// Rows of all tables.
+        rows: usize,
+        /// Points of the grid in one frame.
+        points: u64,
+    },
+    /// Too many points times frames.
+    #[error("{frames} frames of {points} grid points need {bytes} bytes, the limit is {limit}")]
+    TooLarge {
+        /// Frames.
+        frames: usize,
+        /// Points of the grid in one frame.
+        points: u64,
+        /// Bytes of the velocities.
+        bytes: u64,
+        /// The most bytes taken.
+        limit: u64,
     },
     /// Squares smaller than a pixel.
     #[error("the grid spacing is {spacing}, but a pixel is {pixel}")]
@@ -185,6 +212,13 @@ impl GridFault {
                 "check the box and the length unit, or cut the grid so that it covers the box once"
             }
             Self::SeveralFrames { .. } => "give this file alone, or one file for each frame",
+            Self::OtherKind => "give only arrays or only tables",
+            Self::NoColumns => "leave out --x-column and the like; they are for tables",
+            Self::NoPixels => "leave out --grid-spacing; it is for arrays with a displacement for each pixel",
+            Self::Sparse { .. } => {
+                "vectors must lie on a rectangular grid; for tracked particles use import tracks"
+            }
+            Self::TooLarge { .. } => "import fewer frames at a time",
             Self::OtherSize { .. } => "all frames must come from images of the same size",
             Self::FinerThanPixels { .. } => {
                 "give --grid-spacing in the unit of --pixel-size, not below one pixel, or leave it out"

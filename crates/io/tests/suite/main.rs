@@ -3,6 +3,8 @@
 
 mod arrays;
 mod datasets;
+mod flow_arrays;
+mod flow_tables;
 mod flows;
 mod frames;
 mod output;
