@@ -104,10 +104,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut text = describe(summary, &import.dataset);
     text += &format!("written to {}\n", out.path().display());
     if !import.is_complete() {
-        text += &format!(
-            "still missing: positions.npy of shape ({}, cells, 2), in {} with y {}; put it into the same folder\n",
-            summary.frames, import.dataset.length_unit, import.dataset.y_axis
-        );
+        let there = out.path().join("positions.npy").exists();
+        let what =
+            if there { "positions.npy stays as it was, it must be" } else { "still missing: positions.npy" };
+        let (unit, y_axis) = (&import.dataset.length_unit, import.dataset.y_axis);
+        text += &format!("{what} of shape ({}, cells, 2), in {unit} with y {y_axis}\n", summary.frames);
     }
     run.finish(Some(out), &json, &text)?;
     Ok(Answer::Positive)
@@ -129,7 +130,8 @@ fn warn(run: &mut Run, summary: &FlowSummary, is_scaled: bool) {
 }
 
 fn describe(summary: &FlowSummary, data: &DataSet) -> String {
-    let [x, y] = summary.spacing;
+    // Single precision leaves out the digits that rounding made.
+    let [x, y] = summary.spacing.map(|spacing| spacing as f32);
     format!(
         "{} frames of {} × {} grid points, {x} × {y} {} apart ({} without a velocity)\n",
         summary.frames, summary.columns, summary.rows, data.length_unit, summary.missing
