@@ -58,8 +58,8 @@ impl FlowField {
     /// Number of grid points without a velocity, summed over frames.
     #[must_use]
     pub fn missing(&self) -> usize {
-        let x = self.velocities.index_axis(Axis(3), 0);
-        x.iter().filter(|component| component.is_nan()).count()
+        let points = self.velocities.lanes(Axis(3)).into_iter();
+        points.filter(|point| point.iter().any(|component| component.is_nan())).count()
     }
 
     /// Turns a stored field into a y-up field or back; the two directions are the same.

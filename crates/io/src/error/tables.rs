@@ -79,6 +79,9 @@ pub enum TableFault {
         /// The most bytes taken.
         limit: u64,
     },
+    /// A file of bytes that are no text.
+    #[error("is not text, a table is needed")]
+    NotText,
     /// Columns were named, but there is no line of names.
     #[error("begins with numbers, so it has no header in which to look for columns by name")]
     NoHeader,
@@ -133,6 +136,7 @@ impl TableFault {
                 "is the frame column a time? name the column that counts images from zero"
             }
             Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
+            Self::NotText => "export the vectors as text in UTF-8, or give displacements of pixels as .npy",
             Self::NoHeader => "leave the names out if the columns are x, y, u, v, or add a line of names",
             Self::HalfMissing { .. } => "a missing vector is NaN in both components",
             Self::OffGrid { .. } => {

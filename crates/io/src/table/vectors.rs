@@ -53,6 +53,10 @@ pub(crate) struct VectorTable {
 pub(crate) fn read_table(path: &Path, bytes: &[u8], names: &FlowColumnNames) -> Result<VectorTable, Error> {
     let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
     let text = decompress(bytes).map_err(|fault| failure(None, fault))?;
+    // Text has no zero bytes; what PIVlab saves for MATLAB and images have.
+    if text.contains(&0) {
+        return Err(failure(None, TableFault::NotText));
+    }
     let (text, separator) = match separator(&text) {
         Some(separator) => (text, separator),
         None => (Cow::Owned(tabbed(&text)), b'\t'),

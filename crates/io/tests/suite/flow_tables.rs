@@ -240,6 +240,17 @@ fn rows_off_the_grid_are_told_with_their_line() {
 }
 
 #[test]
+fn grids_beyond_reason_are_told_before_they_are_made() {
+    let mut text = String::from("frame x y u v\n");
+    for frame in [0, 90_000] {
+        for point in 0..1600 {
+            let _ = writeln!(text, "{frame} {} {} 1 1", point % 40, point / 40);
+        }
+    }
+    assert_told(import(text), &["90001 frames of 1600 grid points need", "limit"], "fewer frames");
+}
+
+#[test]
 fn tables_that_cannot_be_meant_are_told() {
     let with = |header: &str| import(format!("{header}\n{}", lines(&ROWS, ",")));
     let facts =
@@ -249,6 +260,7 @@ fn tables_that_cannot_be_meant_are_told() {
     assert_told(import("x,y,u,v\n"), &["no data rows"], "export");
     assert_told(import("\n\n"), &["is empty"], "export");
     assert_told(import(""), &["is empty"], "export");
+    assert_told(import(b"MATLAB 5.0 MAT-file\0\0\x01"), &["piv.txt: is not text"], "as text");
     assert_told(import("1 2 3\n4 5 6\n"), &["line 2: no column for the x coordinate"], "name the columns");
     let bad = |row: &str| import(format!("# made by hand\nx,y,u,v\n{row}\n{}", lines(&ROWS, ",")));
     assert_told(bad("east,0,0,0"), &["line 3: column \"x\" holds \"east\", a finite number"], "this row");
