@@ -139,7 +139,10 @@ impl Column {
         });
         match index {
             Some(index) => Ok(Self { index, name: found[index].clone() }),
-            None => Err(TableFault::MissingColumn { role, looked, found: found.to_vec(), example }),
+            None => {
+                let found = found.iter().map(|name| excerpt(name)).collect();
+                Err(TableFault::MissingColumn { role, looked, found, example })
+            }
         }
     }
 
@@ -167,8 +170,16 @@ impl Column {
     }
 
     pub(super) fn fault(&self, text: &str, expected: &'static str) -> TableFault {
-        TableFault::NotANumber { column: self.name.clone(), text: text.to_owned(), expected }
+        TableFault::NotANumber { column: self.name.clone(), text: excerpt(text), expected }
     }
+}
+
+/// The begin of a field in one line: a stray quotation mark may make a field of half a table.
+fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut letters = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter });
+    let begin: String = letters.by_ref().take(LONGEST).collect();
+    if letters.next().is_some() { begin + "…" } else { begin }
 }
 
 /// A column name without what people write differently.

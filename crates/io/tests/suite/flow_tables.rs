@@ -262,6 +262,10 @@ fn tables_that_cannot_be_meant_are_told() {
     assert_told(import(""), &["is empty"], "export");
     assert_told(import(b"MATLAB 5.0 MAT-file\0\0\x01"), &["piv.txt: is not text"], "as text");
     assert_told(import("1 2 3\n4 5 6\n"), &["line 2: no column for the x coordinate"], "name the columns");
+    let quoted = format!("x,y,u,v\n\"1,1,1,1\n{}", lines(&ROWS, ","));
+    assert_told(import(quoted), &["line 2: has 1 fields"], "cut");
+    let quoted = format!("x,y,\"u,v\n{}", lines(&ROWS, ","));
+    assert_told(import(quoted), &["found x, y, u,v 16,20", "…"], "name the columns");
     let bad = |row: &str| import(format!("# made by hand\nx,y,u,v\n{row}\n{}", lines(&ROWS, ",")));
     assert_told(bad("east,0,0,0"), &["line 3: column \"x\" holds \"east\", a finite number"], "this row");
     assert_told(bad("nan,0,0,0"), &["line 3: column \"x\" holds \"nan\""], "this row");
