@@ -9,7 +9,7 @@ mod item;
 use std::io;
 use std::path::Path;
 
-use ndarray::{Array3, ArrayD, ArrayView, Axis, Dimension, Ix3, IxDyn, ShapeBuilder};
+use ndarray::{Array3, Array4, ArrayD, ArrayView, Axis, Dimension, Ix3, Ix4, IxDyn, ShapeBuilder};
 use ndarray_npy::{WritableElement, WriteNpyError, WriteNpyExt};
 
 use crate::error::{Error, FormatFault, ShapeFault};
@@ -89,6 +89,42 @@ pub(crate) fn parse_vectors(path: &Path, bytes: &[u8]) -> Result<Array3<f64>, Er
         }
     }
     Ok(array)
+}
+
+/// Vectors on a grid: shape (ny, nx, 2) or (frames, ny, nx, 2), the former as one frame.
+pub(crate) fn parse_field(path: &Path, bytes: &[u8]) -> Result<Array4<f64>, Error> {
+    const EXPECTED: &str = "(ny, nx, 2) or (frames, ny, nx, 2)";
+    let array = parse_reals(path, bytes)?;
+    let found = array.shape().to_vec();
+    let failure = |fault| Error::Shape { path: path.to_path_buf(), fault };
+    let dimensions = |found| failure(ShapeFault::Dimensions { found, expected: EXPECTED });
+    let array = match found.len() {
+        3 => array.insert_axis(Axis(0)),
+        4 => array,
+        _ => return Err(dimensions(found)),
+    };
+    let array = array.into_dimensionality::<Ix4>().map_err(|_| dimensions(found.clone()))?;
+    let (frames, rows, columns, components) = array.dim();
+    if components != 2 {
+        let expected = EXPECTED;
+        return Err(failure(ShapeFault::NotPairs { found, expected }));
+    }
+    for (length, axis) in [(frames, "frames"), (rows, "rows"), (columns, "columns")] {
+        if length == 0 {
+            return Err(failure(ShapeFault::Nothing { found, axis }));
+        }
+    }
+    Ok(array)
+}
+
+/// Numbers in a row; `expected` is the shape in words.
+pub(crate) fn parse_row(path: &Path, bytes: &[u8], expected: &'static str) -> Result<Vec<f64>, Error> {
+    let array = parse_reals(path, bytes)?;
+    if array.ndim() != 1 {
+        let fault = ShapeFault::Dimensions { found: array.shape().to_vec(), expected };
+        return Err(Error::Shape { path: path.to_path_buf(), fault });
+    }
+    Ok(array.iter().copied().collect())
 }
 
 /// Writes an array as `.npy` in its own memory order.

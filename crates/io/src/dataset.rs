@@ -4,14 +4,15 @@ use std::fmt;
 use std::path::Path;
 use std::str::FromStr;
 
-use ndarray::{Array2, Array3, Axis};
+use ndarray::{Array, Array2, Array3, Axis, RemoveAxis};
 
 use crate::error::{Error, SettingFault};
+use crate::flow::{FlowField, FlowNames};
 use crate::input::InputFile;
 use crate::noise::Noise;
 use crate::validate;
 
-/// Tracked cells: positions, perhaps velocities and labels, and what their numbers mean.
+/// Tracked cells: positions, perhaps velocities, a flow field and labels, and what their numbers mean.
 ///
 /// Made by [`Source::load`](crate::Source::load), by an import, or field by field from a
 /// simulation; [`DataSet::check`] holds a hand-made one to the same rules.
@@ -21,6 +22,8 @@ pub struct DataSet {
     pub positions: Array3<f64>,
     /// Same shape, `length_unit` per `time_unit`, y up, NaN where not measured.
     pub velocities: Option<Array3<f64>>,
+    /// Velocities on a grid, for as many frames, instead of those of cells or besides them.
+    pub flow: Option<FlowField>,
     /// (frames, cells): a measured label of each cell.
     pub labels: Option<Array2<i64>>,
     /// What is around the cells.
@@ -83,14 +86,16 @@ impl DataSet {
     /// # Errors
     /// [`Error::Shape`] for no frames, no cells or arrays that disagree; [`Error::Value`] for
     /// infinities, half-absent cells, two cells in one place, a box that cannot be right;
-    /// [`Error::Setting`] for lengths, intervals and noise out of range. Arrays are named
-    /// `positions.npy`, `velocities.npy` and `labels.npy`.
+    /// [`Error::Grid`] for a flow field or a grid that cannot be used; [`Error::Setting`] for
+    /// lengths, intervals and noise out of range. Arrays are named as in a folder:
+    /// `positions.npy`, `velocities.npy`, `labels.npy`, `flow.npy`, `flow_x.npy`, `flow_y.npy`.
     pub fn check(&self) -> Result<(), Error> {
         self.check_settings().map_err(Error::Setting)?;
         self.check_arrays(&validate::ArrayNames {
             positions: Path::new("positions.npy"),
             velocities: Path::new("velocities.npy"),
             labels: Path::new("labels.npy"),
+            flow: FlowNames::in_folder(),
         })
     }
 
@@ -120,10 +125,13 @@ impl Boundary {
 
 impl YAxis {
     /// Turns stored vectors into y-up vectors or back; the two directions are the same.
-    pub(crate) fn turn(self, vectors: &mut Array3<f64>) {
+    ///
+    /// The last axis holds x, y.
+    pub(crate) fn turn<D: RemoveAxis>(self, vectors: &mut Array<f64, D>) {
         if self == Self::Down {
+            let last = Axis(vectors.ndim() - 1);
             // 0 − y rather than −y, so that no negative zero appears.
-            let mut y = vectors.index_axis_mut(Axis(2), 1);
+            let mut y = vectors.index_axis_mut(last, 1);
             y.mapv_inplace(|value| 0.0 - value);
         }
     }

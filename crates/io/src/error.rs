@@ -2,6 +2,7 @@
 
 mod arrays;
 mod files;
+mod grids;
 mod settings;
 mod tables;
 
@@ -10,6 +11,7 @@ use std::path::{Path, PathBuf};
 
 pub use arrays::{FormatFault, ShapeFault, ValueFault};
 pub use files::{FileFault, OutputFault};
+pub use grids::GridFault;
 pub use settings::{SelectionFault, SettingFault, TomlFault};
 pub use tables::TableFault;
 
@@ -51,6 +53,14 @@ pub enum Error {
         /// What is wrong with it.
         fault: ValueFault,
     },
+    /// A flow field or its grid cannot be used.
+    #[error("{}: {fault}", path.display())]
+    Grid {
+        /// The file as given.
+        path: PathBuf,
+        /// What is wrong with it.
+        fault: GridFault,
+    },
     /// A `dataset.toml` is malformed or says something impossible.
     #[error("{}: {fault}", Place(path, *line))]
     Toml {
@@ -64,7 +74,7 @@ pub enum Error {
     /// A setting given outside a file (a flag, a field of a request) is missing or impossible.
     #[error("{0}")]
     Setting(SettingFault),
-    /// A table of tracks is malformed.
+    /// A table of tracks or of vectors is malformed.
     #[error("{}: {fault}", Place(path, *line))]
     Table {
         /// The file as given.
@@ -111,6 +121,7 @@ impl Error {
             Self::Format { fault, .. } => fault.hint(),
             Self::Shape { fault, .. } => fault.hint(),
             Self::Value { fault, .. } => fault.hint(),
+            Self::Grid { fault, .. } => fault.hint(),
             Self::Toml { fault, .. } => fault.hint(),
             Self::Setting(fault) => fault.hint(),
             Self::Table { fault, .. } => fault.hint(),

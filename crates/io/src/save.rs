@@ -1,15 +1,16 @@
 //! Saving a data set so that loading it gives it back.
 
-use ndarray::{Array3, ArrayView3};
+use ndarray::{Array, Array1, ArrayView, RemoveAxis};
 
 use crate::dataset::{DataSet, YAxis};
 use crate::error::Error;
+use crate::flow::FlowField;
 use crate::output::OutputDirectory;
 use crate::settings::render;
 
 impl DataSet {
-    /// Stages `positions.npy`, `velocities.npy` and `labels.npy` where there are any, and
-    /// `dataset.toml`.
+    /// Stages `positions.npy`; `velocities.npy`, `flow.npy` with `flow_x.npy` and `flow_y.npy`, and
+    /// `labels.npy` where there are any; and `dataset.toml`.
     ///
     /// y is written in the direction that `y_axis` states, so loading the directory gives back
     /// this data set, apart from `inputs`.
@@ -23,6 +24,9 @@ impl DataSet {
         if let Some(velocities) = &self.velocities {
             write_vectors(out, "velocities.npy", velocities, self.y_axis)?;
         }
+        if let Some(flow) = &self.flow {
+            write_flow(out, flow, self.y_axis)?;
+        }
         if let Some(labels) = &self.labels {
             out.write_integers("labels.npy", labels.view())?;
         }
@@ -30,13 +34,22 @@ impl DataSet {
     }
 }
 
-fn write_vectors(
+/// Stages a flow field with its coordinates, y in the direction stated.
+pub(crate) fn write_flow(out: &mut OutputDirectory, flow: &FlowField, y_axis: YAxis) -> Result<(), Error> {
+    let mut turned = flow.clone();
+    turned.turn(y_axis);
+    out.write_array("flow.npy", turned.velocities.view())?;
+    out.write_array("flow_x.npy", Array1::from(turned.x).view())?;
+    out.write_array("flow_y.npy", Array1::from(turned.y).view())
+}
+
+fn write_vectors<D: RemoveAxis>(
     out: &mut OutputDirectory,
     name: &str,
-    vectors: &Array3<f64>,
+    vectors: &Array<f64, D>,
     y_axis: YAxis,
 ) -> Result<(), Error> {
-    let mut write = |view: ArrayView3<'_, f64>| out.write_array(name, view);
+    let mut write = |view: ArrayView<'_, f64, D>| out.write_array(name, view);
     match y_axis {
         YAxis::Up => write(vectors.view()),
         YAxis::Down => {

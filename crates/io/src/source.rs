@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use ndarray::{Array2, Axis, Ix2};
 
-use crate::array::{parse_integers, parse_vectors};
+use crate::array::{parse_field, parse_integers, parse_row, parse_vectors};
 use crate::dataset::{Boundary, DataSet, YAxis};
-use crate::error::{Error, FileFault, SettingFault, ShapeFault};
+use crate::error::{Error, FileFault, GridFault, SettingFault, ShapeFault};
+use crate::flow::{FlowField, FlowNames, grid_error};
 use crate::input::{InputFile, file_fault, read_input};
 use crate::noise::Noise;
 use crate::settings::Settings;
@@ -29,7 +30,7 @@ use crate::validate::ArrayNames;
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Source {
     /// A folder with `positions.npy` and, each optional, `velocities.npy`, `labels.npy`,
-    /// `dataset.toml`.
+    /// `dataset.toml`, and `flow.npy` with `flow_x.npy` and `flow_y.npy`.
     pub folder: Option<PathBuf>,
     /// The positions, (cells, 2) or (frames, cells, 2).
     pub positions: Option<PathBuf>,
@@ -37,6 +38,12 @@ pub struct Source {
     pub velocities: Option<PathBuf>,
     /// The labels, (cells,) or (frames, cells), integers.
     pub labels: Option<PathBuf>,
+    /// Velocities on a grid, (ny, nx, 2) or (frames, ny, nx, 2); needs its coordinates.
+    pub flow: Option<PathBuf>,
+    /// x of the columns of the grid, (nx,), evenly spaced.
+    pub flow_x: Option<PathBuf>,
+    /// y of the rows of the grid, (ny,), evenly spaced.
+    pub flow_y: Option<PathBuf>,
     /// What is around the cells. There is no default.
     pub boundary: Option<Boundary>,
     /// Time between frames; default 1.
@@ -59,14 +66,15 @@ impl Source {
     /// Reads and checks the data set.
     ///
     /// The settings are settled first, so that a missing boundary is told before large arrays
-    /// are read. With `y_axis` down, y of positions and velocities is negated: in memory y is
-    /// up, also in a periodic box, where y then lies between −Ly and 0; wrapping is left to
+    /// are read. With `y_axis` down, y of positions, velocities and the flow field is negated: in
+    /// memory y is up, also in a periodic box, where y then lies between −Ly and 0; wrapping is left to
     /// whoever builds the box.
     ///
     /// # Errors
     /// [`Error::File`], [`Error::Format`] and [`Error::Shape`] for files that are not what they
     /// should be; [`Error::Toml`] and [`Error::Setting`] for missing or impossible settings;
-    /// [`Error::Value`] as listed at [`DataSet::check`].
+    /// [`Error::Value`] and [`Error::Grid`] as listed at [`DataSet::check`], the latter also for a
+    /// flow field without its coordinates.
     pub fn load(&self) -> Result<DataSet, Error> {
         let mut inputs = Vec::new();
         let settings = self.read_settings(&mut inputs)?;
@@ -79,10 +87,12 @@ impl Source {
             .ok_or(Error::Setting(SettingFault::MissingPositions))?;
         let velocities_path = self.optional_file(self.velocities.as_ref(), "velocities.npy");
         let labels_path = self.optional_file(self.labels.as_ref(), "labels.npy");
+        let flow_paths = self.flow_paths()?;
 
         let mut data = DataSet {
             positions: ndarray::Array3::zeros((0, 0, 2)),
             velocities: None,
+            flow: None,
             labels: None,
             boundary,
             frame_interval: self.frame_interval.or(settings.frame_interval).unwrap_or(1.0),
@@ -100,6 +110,9 @@ impl Source {
         if let Some(path) = &velocities_path {
             data.velocities = Some(read_vectors(path, &mut data.inputs)?);
         }
+        if let Some(paths) = &flow_paths {
+            data.flow = Some(paths.read(&mut data.inputs)?);
+        }
         if let Some(path) = &labels_path {
             data.labels = Some(read_labels(path, &mut data)?);
         }
@@ -108,11 +121,15 @@ impl Source {
             positions: &positions_path,
             velocities: velocities_path.as_ref().unwrap_or(&unnamed),
             labels: labels_path.as_ref().unwrap_or(&unnamed),
+            flow: flow_paths.as_ref().map_or_else(FlowNames::in_folder, FlowPaths::names),
         })?;
 
         data.y_axis.turn(&mut data.positions);
         if let Some(velocities) = &mut data.velocities {
             data.y_axis.turn(velocities);
+        }
+        if let Some(flow) = &mut data.flow {
+            flow.turn(data.y_axis);
         }
         Ok(data)
     }
@@ -141,6 +158,26 @@ impl Source {
         })
     }
 
+    /// The files of a flow field, where there is one: all three or none.
+    fn flow_paths(&self) -> Result<Option<FlowPaths>, Error> {
+        let [field, x, y] =
+            [(&self.flow, "flow.npy"), (&self.flow_x, "flow_x.npy"), (&self.flow_y, "flow_y.npy")]
+                .map(|(given, name)| self.optional_file(given.as_ref(), name));
+        let Some(field) = field else {
+            return match [('x', x), ('y', y)].into_iter().find_map(|(axis, path)| Some((axis, path?))) {
+                Some((axis, path)) => Err(grid_error(&path, GridFault::MissingField { axis })),
+                None => Ok(None),
+            };
+        };
+        let missing = |axis, name| {
+            let searched = self.folder.as_ref().map(|folder| folder.join(name));
+            grid_error(&field, GridFault::MissingCoordinates { axis, searched })
+        };
+        let x = x.ok_or_else(|| missing('x', "flow_x.npy"))?;
+        let y = y.ok_or_else(|| missing('y', "flow_y.npy"))?;
+        Ok(Some(FlowPaths { field, x, y }))
+    }
+
     fn file(&self, given: Option<&PathBuf>, name: &str) -> Option<PathBuf> {
         let in_folder = || self.folder.as_ref().map(|folder| folder.join(name));
         given.cloned().or_else(in_folder)
@@ -150,6 +187,33 @@ impl Source {
     fn optional_file(&self, given: Option<&PathBuf>, name: &str) -> Option<PathBuf> {
         let path = self.file(given, name);
         path.filter(|path| given.is_some() || is_there(path))
+    }
+}
+
+/// The files of a flow field.
+struct FlowPaths {
+    field: PathBuf,
+    x: PathBuf,
+    y: PathBuf,
+}
+
+impl FlowPaths {
+    fn names(&self) -> FlowNames<'_> {
+        FlowNames { field: &self.field, x: &self.x, y: &self.y }
+    }
+
+    /// Reads the files as they are: not yet checked, y in the direction of the file.
+    fn read(&self, inputs: &mut Vec<InputFile>) -> Result<FlowField, Error> {
+        let mut read = |path| {
+            let (bytes, record) = read_input(path)?;
+            inputs.push(record);
+            Ok::<_, Error>(bytes)
+        };
+        Ok(FlowField {
+            velocities: parse_field(&self.field, &read(&self.field)?)?,
+            x: parse_row(&self.x, &read(&self.x)?, "(nx,)")?,
+            y: parse_row(&self.y, &read(&self.y)?, "(ny,)")?,
+        })
     }
 }
 
@@ -163,7 +227,8 @@ fn first_text(given: &Option<String>, stored: Option<String>, default: &str) -> 
     given.unwrap_or_else(|| default.to_owned())
 }
 
-fn read_vectors(path: &Path, inputs: &mut Vec<InputFile>) -> Result<ndarray::Array3<f64>, Error> {
+/// Reads and records positions or velocities.
+pub(crate) fn read_vectors(path: &Path, inputs: &mut Vec<InputFile>) -> Result<ndarray::Array3<f64>, Error> {
     let (bytes, record) = read_input(path)?;
     inputs.push(record);
     parse_vectors(path, &bytes)

@@ -1,6 +1,7 @@
-//! Reading the spots of a CSV table, compressed or not.
+//! Reading the spots or the vectors of a table, compressed or not.
 
 mod columns;
+mod vectors;
 
 use std::borrow::Cow;
 use std::io::Read;
@@ -13,6 +14,8 @@ use crate::error::{Error, TableFault};
 pub use columns::ColumnNames;
 use columns::Columns;
 pub(crate) use columns::{Layout, Spot};
+pub use vectors::FlowColumnNames;
+pub(crate) use vectors::{Vector, VectorTable, read_table};
 
 /// The most that a compressed table may grow to: far above any real one, far below what would
 /// exhaust a machine.

@@ -7,15 +7,16 @@ use ndarray::Array3;
 
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
+use crate::flow::FlowNames;
 use crate::input::read_input;
-use crate::table::{ColumnNames, Layout, Spot, SpotTable, read_spots};
+use crate::table::{ColumnNames, Layout, SpotTable, read_spots};
 use crate::validate::{self, ArrayNames};
 
 /// The most frames between the first and the last spot.
 const FRAME_LIMIT: usize = 100_000;
 
-/// The most bytes that the positions may take.
-const SIZE_LIMIT: u64 = 2_000_000_000;
+/// The most bytes that an array made from a table may take.
+pub(crate) const SIZE_LIMIT: u64 = 2_000_000_000;
 
 /// What a table does not say about itself. The default leaves everything open.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -95,7 +96,13 @@ pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Err
 fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
     let scale = options.pixel_size.unwrap_or(1.0);
     validate::positive("pixel_size", scale).map_err(Error::Setting)?;
-    let mut dataset = describe(options);
+    let mut dataset = describe(
+        options.boundary,
+        options.frame_interval,
+        options.y_axis,
+        options.length_unit.as_deref(),
+        options.time_unit.as_deref(),
+    );
     dataset.check_settings().map_err(Error::Setting)?;
 
     let (bytes, record) = read_input(path)?;
@@ -111,27 +118,38 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     })?;
 
     dataset.positions = tracks.positions * scale;
-    dataset.check_arrays(&ArrayNames { positions: path, velocities: path, labels: path })?;
+    dataset.check_arrays(&ArrayNames {
+        positions: path,
+        velocities: path,
+        labels: path,
+        flow: FlowNames::in_folder(),
+    })?;
     dataset.y_axis.turn(&mut dataset.positions);
     Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary })
 }
 
 /// The data set as far as the options know it.
-fn describe(options: &ImportOptions) -> DataSet {
-    let time_unit = match options.frame_interval {
+pub(crate) fn describe(
+    boundary: Option<Boundary>,
+    frame_interval: Option<f64>,
+    y_axis: Option<YAxis>,
+    length_unit: Option<&str>,
+    time_unit: Option<&str>,
+) -> DataSet {
+    let default_time = match frame_interval {
         Some(_) => "time",
         None => "frame",
     };
-    let or = |given: &Option<String>, default: &str| given.clone().unwrap_or_else(|| default.to_owned());
     DataSet {
         positions: Array3::zeros((0, 0, 2)),
         velocities: None,
+        flow: None,
         labels: None,
-        boundary: options.boundary.unwrap_or(Boundary::Open),
-        frame_interval: options.frame_interval.unwrap_or(1.0),
-        length_unit: or(&options.length_unit, "length"),
-        time_unit: or(&options.time_unit, time_unit),
-        y_axis: options.y_axis.unwrap_or(YAxis::Down),
+        boundary: boundary.unwrap_or(Boundary::Open),
+        frame_interval: frame_interval.unwrap_or(1.0),
+        length_unit: length_unit.unwrap_or("length").to_owned(),
+        time_unit: time_unit.unwrap_or(default_time).to_owned(),
+        y_axis: y_axis.unwrap_or(YAxis::Down),
         unwrapped: false,
         position_noise: None,
         velocity_noise: None,
@@ -148,7 +166,7 @@ struct Tracks {
 
 impl Tracks {
     fn arrange(table: &SpotTable) -> Result<Self, TableFault> {
-        let (first, frames) = frame_span(&table.spots)?;
+        let (first, frames) = frame_span(table.spots.iter().map(|spot| spot.frame))?;
         let ids: BTreeSet<i64> = table.spots.iter().map(|spot| spot.track).collect();
         let ids: Vec<i64> = ids.into_iter().collect();
         let bytes = 16 * frames as u64 * ids.len() as u64;
@@ -183,9 +201,8 @@ impl Tracks {
 }
 
 /// The smallest frame number and how many frames there are up to the largest.
-fn frame_span(spots: &[Spot]) -> Result<(i64, usize), TableFault> {
-    let frames = || spots.iter().map(|spot| spot.frame);
-    let (Some(first), Some(last)) = (frames().min(), frames().max()) else {
+pub(crate) fn frame_span(frames: impl Iterator<Item = i64> + Clone) -> Result<(i64, usize), TableFault> {
+    let (Some(first), Some(last)) = (frames.clone().min(), frames.max()) else {
         return Err(TableFault::NoRows);
     };
     let count = last.abs_diff(first).saturating_add(1);

@@ -1,11 +1,12 @@
-//! The rules that positions, velocities and labels obey.
+//! The rules that the arrays of a data set obey.
 
 use std::path::Path;
 
 use ndarray::{Array3, ArrayView2, Axis};
 
 use crate::dataset::{Boundary, DataSet};
-use crate::error::{Error, SettingFault, ShapeFault, ValueFault};
+use crate::error::{Error, GridFault, SettingFault, ShapeFault, ValueFault};
+use crate::flow::{FlowNames, grid_error};
 
 /// How far positions that were not unwrapped may reach, in box lengths.
 ///
@@ -18,6 +19,7 @@ pub(crate) struct ArrayNames<'a> {
     pub(crate) positions: &'a Path,
     pub(crate) velocities: &'a Path,
     pub(crate) labels: &'a Path,
+    pub(crate) flow: FlowNames<'a>,
 }
 
 impl DataSet {
@@ -35,6 +37,13 @@ impl DataSet {
                 return Err(mismatch(names.velocities, velocities.shape()));
             }
             check_vectors(names.velocities, velocities)?;
+        }
+        if let Some(flow) = &self.flow {
+            flow.check(names.flow, self.boundary)?;
+            let (found, positions) = (flow.frames(), self.frames());
+            if found != positions {
+                return Err(grid_error(names.flow.field, GridFault::FrameCount { found, positions }));
+            }
         }
         match &self.labels {
             Some(labels) if labels.dim() != (self.frames(), self.cells()) => {

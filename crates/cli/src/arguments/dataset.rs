@@ -8,7 +8,7 @@ use voronudge_io::{Boundary, DataSet, Noise, Source, YAxis};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataSetArguments {
-    /// Folder with positions.npy, dataset.toml and, where there are any, velocities.npy.
+    /// Folder with positions.npy, dataset.toml and, where there are any, velocities.npy or flow.npy.
     #[arg(value_name = "DATASET")]
     pub dataset: Option<PathBuf>,
     /// Positions (N, 2) or (frames, N, 2), .npy, instead of the folder's.
@@ -17,6 +17,15 @@ pub(crate) struct DataSetArguments {
     /// Velocities of the same shape.
     #[arg(long, value_name = "FILE")]
     pub velocities: Option<PathBuf>,
+    /// Flow field on a grid (ny, nx, 2) or (frames, ny, nx, 2), .npy.
+    #[arg(long, value_name = "FILE")]
+    pub flow: Option<PathBuf>,
+    /// x of the columns of the flow field, .npy.
+    #[arg(long, value_name = "FILE")]
+    pub flow_x: Option<PathBuf>,
+    /// y of the rows of the flow field, .npy.
+    #[arg(long, value_name = "FILE")]
+    pub flow_y: Option<PathBuf>,
     /// Periodic box.
     #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], conflicts_with = "open", allow_negative_numbers = true)]
     pub box_lengths: Option<Vec<f64>>,
@@ -62,6 +71,9 @@ impl DataSetArguments {
             folder: self.dataset.clone(),
             positions: self.positions.clone(),
             velocities: self.velocities.clone(),
+            flow: self.flow.clone(),
+            flow_x: self.flow_x.clone(),
+            flow_y: self.flow_y.clone(),
             boundary,
             frame_interval: self.frame_interval,
             length_unit: self.length_unit.clone(),

@@ -124,6 +124,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let data = DataSet {
         positions,
         velocities: Some(velocities),
+        flow: None,
         labels: None,
         boundary: Boundary::Periodic { lengths },
         frame_interval: schedule.frame_interval(),

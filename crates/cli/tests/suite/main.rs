@@ -6,6 +6,7 @@ mod bad_arrays;
 mod bad_folders;
 mod bad_places;
 mod evaluations;
+mod flow_imports;
 mod gradient_checks;
 mod imports;
 mod inferences;

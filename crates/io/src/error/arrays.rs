@@ -140,6 +140,17 @@ pub enum ShapeFault {
 impl ShapeFault {
     pub(super) fn hint(&self) -> Option<String> {
         let text = match self {
+            Self::NotPairs { found, expected }
+                if is_field(expected) && found.iter().rev().nth(2) == Some(&2) =>
+            {
+                "this looks like x and y before rows and columns; move that axis to the end with numpy.moveaxis"
+            }
+            Self::Dimensions { expected, .. } | Self::NotPairs { expected, .. } if is_field(expected) => {
+                "axes are frames, rows, columns, (x, y), in this order; one frame may leave out the first"
+            }
+            Self::Dimensions { expected, .. } if is_row(expected) => {
+                "give one coordinate for each column (x) or row (y) of the flow field, in one row of numbers"
+            }
             Self::NotPairs { found, .. } if found.last() == Some(&3) => {
                 "if the last column is z, leave it out"
             }
@@ -232,6 +243,16 @@ impl ValueFault {
         };
         Some(text.into())
     }
+}
+
+/// Whether a flow field was expected rather than vectors of cells.
+fn is_field(expected: &str) -> bool {
+    expected.contains("ny, nx")
+}
+
+/// Whether coordinates of a grid were expected.
+fn is_row(expected: &str) -> bool {
+    matches!(expected, "(nx,)" | "(ny,)")
 }
 
 fn claim(needed: Option<u64>) -> String {

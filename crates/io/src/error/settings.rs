@@ -48,6 +48,9 @@ pub enum SettingFault {
         /// The boundary given, in words.
         boundary: &'static str,
     },
+    /// No file to import a flow field from.
+    #[error("no flow field is given")]
+    MissingFlow,
     /// Neither a folder nor a positions file.
     #[error("no positions are given")]
     MissingPositions,
@@ -67,6 +70,7 @@ impl SettingFault {
             Self::BoxNotPeriodic { .. } => {
                 "set boundary = \"periodic\", or remove box if the field of view is open"
             }
+            Self::MissingFlow => "name the files of the flow, one for each frame",
             Self::MissingPositions => "give a data set folder or --positions FILE",
         };
         Some(text.into())

@@ -38,9 +38,9 @@ pub(crate) struct Spot {
 }
 
 /// A column found in the header.
-struct Column {
-    index: usize,
-    name: String,
+pub(super) struct Column {
+    pub(super) index: usize,
+    pub(super) name: String,
 }
 
 /// The four columns of a table that matter.
@@ -72,19 +72,9 @@ impl Columns {
             })
             .collect();
         let find = |role, given: &Option<String>, known: &[&str]| {
-            let looked: Vec<String> = match given {
-                Some(name) => vec![name.clone()],
-                None => known.iter().map(|&name| name.to_owned()).collect(),
-            };
-            let index = looked.iter().find_map(|name| {
-                let exact = found.iter().position(|column| column == name);
-                let like = || found.iter().position(|column| plain(column) == plain(name));
-                exact.or_else(like)
-            });
-            match index {
-                Some(index) => Ok(Column { index, name: found[index].clone() }),
-                None => Err(TableFault::MissingColumn { role, looked, found: found.clone() }),
-            }
+            const EXAMPLE: &str =
+                "--track-column id --frame-column t; for another table format use import tracks";
+            Column::find(&found, role, given, known, plain, EXAMPLE)
         };
         Ok(Self {
             track: find("track", &names.track, track)?,
@@ -126,18 +116,48 @@ impl Columns {
 }
 
 impl Column {
-    fn text<'a>(&self, row: &'a ByteRecord) -> Cow<'a, str> {
+    /// The column of the given name, or of the first of the known names that is there.
+    ///
+    /// A name is looked for as written, then by what `plain` leaves of it; `example` shows how to
+    /// name columns.
+    pub(super) fn find(
+        found: &[String],
+        role: &'static str,
+        given: &Option<String>,
+        known: &[&str],
+        plain: fn(&str) -> String,
+        example: &'static str,
+    ) -> Result<Self, TableFault> {
+        let looked: Vec<String> = match given {
+            Some(name) => vec![name.clone()],
+            None => known.iter().map(|&name| name.to_owned()).collect(),
+        };
+        let index = looked.iter().find_map(|name| {
+            let exact = found.iter().position(|column| column == name);
+            let like = || found.iter().position(|column| plain(column) == plain(name));
+            exact.or_else(like)
+        });
+        match index {
+            Some(index) => Ok(Self { index, name: found[index].clone() }),
+            None => {
+                let found = found.iter().map(|name| excerpt(name)).collect();
+                Err(TableFault::MissingColumn { role, looked, found, example })
+            }
+        }
+    }
+
+    pub(super) fn text<'a>(&self, row: &'a ByteRecord) -> Cow<'a, str> {
         String::from_utf8_lossy(row.get(self.index).unwrap_or_default().trim_ascii())
     }
 
-    fn finite(&self, row: &ByteRecord) -> Result<f64, TableFault> {
+    pub(super) fn finite(&self, row: &ByteRecord) -> Result<f64, TableFault> {
         let text = self.text(row);
         let number = text.parse::<f64>().ok().filter(|value| value.is_finite());
         number.ok_or_else(|| self.fault(&text, "a finite number"))
     }
 
     /// A whole number, possibly written as `12.0`.
-    fn whole(&self, row: &ByteRecord) -> Result<i64, TableFault> {
+    pub(super) fn whole(&self, row: &ByteRecord) -> Result<i64, TableFault> {
         // Beyond this an f64 no longer holds every whole number.
         const EXACT: f64 = 9_007_199_254_740_992.0;
         let text = self.text(row);
@@ -149,12 +169,20 @@ impl Column {
             .ok_or_else(|| self.fault(&text, "a whole number"))
     }
 
-    fn fault(&self, text: &str, expected: &'static str) -> TableFault {
-        TableFault::NotANumber { column: self.name.clone(), text: text.to_owned(), expected }
+    pub(super) fn fault(&self, text: &str, expected: &'static str) -> TableFault {
+        TableFault::NotANumber { column: self.name.clone(), text: excerpt(text), expected }
     }
 }
 
+/// The begin of a field in one line: a stray quotation mark may make a field of half a table.
+fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut letters = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter });
+    let begin: String = letters.by_ref().take(LONGEST).collect();
+    if letters.next().is_some() { begin + "…" } else { begin }
+}
+
 /// A column name without what people write differently.
-fn plain(name: &str) -> String {
+pub(super) fn plain(name: &str) -> String {
     name.chars().filter(|letter| !matches!(letter, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
 }

@@ -1,8 +1,8 @@
 //! Loading, checking and saving data sets.
 
-use ndarray::{Array2, Array3, array};
+use ndarray::{Array, Array2, Array3, Array4, Dimension, array};
 use sha2::{Digest, Sha256};
-use voronudge_io::{Boundary, DataSet, Error, Noise, OutputDirectory, Source, YAxis};
+use voronudge_io::{Boundary, DataSet, Error, FlowField, Noise, OutputDirectory, Source, YAxis};
 
 use crate::{Scratch, assert_told};
 
@@ -24,6 +24,17 @@ fn three_frames() -> Array3<f64> {
     Array3::from_shape_fn((3, 4, 2), |(f, c, a)| 1.5 * c as f64 + 0.125 * f as f64 + 0.75 * a as f64)
 }
 
+/// Three frames on a grid of 4 columns and 2 rows, with a missing point.
+fn flow() -> FlowField {
+    let mut velocities = Array4::from_shape_fn((3, 2, 4, 2), |(f, row, column, a)| {
+        (f + 3 * row + 5 * column + a) as f64 / 3.0
+    });
+    for axis in 0..2 {
+        velocities[[2, 1, 3, axis]] = NAN;
+    }
+    FlowField { velocities, x: vec![0.0, 0.1, 0.2, 0.1 + 0.2], y: vec![-1.0, -3.0] }
+}
+
 fn full_data() -> DataSet {
     let mut positions = three_frames();
     let mut velocities = positions.mapv(|value| 2.0 - value);
@@ -34,6 +45,7 @@ fn full_data() -> DataSet {
     DataSet {
         positions,
         velocities: Some(velocities),
+        flow: Some(flow()),
         labels: Some(Array2::from_shape_fn((3, 4), |(f, c)| f as i64 - 2 * c as i64)),
         boundary: Boundary::Periodic { lengths: [10.0, 0.1 + 0.2 + 20.0] },
         frame_interval: 1.0 / 3.0,
@@ -48,7 +60,7 @@ fn full_data() -> DataSet {
 }
 
 /// Equal bit by bit but for zeros of either sign, NaN equal to NaN.
-fn same(a: &Array3<f64>, b: &Array3<f64>) -> bool {
+fn same<D: Dimension>(a: &Array<f64, D>, b: &Array<f64, D>) -> bool {
     let equal = |(x, y): (&f64, &f64)| x == y || (x.is_nan() && y.is_nan());
     a.dim() == b.dim() && a.iter().zip(b).all(equal)
 }
@@ -70,10 +82,18 @@ fn assert_same(a: &DataSet, b: &DataSet) {
         (Some(a), Some(b)) => assert!(same(a, b)),
         (a, b) => assert_eq!(a.is_some(), b.is_some()),
     }
+    match (&a.flow, &b.flow) {
+        (Some(a), Some(b)) => {
+            assert!(same(&a.velocities, &b.velocities));
+            assert_eq!((&a.x, &a.y), (&b.x, &b.y));
+        }
+        (a, b) => assert_eq!(a.is_some(), b.is_some()),
+    }
     // The rest compares directly once what holds NaN is out of the way.
     let rest = |data: &DataSet| DataSet {
         positions: Array3::zeros((0, 0, 2)),
         velocities: None,
+        flow: None,
         inputs: Vec::new(),
         ..data.clone()
     };
@@ -86,6 +106,7 @@ fn saving_and_loading_is_the_identity() {
     assert_same(&full, &round_trip(&full));
     let bare = DataSet {
         velocities: None,
+        flow: None,
         labels: None,
         boundary: Boundary::Open,
         y_axis: YAxis::Up,
@@ -108,6 +129,10 @@ fn what_could_not_be_loaded_is_not_saved() {
     data.velocities = Some(Array3::zeros((3, 3, 2)));
     let facts = ["velocities.npy: has shape (3, 3, 2)", "shape (3, 4, 2)"];
     assert_told(data.save(&mut out), &facts, "same cell");
+    let mut data = full_data();
+    data.flow.as_mut().unwrap().x.pop();
+    let facts = ["flow_x.npy: has 3 x coordinates", "4 points along x"];
+    assert_told(data.save(&mut out), &facts, "rows (y), columns (x)");
     let mut data = full_data();
     data.positions = Array3::zeros((3, 0, 2));
     assert_told(data.save(&mut out), &["positions.npy", "no cells"], "empty");

@@ -3,6 +3,9 @@
 
 mod arrays;
 mod datasets;
+mod flow_arrays;
+mod flow_tables;
+mod flows;
 mod frames;
 mod output;
 mod settings;

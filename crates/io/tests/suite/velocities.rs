@@ -9,6 +9,7 @@ fn movie(positions: Array3<f64>, boundary: Boundary) -> DataSet {
     DataSet {
         positions,
         velocities: None,
+        flow: None,
         labels: None,
         boundary,
         frame_interval: 0.5,

@@ -1,54 +1,22 @@
-//! `voronudge import`: tables of other programs into data sets.
+//! `import trackmate` and `import tracks`: tables of tracks.
 
+use super::ScaleArguments;
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
 use crate::run::Run;
-use clap::{Args, Subcommand};
+use clap::Args;
 use serde::Serialize;
-use std::path::PathBuf;
-use voronudge_io::{
-    Boundary, ColumnNames, Import, ImportOptions, OutputDirectory, YAxis, import_trackmate, import_tracks,
-};
+use std::path::{Path, PathBuf};
+use voronudge_io::{ColumnNames, Import, ImportOptions, OutputDirectory};
 use voronudge_report::infer_report::RunRecord;
 
-/// Turns tracks of other programs into a data set.
 #[derive(Debug, Args)]
-pub(crate) struct Arguments {
-    #[command(subcommand)]
-    what: What,
-}
-
-#[derive(Debug, Subcommand)]
-enum What {
-    /// TrackMate's spots table (.csv or .csv.gz).
-    Trackmate(TableArguments),
-    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y.
-    Tracks(TableArguments),
-}
-
-#[derive(Debug, Args)]
-struct TableArguments {
+pub(super) struct Arguments {
     /// The table.
     file: PathBuf,
-    /// Length of a pixel: coordinates are multiplied by it.
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
-    pixel_size: Option<f64>,
-    /// Time between frames.
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
-    frame_interval: Option<f64>,
-    /// Unit of length after scaling.
-    #[arg(long, value_name = "UNIT")]
-    length_unit: Option<String>,
-    /// Unit of time.
-    #[arg(long, value_name = "UNIT")]
-    time_unit: Option<String>,
-    /// Direction of y in the table [default: down, as in images].
-    #[arg(long, value_name = "up|down")]
-    y_axis: Option<YAxis>,
-    /// Periodic box (default: an open field of view).
-    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
-    box_lengths: Option<Vec<f64>>,
+    #[command(flatten)]
+    scale: ScaleArguments,
     /// Name of the column with the track's number.
     #[arg(long, value_name = "NAME")]
     track_column: Option<String>,
@@ -79,13 +47,13 @@ struct Report {
     track_ids: Vec<i64>,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let (table, read): (_, fn(&std::path::Path, &ImportOptions) -> _) = match arguments.what {
-        What::Trackmate(table) => (table, import_trackmate),
-        What::Tracks(table) => (table, import_tracks),
-    };
+/// What reads a table.
+type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
+
+pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &table.common)?;
     let mut out = OutputDirectory::create(table.common.required_out()?)?;
+    let scale = table.scale;
     let options = ImportOptions {
         columns: ColumnNames {
             track: table.track_column,
@@ -93,12 +61,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             x: table.x_column,
             y: table.y_column,
         },
-        pixel_size: table.pixel_size,
-        length_unit: table.length_unit,
-        time_unit: table.time_unit,
-        frame_interval: table.frame_interval,
-        y_axis: table.y_axis,
-        boundary: table.box_lengths.map(|l| Boundary::Periodic { lengths: [l[0], l[1]] }),
+        boundary: scale.boundary(),
+        pixel_size: scale.pixel_size,
+        length_unit: scale.length_unit,
+        time_unit: scale.time_unit,
+        frame_interval: scale.frame_interval,
+        y_axis: scale.y_axis,
     };
     let Import { dataset, track_ids, summary } = read(&table.file, &options)?;
     if summary.left_out_duplicate > 0 {

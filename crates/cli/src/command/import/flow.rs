@@ -1,0 +1,139 @@
+//! `import flow`: a dense optical flow, or tables of vectors on a grid.
+
+use super::ScaleArguments;
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use crate::run::Run;
+use clap::Args;
+use serde::Serialize;
+use std::path::PathBuf;
+use voronudge_io::{DataSet, FlowColumnNames, FlowOptions, FlowSummary, OutputDirectory, import_flow};
+use voronudge_report::infer_report::RunRecord;
+
+/// More grid points in a frame than the cells of any tissue need.
+const MANY_POINTS: usize = 100_000;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Arrays (ny, nx, 2) or (frames, ny, nx, 2), .npy, or tables of x, y, u, v; of several files, each is a frame.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
+    #[command(flatten)]
+    scale: ScaleArguments,
+    /// Side of the squares that an array is averaged over, after scaling (default: one pixel).
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    grid_spacing: Option<f64>,
+    /// Positions of the cells, .npy, in the unit of length after scaling; they complete the data set.
+    #[arg(long, value_name = "FILE")]
+    positions: Option<PathBuf>,
+    /// Name of the column with the frame's number, of a table.
+    #[arg(long, value_name = "NAME")]
+    frame_column: Option<String>,
+    /// Name of the column with x.
+    #[arg(long, value_name = "NAME")]
+    x_column: Option<String>,
+    /// Name of the column with y.
+    #[arg(long, value_name = "NAME")]
+    y_column: Option<String>,
+    /// Name of the column with the displacement along x.
+    #[arg(long, value_name = "NAME")]
+    u_column: Option<String>,
+    /// Name of the column with the displacement along y.
+    #[arg(long, value_name = "NAME")]
+    v_column: Option<String>,
+    /// Name of the column that is not 0 where a vector is to be left out.
+    #[arg(long, value_name = "NAME")]
+    mask_column: Option<String>,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    run: RunRecord,
+    frames: usize,
+    first_frame: i64,
+    rows: usize,
+    columns: usize,
+    spacing: [f64; 2],
+    missing_points: usize,
+    cells: Option<usize>,
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("import", &arguments.common)?;
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let scale = arguments.scale;
+    let is_scaled = scale.pixel_size.is_some() || scale.frame_interval.is_some();
+    let options = FlowOptions {
+        columns: FlowColumnNames {
+            frame: arguments.frame_column,
+            x: arguments.x_column,
+            y: arguments.y_column,
+            u: arguments.u_column,
+            v: arguments.v_column,
+            mask: arguments.mask_column,
+        },
+        boundary: scale.boundary(),
+        pixel_size: scale.pixel_size,
+        grid_spacing: arguments.grid_spacing,
+        length_unit: scale.length_unit,
+        time_unit: scale.time_unit,
+        frame_interval: scale.frame_interval,
+        y_axis: scale.y_axis,
+        positions: arguments.positions,
+    };
+    let import = import_flow(&arguments.files, &options)?;
+    warn(&mut run, &import.summary, is_scaled);
+    import.save(&mut out)?;
+    let summary = &import.summary;
+    let report = Report {
+        run: run.record(Some(&import.dataset)),
+        frames: summary.frames,
+        first_frame: summary.first_frame,
+        rows: summary.rows,
+        columns: summary.columns,
+        spacing: summary.spacing,
+        missing_points: summary.missing,
+        cells: import.is_complete().then(|| import.dataset.cells()),
+    };
+    let json = serde_json::to_string_pretty(&report)?;
+    out.write_text("report.json", &json)?;
+    let mut text = describe(summary, &import.dataset);
+    text += &format!("written to {}\n", out.path().display());
+    if !import.is_complete() {
+        let there = out.path().join("positions.npy").exists();
+        let what =
+            if there { "positions.npy stays as it was, it must be" } else { "still missing: positions.npy" };
+        let (unit, y_axis) = (&import.dataset.length_unit, import.dataset.y_axis);
+        text += &format!("{what} of shape ({}, cells, 2), in {unit} with y {y_axis}\n", summary.frames);
+    }
+    run.finish(Some(out), &json, &text)?;
+    Ok(Answer::Positive)
+}
+
+fn warn(run: &mut Run, summary: &FlowSummary, is_scaled: bool) {
+    let points = summary.rows * summary.columns;
+    if points > MANY_POINTS {
+        run.warn(format!(
+            "{points} grid points in a frame are more than cells need; --grid-spacing averages over squares"
+        ));
+    }
+    let unit = summary.stated_unit.as_deref().unwrap_or("px");
+    if is_scaled && !unit.to_lowercase().contains("px") && !unit.to_lowercase().contains("pix") {
+        run.warn(format!(
+            "the table gives displacements in {unit}, but they were taken for pixels per frame and scaled"
+        ));
+    }
+}
+
+fn describe(summary: &FlowSummary, data: &DataSet) -> String {
+    // Single precision leaves out the digits that rounding made.
+    let [x, y] = summary.spacing.map(|spacing| spacing as f32);
+    format!(
+        "{} frames of {} × {} grid points, {x} × {y} {} apart ({} without a velocity)\n",
+        summary.frames, summary.columns, summary.rows, data.length_unit, summary.missing
+    )
+}

@@ -1,0 +1,63 @@
+//! `voronudge import`: files of other programs into data sets.
+
+mod flow;
+mod tracks;
+
+use crate::Answer;
+use crate::failure::Failure;
+use clap::{Args, Subcommand};
+use voronudge_io::{Boundary, YAxis};
+
+/// Turns tracks or flow fields of other programs into a data set.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    what: What,
+}
+
+#[derive(Debug, Subcommand)]
+enum What {
+    /// TrackMate's spots table (.csv or .csv.gz).
+    Trackmate(tracks::Arguments),
+    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y.
+    Tracks(tracks::Arguments),
+    /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
+    Flow(flow::Arguments),
+}
+
+/// What files of other programs do not say about themselves.
+#[derive(Debug, Args)]
+struct ScaleArguments {
+    /// Length of a pixel: coordinates and displacements are multiplied by it.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pixel_size: Option<f64>,
+    /// Time between frames.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    frame_interval: Option<f64>,
+    /// Unit of length after scaling.
+    #[arg(long, value_name = "UNIT")]
+    length_unit: Option<String>,
+    /// Unit of time.
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<String>,
+    /// Direction of y in the files [default: down, as in images].
+    #[arg(long, value_name = "up|down")]
+    y_axis: Option<YAxis>,
+    /// Periodic box (default: an open field of view).
+    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
+    box_lengths: Option<Vec<f64>>,
+}
+
+impl ScaleArguments {
+    fn boundary(&self) -> Option<Boundary> {
+        self.box_lengths.as_ref().map(|l| Boundary::Periodic { lengths: [l[0], l[1]] })
+    }
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    match arguments.what {
+        What::Trackmate(arguments) => tracks::run(arguments, voronudge_io::import_trackmate),
+        What::Tracks(arguments) => tracks::run(arguments, voronudge_io::import_tracks),
+        What::Flow(arguments) => flow::run(arguments),
+    }
+}

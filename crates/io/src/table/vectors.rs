@@ -1,0 +1,294 @@
+//! Reading the vectors of a table, as programs for particle image velocimetry export them.
+
+use std::borrow::Cow;
+use std::path::Path;
+
+use csv::ByteRecord;
+
+use super::columns::{Column, plain};
+use super::{Located, csv_fault, decompress, line_number, offset_of};
+use crate::error::{Error, TableFault};
+
+/// Names of the columns, where they are not to be recognised automatically.
+///
+/// A name is looked up as written, then ignoring case, blanks, hyphens, underscores and units in
+/// brackets.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct FlowColumnNames {
+    /// The column that counts frames.
+    pub frame: Option<String>,
+    /// x of the grid point.
+    pub x: Option<String>,
+    /// y of the grid point.
+    pub y: Option<String>,
+    /// The displacement along x.
+    pub u: Option<String>,
+    /// The displacement along y.
+    pub v: Option<String>,
+    /// The column that is not zero where the vector is missing.
+    pub mask: Option<String>,
+}
+
+/// A row of the table.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Vector {
+    /// Line, counted from 1.
+    pub(crate) line: u64,
+    pub(crate) frame: i64,
+    pub(crate) x: f64,
+    pub(crate) y: f64,
+    /// NaN in both components where missing.
+    pub(crate) displacement: [f64; 2],
+}
+
+/// The vectors of a table, in the order of its rows; at least one.
+#[derive(Debug)]
+pub(crate) struct VectorTable {
+    pub(crate) vectors: Vec<Vector>,
+    /// The unit of displacements that the header states in brackets.
+    pub(crate) unit: Option<String>,
+}
+
+/// Reads a table, compressed or not; `path` only names the place.
+pub(crate) fn read_table(path: &Path, bytes: &[u8], names: &FlowColumnNames) -> Result<VectorTable, Error> {
+    let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
+    let text = decompress(bytes).map_err(|fault| failure(None, fault))?;
+    // Text has no zero bytes; what PIVlab saves for MATLAB and images have.
+    if text.contains(&0) {
+        return Err(failure(None, TableFault::NotText));
+    }
+    let (text, separator) = match separator(&text) {
+        Some(separator) => (text, separator),
+        None => (Cow::Owned(tabbed(&text)), b'\t'),
+    };
+    parse(&text, separator, names).map_err(|(offset, fault)| {
+        let line = offset.map(|offset| line_number(&text, offset));
+        failure(line, fault)
+    })
+}
+
+fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTable, Located> {
+    let mut reader =
+        csv::ReaderBuilder::new().has_headers(false).flexible(true).delimiter(separator).from_reader(text);
+    let mut columns: Option<Columns> = None;
+    // The last line of text that is no header, and why it is none.
+    let mut preface: Option<(ByteRecord, TableFault)> = None;
+    let mut lines = Lines { text, at: 0, line: 1 };
+    let mut table = VectorTable { vectors: Vec::new(), unit: None };
+    for row in reader.byte_records() {
+        let row = row.map_err(csv_fault)?;
+        if row.iter().all(|field| field.trim_ascii().is_empty()) {
+            continue;
+        }
+        let here = |fault| (offset_of(&row), fault);
+        let known = match &columns {
+            Some(_) if is_comment(&row) => continue,
+            Some(known) => known,
+            None if is_numbers(&row) => match preface.take() {
+                // Where a line has a text for each number, it means to name them.
+                Some((header, fault)) if !is_comment(&header) || header.len() == row.len() => {
+                    return Err((offset_of(&header), fault));
+                }
+                _ => columns.insert(Columns::unnamed(&row, names).map_err(here)?),
+            },
+            None => {
+                match Columns::find(&row, names) {
+                    Ok(found) => columns = Some(found),
+                    Err(fault) => preface = Some((row, fault)),
+                }
+                continue;
+            }
+        };
+        let line = lines.number(offset_of(&row).unwrap_or_default());
+        table.vectors.push(known.vector(&row, line).map_err(here)?);
+    }
+    match (columns, preface) {
+        (Some(_), _) if table.vectors.is_empty() => Err((None, TableFault::NoRows)),
+        (Some(columns), _) => {
+            table.unit = columns.unit();
+            Ok(table)
+        }
+        (None, Some((header, fault))) => Err((offset_of(&header), fault)),
+        (None, None) => Err((None, TableFault::Empty)),
+    }
+}
+
+/// The columns of a table that matter.
+struct Columns {
+    frame: Option<Column>,
+    x: Column,
+    y: Column,
+    u: Column,
+    v: Column,
+    mask: Option<Column>,
+    /// Fields of a row.
+    width: usize,
+}
+
+impl Columns {
+    fn find(header: &ByteRecord, names: &FlowColumnNames) -> Result<Self, TableFault> {
+        const EXAMPLE: &str = "--x-column X --u-column dx";
+        let found: Vec<String> = header
+            .iter()
+            .map(|field| {
+                let text = String::from_utf8_lossy(field);
+                text.trim_start_matches(['\u{feff}', '#', ' ']).trim().to_owned()
+            })
+            .collect();
+        let find = |role, given: &Option<String>, known: &[&str]| {
+            Column::find(&found, role, given, known, unbracketed, EXAMPLE)
+        };
+        // These may be absent, unless they were asked for.
+        let find_optional = |role, given: &Option<String>, known: &[&str]| match find(role, given, known) {
+            Ok(column) => Ok(Some(column)),
+            Err(fault) if given.is_some() => Err(fault),
+            Err(_) => Ok(None),
+        };
+        Ok(Self {
+            x: find("x coordinate", &names.x, &["x", "position_x", "pos_x", "x_position"])?,
+            y: find("y coordinate", &names.y, &["y", "position_y", "pos_y", "y_position"])?,
+            u: find("displacement along x", &names.u, &["u", "dx", "vx", "velocity_x"])?,
+            v: find("displacement along y", &names.v, &["v", "dy", "vy", "velocity_y"])?,
+            frame: find_optional("frame", &names.frame, &["frame", "t", "time_index", "time_point"])?,
+            mask: find_optional("mask", &names.mask, &["mask"])?,
+            width: found.len(),
+        })
+    }
+
+    /// Columns x, y, u, v in this order, the table having no header.
+    fn unnamed(row: &ByteRecord, names: &FlowColumnNames) -> Result<Self, TableFault> {
+        if *names != FlowColumnNames::default() {
+            return Err(TableFault::NoHeader);
+        }
+        let column = |index, name: &str| Column { index, name: name.to_owned() };
+        Ok(Self {
+            frame: None,
+            x: column(0, "x"),
+            y: column(1, "y"),
+            u: column(2, "u"),
+            v: column(3, "v"),
+            mask: None,
+            width: row.len(),
+        })
+    }
+
+    /// The unit of displacements that the header states in brackets.
+    fn unit(&self) -> Option<String> {
+        let start = self.u.name.find(['[', '('])? + 1;
+        let unit = self.u.name[start..].trim_end_matches([']', ')']).trim();
+        (!unit.is_empty()).then(|| unit.to_owned())
+    }
+
+    fn vector(&self, row: &ByteRecord, line: u64) -> Result<Vector, TableFault> {
+        // A separator at the end of the line makes one empty field more.
+        let surplus = row.iter().skip(self.width).any(|field| !field.trim_ascii().is_empty());
+        if row.len() < self.width || surplus {
+            return Err(TableFault::FieldCount { found: row.len() as u64, expected: self.width as u64 });
+        }
+        let frame = self.frame.as_ref().map_or(Ok(0), |column| column.whole(row))?;
+        let (x, y) = (self.x.finite(row)?, self.y.finite(row)?);
+        let masked = match &self.mask {
+            Some(column) => column.finite(row)? != 0.0,
+            None => false,
+        };
+        let displacement = match masked {
+            true => [f64::NAN; 2],
+            false => [component(&self.u, row)?, component(&self.v, row)?],
+        };
+        let [u, v] = displacement;
+        if u.is_nan() != v.is_nan() {
+            return Err(TableFault::HalfMissing { u: self.u.text(row).into(), v: self.v.text(row).into() });
+        }
+        Ok(Vector { line, frame, x, y, displacement })
+    }
+}
+
+/// A component of a displacement; NaN and an empty field mean that it is missing.
+fn component(column: &Column, row: &ByteRecord) -> Result<f64, TableFault> {
+    let text = column.text(row);
+    if text.is_empty() {
+        return Ok(f64::NAN);
+    }
+    let number = text.parse::<f64>().ok().filter(|value| !value.is_infinite());
+    number.ok_or_else(|| column.fault(&text, "a finite number or NaN"))
+}
+
+/// Line numbers of rows that come in order.
+///
+/// The reader's own count is one off after CRLF and blank lines.
+struct Lines<'a> {
+    text: &'a [u8],
+    at: usize,
+    line: u64,
+}
+
+impl Lines<'_> {
+    /// The line, counted from 1, of the row at a byte offset not before the last one.
+    fn number(&mut self, offset: u64) -> u64 {
+        let rest = self.text.get(offset as usize..).unwrap_or_default();
+        let start = offset as usize + rest.iter().take_while(|byte| matches!(byte, b'\n' | b'\r')).count();
+        let passed = self.text.get(self.at..start).unwrap_or_default();
+        self.line += passed.iter().filter(|&&byte| byte == b'\n').count() as u64;
+        self.at = start;
+        self.line
+    }
+}
+
+/// What separates the fields of the first line of numbers; `None` for blanks.
+fn separator(text: &[u8]) -> Option<u8> {
+    let is_separator = |byte: &u8| matches!(byte, b',' | b';' | b'\t' | b' ');
+    let is_data = |line: &&[u8]| {
+        let mut fields = line.split(is_separator).filter(|field| !field.is_empty());
+        let number = fields.next().and_then(|field| std::str::from_utf8(field).ok()?.parse::<f64>().ok());
+        number.is_some() && fields.count() >= 3
+    };
+    let mut lines =
+        text.split(|byte| matches!(byte, b'\n' | b'\r')).filter(|line| !line.trim_ascii().is_empty());
+    let first = lines.clone().next();
+    let line = lines.find(is_data).or(first)?.trim_ascii();
+    [b';', b'\t', b','].into_iter().find(|separator| line.contains(separator))
+}
+
+/// Text with a tab wherever there are blanks between fields; lines stay as they are.
+fn tabbed(text: &[u8]) -> Vec<u8> {
+    let text = String::from_utf8_lossy(text);
+    let mut out = String::with_capacity(text.len());
+    for line in text.split('\n') {
+        let line = line.trim();
+        // The mark of a comment belongs to the first field.
+        let (mark, rest) = match line.strip_prefix('#') {
+            Some(rest) => ("#", rest),
+            None => ("", line),
+        };
+        out.push_str(mark);
+        let mut before: Option<&str> = None;
+        for word in rest.split_whitespace() {
+            // A unit belongs to the name before it, and PIVlab has a column "vector type".
+            let goes_on =
+                word.starts_with(['[', '(']) || (before == Some("vector") && word.starts_with("type"));
+            if before.is_some() {
+                out.push(if goes_on { ' ' } else { '\t' });
+            }
+            out.push_str(word);
+            before = Some(word);
+        }
+        out.push('\n');
+    }
+    out.into_bytes()
+}
+
+fn is_comment(row: &ByteRecord) -> bool {
+    row.get(0).is_some_and(|field| field.trim_ascii_start().starts_with(b"#"))
+}
+
+/// At least four fields, all of them numbers.
+fn is_numbers(row: &ByteRecord) -> bool {
+    let mut fields = row.iter().map(<[u8]>::trim_ascii).filter(|field| !field.is_empty());
+    let is_number = |field: &[u8]| std::str::from_utf8(field).is_ok_and(|text| text.parse::<f64>().is_ok());
+    row.len() >= 4 && fields.all(is_number)
+}
+
+/// A column name without its unit and without what people write differently.
+fn unbracketed(name: &str) -> String {
+    plain(name.split(['[', '(']).next().unwrap_or_default())
+}
