@@ -24,6 +24,7 @@ mod linearisation;
 mod noise;
 mod objective;
 mod observation;
+pub mod quadratic;
 mod result;
 mod scale;
 
