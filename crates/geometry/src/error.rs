@@ -22,6 +22,19 @@ pub enum Error {
         /// The largest magnitude possible.
         limit: f64,
     },
+    /// A grid whose origin is not finite or whose spacing is not positive.
+    #[error(
+        "the grid has origin {origin} and spacing {spacing} along {axis}, but the first must be \
+         finite and the second positive"
+    )]
+    Grid {
+        /// Name of the axis: `x` or `y`.
+        axis: char,
+        /// Coordinate of the first square's centre.
+        origin: f64,
+        /// Distance between centres.
+        spacing: f64,
+    },
     /// A coordinate that is NaN or infinite, or so far away that positions lose their meaning.
     #[error("cell {cell} is at ({x}, {y}), which is not a usable position")]
     Position {
@@ -83,6 +96,7 @@ impl Error {
             Self::BoxSide { .. } | Self::BoxOffset { .. } => {
                 "give the side lengths of the periodic box in the unit of the positions"
             }
+            Self::Grid { .. } => "give the origin and the spacing of the grid in the unit of the positions",
             Self::Position { .. } => {
                 "mark absent cells by NaN in both coordinates, and give positions near the origin"
             }

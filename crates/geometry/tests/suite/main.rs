@@ -2,6 +2,7 @@
 
 mod boundaries;
 mod large;
+mod overlap;
 mod polygon;
 mod refused;
 mod samples;

@@ -102,6 +102,7 @@ fn unusable_boxes_are_refused() {
 fn every_error_has_a_message_in_lower_case_and_a_hint() {
     let errors = [
         Error::BoxSide { axis: 'x', length: 0.0 },
+        Error::Grid { axis: 'x', origin: 0.0, spacing: 0.0 },
         Error::Position { cell: 3, x: f64::NAN, y: 0.0 },
         Error::TooFewCells { found: 1, required: 3 },
         Error::DuplicateCells { first: 0, second: 1, x: 0.0, y: 0.0 },

@@ -1,0 +1,350 @@
+//! How much of each Voronoi cell lies in each square of a grid, and how that changes as the cells move.
+
+use crate::grid::Lines;
+use crate::{CellPolygon, Grid, Tessellation, Vector, cross};
+use rayon::prelude::*;
+
+/// Cells per task.
+const CHUNK: usize = 256;
+
+/// Lists of entries, one for each square of a grid.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BySquare<T> {
+    start: Vec<usize>,
+    entries: Vec<T>,
+}
+
+impl<T: Copy> BySquare<T> {
+    /// Takes entries with the index of their square; those of one square keep their order.
+    fn new(squares: usize, parts: &[Vec<(usize, T)>]) -> Self {
+        let mut start = vec![0; squares + 1];
+        for (square, _) in parts.iter().flatten() {
+            start[square + 1] += 1;
+        }
+        for square in 0..squares {
+            start[square + 1] += start[square];
+        }
+        let (mut next, mut order) = (start.clone(), vec![(0, 0); start[squares]]);
+        for (number, part) in parts.iter().enumerate() {
+            for (k, (square, _)) in part.iter().enumerate() {
+                order[next[*square]] = (number, k);
+                next[*square] += 1;
+            }
+        }
+        let entries = order.into_iter().map(|(part, k)| parts[part][k].1).collect();
+        Self { start, entries }
+    }
+
+    /// Number of squares.
+    pub fn len(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// Whether there is no square.
+    pub fn is_empty(&self) -> bool {
+        self.len() == 0
+    }
+
+    /// The entries of a square.
+    pub fn square(&self, square: usize) -> &[T] {
+        &self.entries[self.start[square]..self.start[square + 1]]
+    }
+}
+
+/// The part of a cell in a square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Overlap {
+    /// Index of the cell.
+    pub cell: u32,
+    /// Area of the cell's polygon within the square, all its images together.
+    pub area: f64,
+}
+
+impl BySquare<Overlap> {
+    /// Area of a square that polygons cover: all of it, except at the rim of an open field.
+    pub fn covered(&self, square: usize) -> f64 {
+        self.square(square).iter().map(|overlap| overlap.area).sum()
+    }
+}
+
+/// The part of a Voronoi side in a square.
+///
+/// Points x of the side move along its normal by `[(x − r_i)·dr_i − (x − r_j)·dr_j] / d` if the cells move by dr_i and
+/// dr_j. This is linear in x, so with the midpoint m of the piece and its length ℓ the area of cell i in the square
+/// changes by
+///
+/// ```text
+/// da_i = (ℓ/d) [(m − r_i)·dr_i − (m − r_j)·dr_j],        da_j = −da_i
+/// ```
+///
+/// summed over the pieces of the square.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct SidePiece {
+    /// Index i of a cell with a closed polygon.
+    pub cell: u32,
+    /// Index j of the cell across the side. Its polygon may be open, and then has no area to change.
+    pub neighbour: u32,
+    /// Length ℓ of the piece.
+    pub length: f64,
+    /// `m − r_i`
+    pub from_cell: Vector<f64>,
+    /// `m − r_j`, where r_j is the image of the neighbour that is met.
+    pub from_neighbour: Vector<f64>,
+    /// Distance `d = |r_j − r_i|` of the centres.
+    pub distance: f64,
+}
+
+impl SidePiece {
+    /// `∂a_i/∂r_i` and `∂a_i/∂r_j`, as far as this piece contributes; those of a_j are the opposite.
+    pub fn area_gradient(&self) -> [Vector<f64>; 2] {
+        let weight = self.length / self.distance;
+        [self.from_cell * weight, self.from_neighbour * -weight]
+    }
+}
+
+/// The area of each cell (of N at `positions`) in each square of a grid, in squared units of the positions.
+///
+/// The entries of a square are in ascending order of cells. Cells that are not closed contribute nothing. In a periodic
+/// box all images count: a square of twice the box holds every cell twice. The tessellation must be that of the
+/// positions.
+///
+/// ```
+/// use voronudge_geometry::{Domain, Grid, PeriodicBox, Tessellation, Vector, overlaps};
+///
+/// // One cell in a box; two squares, each half the box.
+/// let domain = Domain::Periodic(PeriodicBox::new([2.0, 3.0])?);
+/// let positions = [Vector::new(0.3, 0.4)];
+/// let tessellation = Tessellation::new(&positions, domain)?;
+/// let overlaps = overlaps(&tessellation, &positions, &Grid::new([0.0, 0.0], [1.0, 3.0], [2, 1])?);
+/// assert_eq!(overlaps.square(1)[0].cell, 0);
+/// assert!((overlaps.square(1)[0].area - 3.0).abs() < 1e-14);
+/// # Ok::<(), voronudge_geometry::Error>(())
+/// ```
+pub fn overlaps(tessellation: &Tessellation, positions: &[Vector<f64>], grid: &Grid) -> BySquare<Overlap> {
+    by_square(tessellation, positions, grid, |scratch: &mut Clipper, polygon, cell, found| {
+        scratch.vertices.clear();
+        scratch.vertices.extend(polygon.vertices());
+        let [x, y] = [0, 1].map(|axis| range(&scratch.vertices, axis));
+        let bounds = [Vector::new(x[0], y[0]), Vector::new(x[1], y[1])];
+        let first = found.len();
+        grid.for_images(tessellation.domain(), positions[cell], bounds, |lines| {
+            scratch.areas(&lines, |square, area| {
+                found.push((square, Overlap { cell: cell as u32, area }));
+            });
+        });
+        merge(found, first);
+    })
+}
+
+/// The pieces of the Voronoi sides of N cells at `positions` in each square of a grid.
+///
+/// Each side is given once, from a closed cell. In a periodic box all its images count. The tessellation must be that of
+/// the positions.
+///
+/// ```
+/// use voronudge_geometry::{Domain, Grid, PeriodicBox, Tessellation, Vector, side_pieces};
+///
+/// // Two cells in a box, parted by the lines x = 0, 1 and 2.
+/// let domain = Domain::Periodic(PeriodicBox::new([2.0, 1.0])?);
+/// let positions = [Vector::new(0.5, 0.5), Vector::new(1.5, 0.5)];
+/// let tessellation = Tessellation::new(&positions, domain)?;
+/// let pieces = side_pieces(&tessellation, &positions, &Grid::new([1.0, 0.5], [0.5, 0.5], [1, 1])?);
+/// let between = pieces.square(0).iter().find(|piece| piece.length > 0.0 && piece.cell != piece.neighbour);
+/// // The line moves by half the displacement of a cell; half a unit of its length is in the square.
+/// assert!(between.is_some_and(|piece| (piece.area_gradient()[0].x.abs() - 0.25).abs() < 1e-14));
+/// # Ok::<(), voronudge_geometry::Error>(())
+/// ```
+pub fn side_pieces(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    grid: &Grid,
+) -> BySquare<SidePiece> {
+    by_square(tessellation, positions, grid, |_: &mut (), polygon, cell, found| {
+        let corners = polygon.corners();
+        let mut previous = corners.len() - 1;
+        for (m, h) in tessellation.ring(cell).enumerate() {
+            let (neighbour, displacement) = (tessellation.neighbour(h), polygon.ring()[m]);
+            let side = Side { from: corners[previous].centre, to: corners[m].centre };
+            previous = m;
+            if tessellation.is_closed(neighbour) && tessellation.twin(h) < h {
+                continue;
+            }
+            let (length, distance) = ((side.to - side.from).norm(), displacement.norm());
+            let bounds = [side.from.inf(&side.to), side.from.sup(&side.to)];
+            grid.for_images(tessellation.domain(), positions[cell], bounds, |lines| {
+                side.pieces(&lines, |square, share, middle| {
+                    let piece = SidePiece {
+                        cell: cell as u32,
+                        neighbour: neighbour as u32,
+                        length: share * length,
+                        from_cell: middle,
+                        from_neighbour: middle - displacement,
+                        distance,
+                    };
+                    found.push((square, piece));
+                });
+            });
+        }
+    })
+}
+
+/// Collects what `visit` finds for each closed cell, with the index of its square.
+fn by_square<S: Default, T: Copy + Send + Sync>(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    grid: &Grid,
+    visit: impl Fn(&mut S, &CellPolygon<f64>, usize, &mut Vec<(usize, T)>) + Sync,
+) -> BySquare<T> {
+    let cells = tessellation.len();
+    let parts: Vec<Vec<(usize, T)>> = (0..cells.div_ceil(CHUNK))
+        .into_par_iter()
+        .map_init(<(CellPolygon<f64>, S)>::default, |(polygon, scratch), chunk| {
+            let mut found = Vec::new();
+            for cell in chunk * CHUNK..((chunk + 1) * CHUNK).min(cells) {
+                if tessellation.is_closed(cell) {
+                    polygon.fill(tessellation, positions, cell);
+                    visit(scratch, polygon, cell, &mut found);
+                }
+            }
+            found
+        })
+        .collect();
+    BySquare::new(grid.len(), &parts)
+}
+
+/// Joins the overlaps of one cell, from entry `first` on, that are in the same square.
+fn merge(found: &mut Vec<(usize, Overlap)>, first: usize) {
+    found[first..].sort_by_key(|entry| entry.0);
+    let mut kept = first;
+    for k in first..found.len() {
+        if kept > first && found[kept - 1].0 == found[k].0 {
+            found[kept - 1].1.area += found[k].1.area;
+        } else {
+            found[kept] = found[k];
+            kept += 1;
+        }
+    }
+    found.truncate(kept);
+}
+
+/// A polygon and what is left of it in a column and in a square. Buffers are kept between cells.
+#[derive(Default)]
+struct Clipper {
+    vertices: Vec<Vector<f64>>,
+    column: Vec<Vector<f64>>,
+    square: Vec<Vector<f64>>,
+    half: Vec<Vector<f64>>,
+}
+
+impl Clipper {
+    /// Visits the squares that the polygon overlaps, with the area in common.
+    fn areas(&mut self, lines: &Lines<'_>, mut visit: impl FnMut(usize, f64)) {
+        for ix in lines.numbers(0, range(&self.vertices, 0)) {
+            let sides = [lines.line(0, ix), lines.line(0, ix + 1)];
+            clip(&self.vertices, 0, sides, &mut self.half, &mut self.column);
+            for iy in lines.numbers(1, range(&self.column, 1)) {
+                let sides = [lines.line(1, iy), lines.line(1, iy + 1)];
+                clip(&self.column, 1, sides, &mut self.half, &mut self.square);
+                let area = area(&self.square);
+                if area > 0.0 {
+                    visit(lines.grid().index([ix, iy]), area);
+                }
+            }
+        }
+    }
+}
+
+/// Least and greatest coordinate along an axis.
+fn range(points: &[Vector<f64>], axis: usize) -> [f64; 2] {
+    points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
+        [low.min(point[axis]), high.max(point[axis])]
+    })
+}
+
+/// The part of a convex polygon with a coordinate between two bounds (Sutherland and Hodgman).
+fn clip(
+    polygon: &[Vector<f64>],
+    axis: usize,
+    [low, high]: [f64; 2],
+    half: &mut Vec<Vector<f64>>,
+    clipped: &mut Vec<Vector<f64>>,
+) {
+    cut(polygon, half, axis, |coordinate| coordinate - low);
+    cut(half, clipped, axis, |coordinate| high - coordinate);
+}
+
+/// The part of a convex polygon where `inside` is not negative; it is linear in the coordinate along `axis`.
+fn cut(polygon: &[Vector<f64>], kept: &mut Vec<Vector<f64>>, axis: usize, inside: impl Fn(f64) -> f64) {
+    kept.clear();
+    let Some(&last) = polygon.last() else {
+        return;
+    };
+    let (mut previous, mut before) = (last, inside(last[axis]));
+    for &vertex in polygon {
+        let here = inside(vertex[axis]);
+        if (before < 0.0) != (here < 0.0) {
+            // From the nearer of the two: vertices at the rim of an open field can be very far away.
+            let swap = here.abs() < before.abs();
+            let (near, far) = if swap { (vertex, previous) } else { (previous, vertex) };
+            let (at_near, at_far) = if swap { (here, before) } else { (before, here) };
+            kept.push(near + (far - near) * (at_near / (at_near - at_far)));
+        }
+        if here >= 0.0 {
+            kept.push(vertex);
+        }
+        (previous, before) = (vertex, here);
+    }
+}
+
+fn area(polygon: &[Vector<f64>]) -> f64 {
+    let Some(&first) = polygon.first() else {
+        return 0.0;
+    };
+    polygon.windows(2).map(|pair| 0.5 * cross(pair[0] - first, pair[1] - first)).sum()
+}
+
+/// A side from one vertex to the next, relative to the cell.
+struct Side {
+    from: Vector<f64>,
+    to: Vector<f64>,
+}
+
+impl Side {
+    /// Visits the squares that the side crosses, with the share of its length there and the midpoint of the piece.
+    fn pieces(&self, lines: &Lines<'_>, mut visit: impl FnMut(usize, f64, Vector<f64>)) {
+        self.crossed(lines, 0, [0.0, 1.0], |ix, part| {
+            self.crossed(lines, 1, part, |iy, [s, t]| {
+                let middle = self.from + (self.to - self.from) * (0.5 * (s + t));
+                visit(lines.grid().index([ix, iy]), t - s, middle);
+            });
+        });
+    }
+
+    /// Cuts the part `[s, t]` of the side, `0 ≤ s < t ≤ 1`, where it crosses grid lines along an axis.
+    fn crossed(
+        &self,
+        lines: &Lines<'_>,
+        axis: usize,
+        [s, t]: [f64; 2],
+        mut visit: impl FnMut(usize, [f64; 2]),
+    ) {
+        let (from, step) = (self.from[axis], self.to[axis] - self.from[axis]);
+        let ends = [from + s * step, from + t * step];
+        let numbers = ends.map(|end| lines.number(axis, end));
+        let [low, high] = if step < 0.0 { [numbers[1], numbers[0]] } else { numbers };
+        let at = |number: usize| ((lines.line(axis, number) - from) / step).clamp(s, t);
+        for number in lines.numbers(axis, if step < 0.0 { [ends[1], ends[0]] } else { ends }) {
+            // The ends of the part, or where it crosses a line: only then is the step not zero.
+            let below = (number as isize > low).then(|| at(number));
+            let above = ((number as isize) < high).then(|| at(number + 1));
+            let part = if step < 0.0 {
+                [above.unwrap_or(s), below.unwrap_or(t)]
+            } else {
+                [below.unwrap_or(s), above.unwrap_or(t)]
+            };
+            if part[0] < part[1] {
+                visit(number, part);
+            }
+        }
+    }
+}
