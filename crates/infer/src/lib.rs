@@ -33,6 +33,7 @@ mod request;
 mod result;
 mod scale;
 mod search;
+mod uncertainty;
 
 pub use coefficients::CoefficientSpace;
 pub use constraints::{Constraints, Prior};
@@ -46,3 +47,4 @@ pub use quantity::Quantity;
 pub use request::{CrossValidation, Loss, Method, Request};
 pub use result::{Direction, Doubt, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;
+pub use uncertainty::{Bootstrap, Landscape, Profile, bootstrap, landscape, profile};

@@ -24,21 +24,19 @@ pub(crate) struct Step {
     pub promised: f64,
 }
 
-/// Priors linearised about the present coefficients.
+/// The penalty of the priors, linearised about the present coefficients.
 #[derive(Debug, Clone)]
-pub(crate) struct Priors {
-    /// σ_v² Σ (q − m)² / s²
-    pub penalty: f64,
-    /// Half its second derivative with respect to β.
+struct Priors {
+    /// Half their second derivative with respect to β.
     normal: DMatrix<f64>,
-    /// Half its decrease with β.
+    /// Half their decrease with β.
     gradient: DVector<f64>,
 }
 
 impl Priors {
-    pub fn new(objective: &Objective<'_>, free: &[f64]) -> Self {
+    fn new(objective: &Objective<'_>, free: &[f64]) -> Self {
         let p = objective.space.dimension();
-        let mut sum = Self { penalty: 0.0, normal: DMatrix::zeros(p, p), gradient: DVector::zeros(p) };
+        let mut sum = Self { normal: DMatrix::zeros(p, p), gradient: DVector::zeros(p) };
         if objective.space.priors().is_empty() {
             return sum;
         }
@@ -47,7 +45,6 @@ impl Priors {
             let scale = objective.levels.velocity / prior.standard_deviation;
             let rest = (prior.mean - quantity.of(&c)) * scale;
             let gradient = objective.space.basis().transpose() * quantity.gradient(&c) * scale;
-            sum.penalty += rest * rest;
             sum.normal += &gradient * gradient.transpose();
             sum.gradient += gradient * rest;
         }

@@ -2,8 +2,8 @@
 
 use crate::least_squares::{Columns, free_columns, predict};
 use crate::linearisation::{Linearisation, Local};
-use crate::normal_equations::{NormalEquations, Priors};
-use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
+use crate::normal_equations::NormalEquations;
+use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Prior, Quantity};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use nalgebra::{DMatrix, Vector4};
 use rayon::prelude::*;
@@ -150,7 +150,15 @@ impl Objective<'_> {
             .collect();
         let (residual, nudges) =
             parts.into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
-        Parts { residual, nudges, priors: Priors::new(self, free).penalty }
+        Parts { residual, nudges, priors: self.prior_penalty(&coefficients) }
+    }
+
+    /// The penalty of the priors for given coefficients.
+    pub fn prior_penalty(&self, coefficients: &Vector4<f64>) -> f64 {
+        let scaled = |(quantity, prior): &(Quantity, Prior)| {
+            (quantity.of(coefficients) - prior.mean) * self.levels.velocity / prior.standard_deviation
+        };
+        self.space.priors().iter().map(scaled).map(|rest| rest * rest).sum()
     }
 
     /// Φ; infinite where there is no tessellation.

@@ -15,6 +15,8 @@ pub struct Observation {
     pub tessellation: Tessellation,
     /// Whether a cell can be trusted (open fields of view).
     pub visibility: Vec<Visibility>,
+    /// Multiple of the median area above which an open field's polygon is taken for a rim or a hole.
+    pub largest_area: f64,
     /// Whether the model can say what a velocity should be.
     used: Vec<bool>,
     /// The cell to which a velocity belongs most.
@@ -55,8 +57,7 @@ impl Velocities {
 }
 
 impl Observation {
-    /// Tessellates a snapshot. `largest_area` is the multiple of the median area above which an open field's polygon is
-    /// taken for a rim or a hole. `frame` is used in messages.
+    /// Tessellates a snapshot. For `largest_area` see the field of that name; `frame` is used in messages.
     ///
     /// # Errors
     /// [`Error::Lengths`], [`Error::Geometry`].
@@ -89,7 +90,7 @@ impl Observation {
                 (sampling.filled().to_vec(), sampling.owners())
             }
         };
-        Ok(Self { positions, velocities, tessellation, visibility, used, owners })
+        Ok(Self { positions, velocities, tessellation, visibility, largest_area, used, owners })
     }
 
     /// The velocity to be explained, of a cell or at a grid point: measured, and within reach of the model.

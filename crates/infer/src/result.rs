@@ -153,6 +153,13 @@ pub struct Inference {
     pub used: usize,
 }
 
+impl Inference {
+    /// By how much the objective exceeds its expected value; one where it does not.
+    pub fn excess(&self) -> f64 {
+        (self.objective / self.expected_objective).max(1.0)
+    }
+}
+
 /// A reason not to trust a fit.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Doubt {

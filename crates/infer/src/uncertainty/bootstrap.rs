@@ -1,0 +1,108 @@
+//! Parametric bootstrap: what the same procedure makes of data that the fit itself could have made.
+
+use super::in_chunks;
+use crate::{
+    CrossValidation, Error, Flow, Inference, Observation, Prior, Progress, Quantity, Request, Velocities,
+    infer,
+};
+use rand::SeedableRng;
+use rand_distr::{Distribution, Normal};
+use rand_pcg::Pcg64;
+use std::ops::ControlFlow;
+use voronudge_geometry::Vector;
+
+/// Estimates from synthetic data sets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Bootstrap {
+    /// One set of parameters for each replicate that could be fitted, in the order of [`Quantity::ALL`].
+    pub replicates: Vec<[f64; 5]>,
+    /// Replicates that could not be fitted.
+    pub failed: usize,
+}
+
+impl Bootstrap {
+    /// The estimates of a quantity, ascending.
+    pub fn values(&self, quantity: Quantity) -> Vec<f64> {
+        let index = Quantity::ALL.iter().position(|q| *q == quantity).unwrap_or(0);
+        let mut values: Vec<f64> = self.replicates.iter().map(|replicate| replicate[index]).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        values
+    }
+
+    /// The central 95 % of the estimates of a quantity; `None` with fewer than 40 replicates.
+    pub fn interval(&self, quantity: Quantity) -> Option<[f64; 2]> {
+        let values = self.values(quantity);
+        let quantile = |p: f64| {
+            let at = p * (values.len() - 1) as f64;
+            let (low, share) = (at.floor() as usize, at.fract());
+            let next = values[(low + 1).min(values.len() - 1)];
+            values[low] + share * (next - values[low])
+        };
+        (values.len() >= 40).then(|| [quantile(0.025), quantile(0.975)])
+    }
+}
+
+/// Refits synthetic data: cells at the nudged positions that move as predicted, measured with the noise of the fit.
+///
+/// Noise levels that were estimated are estimated anew each time. Replicates run in parallel; each has a seed of its own
+/// made from the request's, so results do not depend on the number of threads.
+///
+/// # Errors
+/// [`Error::Interrupted`].
+pub fn bootstrap(
+    frames: &[Observation],
+    request: &Request,
+    result: &Inference,
+    replicates: usize,
+    observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+) -> Result<Bootstrap, Error> {
+    let numbers: Vec<u64> = (1..=replicates as u64).collect();
+    let objective = result.objective / result.expected_objective;
+    let fitted =
+        in_chunks("bootstrap", &numbers, &mut crate::search::Watch { observe }, objective, |number| {
+            Ok(replicate(frames, request, result, *number).ok())
+        })?;
+    let failed = fitted.iter().filter(|fit| fit.is_none()).count();
+    Ok(Bootstrap { replicates: fitted.into_iter().flatten().collect(), failed })
+}
+
+fn replicate(
+    frames: &[Observation],
+    request: &Request,
+    result: &Inference,
+    number: u64,
+) -> Result<[f64; 5], Error> {
+    let mut rng = Pcg64::seed_from_u64(request.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(number));
+    let level =
+        |sigma: f64| Normal::new(0.0, sigma).map_err(|_| Error::Noise { name: "position", value: sigma });
+    // Where the model misses more than the noise explains, the misfit counts as noise of the velocities.
+    let on_positions = level(result.noise.position)?;
+    let on_velocities = level(result.noise.velocity * result.excess().sqrt())?;
+    let mut noisy = |v: &Vector<f64>, normal: &Normal<f64>| {
+        Vector::new(v.x + normal.sample(&mut rng), v.y + normal.sample(&mut rng))
+    };
+    let mut synthetic = Vec::with_capacity(frames.len());
+    for (index, (frame, own)) in frames.iter().zip(&result.frames).enumerate() {
+        let positions = own.nudged_positions.iter().map(|r| noisy(r, &on_positions)).collect();
+        let values: Vec<Option<Vector<f64>>> = own
+            .predicted_data
+            .iter()
+            .enumerate()
+            .map(|(datum, v)| frame.target(datum).map(|_| noisy(v, &on_velocities)))
+            .collect();
+        let velocities = match &frame.velocities {
+            Velocities::OfCells(_) => Velocities::OfCells(values),
+            Velocities::OnGrid(flow) => Velocities::OnGrid(Flow { velocities: values, ..flow.clone() }),
+        };
+        let domain = frame.tessellation.domain();
+        synthetic.push(Observation::new(index, positions, velocities, domain, frame.largest_area)?);
+    }
+    let mut request = Request { cross_validation: CrossValidation::Skipped, seed: number, ..request.clone() };
+    // A prior is a measurement too.
+    for (quantity, prior) in &mut request.constraints.priors {
+        let normal = level(prior.standard_deviation)?;
+        *prior = Prior { mean: quantity.of(&result.coefficients) + normal.sample(&mut rng), ..*prior };
+    }
+    let refit = infer(&synthetic, &request, &mut |_| ControlFlow::Continue(()))?;
+    Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))
+}

@@ -1,0 +1,156 @@
+//! How far to believe a fit: profiles, slices of the landscape, the parametric bootstrap.
+
+mod bootstrap;
+mod landscape;
+mod profile;
+
+pub use bootstrap::{Bootstrap, bootstrap};
+pub use landscape::{Landscape, landscape};
+pub use profile::{Profile, profile};
+
+use crate::objective::Objective;
+use crate::search::{Watch, optimise};
+use crate::{CoefficientSpace, Error, Inference, Observation, Quantity, Request};
+use nalgebra::Vector4;
+use rayon::prelude::*;
+use std::ops::ControlFlow;
+use voronudge_model::{Term, base_terms};
+
+/// Refits at once between two reports of progress, whatever the number of threads.
+const AT_ONCE: usize = 8;
+
+/// Steps of a refit from a neighbouring solution.
+const STEPS: u64 = 30;
+
+/// Standard errors to either side that profiles and landscapes cover.
+const REACH: f64 = 3.0;
+
+/// A finished fit, to ask further questions of.
+struct Point<'a> {
+    frames: &'a [Observation],
+    terms: Vec<Term>,
+    space: CoefficientSpace,
+    result: &'a Inference,
+    /// ε of all frames.
+    nudges: Vec<f64>,
+    /// −2 log likelihood per unit of Φ.
+    unit: f64,
+}
+
+impl<'a> Point<'a> {
+    fn new(frames: &'a [Observation], request: &Request, result: &'a Inference) -> Result<Self, Error> {
+        let nudges = frames
+            .iter()
+            .zip(&result.frames)
+            .flat_map(|(frame, own)| frame.positions.iter().zip(&own.nudged_positions))
+            .flat_map(|(from, to)| [to.x - from.x, to.y - from.y])
+            .collect();
+        Ok(Self {
+            frames,
+            terms: base_terms(request.preferred_area).to_vec(),
+            space: CoefficientSpace::new(&request.constraints)?,
+            result,
+            nudges,
+            // Where the model misses more than the noise explains, the misfit counts as noise.
+            unit: 1.0 / (result.noise.velocity.powi(2) * result.excess()),
+        })
+    }
+
+    fn objective<'s>(&'s self, space: &'s CoefficientSpace) -> Objective<'s> {
+        Objective { frames: self.frames, terms: &self.terms, space, levels: self.result.noise }
+    }
+
+    /// −2 log likelihood with quantities held, everything else refitted.
+    fn refitted(&self, held: &[(Quantity, f64)]) -> Result<f64, Error> {
+        let mut space = self.space.clone();
+        for (quantity, value) in held {
+            space = space.hold(*quantity, *value)?;
+        }
+        let mut start = space.nearest(&self.result.coefficients);
+        start.extend(&self.nudges);
+        let mut silent = |_, _| ControlFlow::Continue(());
+        Ok(optimise(&self.objective(&space), start, STEPS, &mut silent)?.value * self.unit)
+    }
+
+    /// Values around the estimate of a quantity, ascending.
+    fn range(&self, quantity: Quantity, points: usize) -> Result<Vec<f64>, Error> {
+        let estimate = self.result.parameters.get(quantity);
+        if estimate.standard_error == 0.0 || points < 3 {
+            return Err(Error::Constraint("a parameter that is held has no profile"));
+        }
+        let (mut low, mut high) = (
+            estimate.value - REACH * estimate.standard_error,
+            estimate.value + REACH * estimate.standard_error,
+        );
+        // A bound ends the range; a long tail extends it.
+        if let [Some(lower), _] = estimate.interval {
+            low =
+                if lower == estimate.value { lower } else { low.min(lower - 0.3 * (estimate.value - lower)) };
+        }
+        if let [_, Some(upper)] = estimate.interval {
+            high = if upper == estimate.value {
+                upper
+            } else {
+                high.max(upper + 0.3 * (upper - estimate.value))
+            };
+        }
+        Ok((0..points).map(|k| low + (high - low) * k as f64 / (points - 1) as f64).collect())
+    }
+
+    /// Refits many times in parallel, with progress.
+    fn each<T: Sync, R: Send>(
+        &self,
+        stage: &str,
+        tasks: &[T],
+        watch: &mut Watch<'_>,
+        task: impl Fn(&T) -> Result<R, Error> + Sync,
+    ) -> Result<Vec<R>, Error> {
+        in_chunks(stage, tasks, watch, self.result.objective / self.result.expected_objective, task)
+    }
+}
+
+fn in_chunks<T: Sync, R: Send>(
+    stage: &str,
+    tasks: &[T],
+    watch: &mut Watch<'_>,
+    objective: f64,
+    task: impl Fn(&T) -> Result<R, Error> + Sync,
+) -> Result<Vec<R>, Error> {
+    let mut results = Vec::with_capacity(tasks.len());
+    for chunk in tasks.chunks(AT_ONCE) {
+        watch.tell(stage, (results.len() as u64, tasks.len() as u64), objective)?;
+        results.extend(chunk.par_iter().map(&task).collect::<Result<Vec<R>, Error>>()?);
+    }
+    Ok(results)
+}
+
+/// Coefficients with one quantity changed and the other parameters kept.
+fn with(c: &Vector4<f64>, quantity: Quantity, value: f64) -> Vector4<f64> {
+    let mut changed = *c;
+    match quantity {
+        Quantity::PerimeterElasticity => changed.rows_mut(1, 3).copy_from(&(c.rows(1, 3) * (value / c[2]))),
+        ratio if ratio.is_ratio() => changed[ratio.coefficient()] = value * c[2],
+        other => changed[other.coefficient()] = value,
+    }
+    changed
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn changing_a_quantity_keeps_the_other_parameters() {
+        let c = Vector4::new(0.1, 8.0, 2.0, 6.0);
+        for quantity in Quantity::ALL {
+            let changed = with(&c, quantity, 5.0);
+            assert!((quantity.of(&changed) - 5.0).abs() < 1e-12);
+            for other in [Quantity::AreaElasticity, Quantity::PreferredPerimeter, Quantity::Chirality] {
+                let coupled = other == Quantity::Chirality && quantity == Quantity::ChiralCoefficient;
+                if other != quantity && !coupled {
+                    assert!((other.of(&changed) - other.of(&c)).abs() < 1e-12, "{quantity:?} {other:?}");
+                }
+            }
+        }
+    }
+}
