@@ -87,6 +87,11 @@ impl CoefficientSpace {
         Ok(held)
     }
 
+    /// The space of these coefficients alone.
+    pub(crate) fn pinned(c: &Vector4<f64>) -> Self {
+        Self { origin: *c, basis: DMatrix::zeros(4, 0), at_least: Vec::new(), priors: Vec::new() }
+    }
+
     /// Number of free directions.
     pub fn dimension(&self) -> usize {
         self.basis.ncols()

@@ -78,12 +78,6 @@ impl Sampling {
         }
     }
 
-    /// The cell that weighs most at each grid point; cell 0 where there is none.
-    pub fn owners(&self) -> Vec<usize> {
-        let heaviest = |row| self.entries(row).max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |entry| entry.0);
-        (0..self.filled.len()).map(heaviest).collect()
-    }
-
     /// Grid points whose window is filled by trusted cells.
     pub fn filled(&self) -> &[bool] {
         &self.filled

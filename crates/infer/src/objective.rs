@@ -184,8 +184,12 @@ impl Objective<'_> {
                     .residuals(frame, &nudged, &coefficients)
                     .map(|(datum, rest)| (datum, rest, free_columns(nudged.columns(), self.space, datum)))
                     .collect();
+                let mut jacobian = nudged.jacobian(self.terms, &coefficients);
+                if !frame.is_free() {
+                    jacobian = jacobian.only(|cell| !frame.is_held(cell));
+                }
                 Linearisation::new(&Local {
-                    jacobian: &nudged.jacobian(self.terms, &coefficients),
+                    jacobian: &jacobian,
                     rows: &rows,
                     nudges,
                     free: self.space.dimension(),

@@ -19,8 +19,8 @@ pub struct Observation {
     pub largest_area: f64,
     /// Whether the model can say what a velocity should be.
     used: Vec<bool>,
-    /// The cell to which a velocity belongs most.
-    owners: Vec<usize>,
+    /// Cells without a nudge; empty if all have one.
+    held: Vec<bool>,
 }
 
 /// How velocities were measured.
@@ -80,17 +80,34 @@ impl Observation {
         let tessellation =
             Tessellation::new(&positions, domain).map_err(|source| Error::Geometry { frame, source })?;
         let visibility = FieldOfView::new(&tessellation, &positions, largest_area).visibility().to_vec();
-        let (used, owners) = match &velocities {
-            Velocities::OfCells(_) => {
-                let counted = visibility.iter().map(|v| *v == Visibility::Counted);
-                (counted.collect(), (0..positions.len()).collect())
-            }
+        let used = match &velocities {
+            Velocities::OfCells(_) => visibility.iter().map(|v| *v == Visibility::Counted).collect(),
             Velocities::OnGrid(flow) => {
-                let sampling = Sampling::new(flow, &tessellation, &positions, &visibility);
-                (sampling.filled().to_vec(), sampling.owners())
+                Sampling::new(flow, &tessellation, &positions, &visibility).filled().to_vec()
             }
         };
-        Ok(Self { positions, velocities, tessellation, visibility, largest_area, used, owners })
+        Ok(Self { positions, velocities, tessellation, visibility, largest_area, used, held: Vec::new() })
+    }
+
+    /// Some cells of a tissue, cut out, with the velocities that are to be explained.
+    pub(crate) fn cut(
+        positions: Vec<Vector<f64>>,
+        targets: Vec<Option<Vector<f64>>>,
+        held: Vec<bool>,
+    ) -> Result<Self, Error> {
+        let cells = positions.len();
+        let whole = Self::new(0, positions, targets, Domain::Open, f64::INFINITY)?;
+        Ok(Self { used: vec![true; cells], held, ..whole })
+    }
+
+    /// Whether a cell has no nudge.
+    pub(crate) fn is_held(&self, cell: usize) -> bool {
+        self.held.get(cell).copied().unwrap_or(false)
+    }
+
+    /// Whether all cells have a nudge.
+    pub(crate) fn is_free(&self) -> bool {
+        self.held.is_empty()
     }
 
     /// The velocity to be explained, of a cell or at a grid point: measured, and within reach of the model.
@@ -109,11 +126,6 @@ impl Observation {
             Velocities::OfCells(_) => self.positions[datum],
             Velocities::OnGrid(flow) => flow.grid.centre(datum),
         }
-    }
-
-    /// The cell to which a velocity belongs: its own, or the one that weighs most at the grid point.
-    pub(crate) fn owner(&self, datum: usize) -> usize {
-        self.owners[datum]
     }
 
     /// What would be measured of cells that are at `positions`: nothing but the cells' velocities, or their averages

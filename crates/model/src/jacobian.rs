@@ -41,6 +41,19 @@ impl BlockMatrix {
             .collect()
     }
 
+    /// The matrix with some of its block columns only.
+    pub fn only(&self, kept: impl Fn(usize) -> bool) -> Self {
+        let mut matrix = Self { row_start: vec![0], ..Self::default() };
+        for row in 0..self.rows() {
+            for (column, block) in self.row(row).filter(|(column, _)| kept(*column)) {
+                matrix.column.push(column as u32);
+                matrix.block.push(*block);
+            }
+            matrix.row_start.push(matrix.column.len());
+        }
+        matrix
+    }
+
     /// The dense matrix, 2N × 2N row-major, in the order x₀, y₀, x₁, y₁, …
     pub fn to_dense(&self) -> Vec<f64> {
         let n = 2 * self.rows();

@@ -6,6 +6,7 @@
 
 mod continuation;
 mod descent;
+mod patch;
 mod starts;
 mod transitions;
 

@@ -7,16 +7,18 @@
 //! δ = −H⁻¹ g (ℓ + m) / (gᵀH⁻¹g)       at a cost of  (ℓ + m)² / (gᵀH⁻¹g)
 //! ```
 //!
-//! Sides are tried in the order of that cost. Each trial starts beyond its flip and descends; it counts if the objective
-//! around the four cells is less afterwards. Sides far from each other are tried together.
+//! Each side whose flip is cheap is tried in a patch of its own, the coefficients held: the trial starts beyond the flip
+//! and descends. Those flips that make the objective less and do not touch each other are made together, and the whole
+//! descends again.
 
+use super::patch::{Patch, Whole};
 use super::{Found, Watch, optimise};
-use crate::Error;
 use crate::objective::Objective;
+use crate::{CoefficientSpace, Error, Observation};
 use rayon::prelude::*;
 use std::collections::HashSet;
 use std::ops::ControlFlow;
-use voronudge_geometry::{Side, Tessellation};
+use voronudge_geometry::Side;
 
 /// Largest cost of a flip that is tried, in units of σ_v²: a change of −2 log likelihood.
 const LARGEST_COST: f64 = 30.0;
@@ -25,31 +27,27 @@ const LARGEST_COST: f64 = 30.0;
 const MARGIN: f64 = 0.02;
 
 /// Steps of a trial.
-const TRIAL_STEPS: u64 = 8;
-
-/// Rings of cells around a flip in which a trial is judged.
-const ZONE: usize = 2;
-
-/// Batches of flips tried at once, whatever the number of threads.
-const BATCHES: usize = 8;
-
-/// Batches tried at most: a tissue that the model does not describe has flips without end.
-const MOST_GROUPS: usize = 60;
+const TRIAL_STEPS: u64 = 10;
 
 /// Least gain that counts, in units of σ_v².
 const GAIN: f64 = 0.02;
 
-/// Right-hand sides solved at once.
-const SOLVED_AT_ONCE: usize = 64;
+/// Rounds of trials at most.
+const MOST_ROUNDS: u64 = 12;
 
-/// A side that could flip.
-struct Candidate {
-    key: (usize, [usize; 4]),
-    cost: f64,
-    /// Displacement of all cells of its frame.
-    displacement: Vec<f64>,
-    /// Cells around it.
-    zone: Vec<usize>,
+/// Trials between two reports of progress, whatever the number of threads.
+const AT_ONCE: usize = 256;
+
+/// A side, by the frame and its four cells.
+type Key = (usize, [usize; 4]);
+
+/// A flip that was tried.
+struct Trial {
+    key: Key,
+    /// Decrease of the objective.
+    gain: f64,
+    /// Cells that were free, with their new nudges.
+    moved: Vec<(usize, [f64; 2])>,
 }
 
 /// Flips contacts as long as that makes the objective less.
@@ -59,141 +57,74 @@ pub(super) fn flip(
     max_steps: u64,
     watch: &mut Watch<'_>,
 ) -> Result<(), Error> {
-    let unit = objective.levels.velocity.powi(2);
-    let mut failed: HashSet<(usize, [usize; 4])> = HashSet::new();
-    for group in 0..MOST_GROUPS {
-        watch.tell("contacts", (group as u64, MOST_GROUPS as u64), found.value / objective.expected())?;
-        let mut waiting = candidates(objective, &found.parameters)?;
-        waiting.retain(|candidate| !failed.contains(&candidate.key));
-        if waiting.is_empty() {
+    let mut failed: HashSet<Key> = HashSet::new();
+    for _ in 0..MOST_ROUNDS {
+        let trials = trials(objective, found, &failed, watch)?;
+        if trials.is_empty() {
             break;
         }
-        let batches: Vec<Vec<Candidate>> =
-            (0..BATCHES).map(|_| apart(&mut waiting)).filter(|batch| !batch.is_empty()).collect();
-        let before = shares(objective, &found.parameters);
-        let trials = batches
-            .par_iter()
-            .map(|batch| trial(objective, &found.parameters, &before, batch))
-            .collect::<Result<Vec<_>, _>>()?;
-        found.transitions_tried += batches.iter().map(Vec::len).sum::<usize>();
-        let mut winners: Vec<(f64, &Candidate, &[f64])> = Vec::new();
-        for (batch, (parameters, gains)) in batches.iter().zip(&trials) {
-            let better = batch.iter().zip(gains).filter(|(_, gain)| **gain > GAIN * unit);
-            winners.extend(better.map(|(candidate, gain)| (*gain, candidate, parameters.as_slice())));
+        found.transitions_tried += trials.len();
+        failed.extend(trials.iter().map(|trial| trial.key));
+        let changed = adopt(objective, found, trials, max_steps)?;
+        found.trace.push(found.value);
+        failed.retain(|(frame, cells)| !cells.iter().any(|cell| changed.contains(&(*frame, *cell))));
+        if changed.is_empty() {
+            break;
         }
-        winners.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let made = adopt(objective, found, &winners, max_steps)?;
-        found.trace.push(found.value);
-        let touched: HashSet<(usize, usize)> = made
-            .iter()
-            .flat_map(|candidate| candidate.zone.iter().map(|cell| (candidate.key.0, *cell)))
-            .collect();
-        failed.extend(batches.iter().flatten().map(|candidate| candidate.key));
-        failed.retain(|(frame, cells)| !cells.iter().any(|cell| touched.contains(&(*frame, *cell))));
-    }
-    let mut silent = |_, _| ControlFlow::Continue(());
-    let polished = optimise(objective, found.parameters.clone(), max_steps, &mut silent)?;
-    found.steps += polished.steps;
-    if polished.value <= found.value {
-        found.parameters = polished.parameters;
-        found.value = polished.value;
-        found.status = polished.status;
-        found.trace.push(found.value);
     }
     Ok(())
 }
 
-/// Takes the nudges around the winners from their trials, as far as that is an improvement in all. Returns what was made.
-fn adopt<'c>(
+/// Makes the flips that gain and do not touch each other. Returns the cells that moved.
+fn adopt(
     objective: &Objective<'_>,
     found: &mut Found,
-    winners: &[(f64, &'c Candidate, &[f64])],
+    mut trials: Vec<Trial>,
     max_steps: u64,
-) -> Result<Vec<&'c Candidate>, Error> {
-    let offsets = offsets(objective);
-    // All winners that are apart; if they do not go together, the best one alone with all that its trial changed.
-    let mut together = found.parameters.clone();
-    let mut made: Vec<&Candidate> = Vec::new();
+) -> Result<HashSet<(usize, usize)>, Error> {
+    let least = GAIN * objective.levels.velocity.powi(2);
+    trials.retain(|trial| trial.gain > least);
+    trials.sort_by(|a, b| b.gain.total_cmp(&a.gain));
     let mut taken: HashSet<(usize, usize)> = HashSet::new();
-    for (_, candidate, parameters) in winners {
-        let frame = candidate.key.0;
-        if candidate.zone.iter().all(|cell| !taken.contains(&(frame, *cell))) {
-            for cell in &candidate.zone {
-                taken.insert((frame, *cell));
-                let at = offsets[frame] + 2 * cell;
-                together[at..at + 2].copy_from_slice(&parameters[at..at + 2]);
-            }
-            made.push(candidate);
+    trials.retain(|trial| {
+        let cells: Vec<_> = trial.moved.iter().map(|(cell, _)| (trial.key.0, *cell)).collect();
+        let apart = !cells.iter().any(|cell| taken.contains(cell));
+        if apart {
+            taken.extend(cells);
         }
-    }
-    let Some(best) = winners.first() else {
-        return Ok(Vec::new());
-    };
-    for (start, made) in [(together, made), (best.2.to_vec(), vec![best.1])] {
+        apart
+    });
+    let offsets = offsets(objective);
+    // If they do not go together, half of them may, and at last the best alone.
+    while !trials.is_empty() {
+        let mut start = found.parameters.clone();
+        for trial in &trials {
+            for (cell, nudge) in &trial.moved {
+                let at = offsets[trial.key.0] + 2 * cell;
+                start[at..at + 2].copy_from_slice(nudge);
+            }
+        }
         let mut silent = |_, _| ControlFlow::Continue(());
-        let optimum = optimise(objective, start, TRIAL_STEPS.min(max_steps), &mut silent)?;
+        let optimum = optimise(objective, start, max_steps, &mut silent)?;
         found.steps += optimum.steps;
         if optimum.value < found.value {
             found.parameters = optimum.parameters;
             found.value = optimum.value;
             found.status = optimum.status;
-            found.transitions_made += made.len();
-            return Ok(made);
+            found.transitions_made += trials.len();
+            let moved =
+                |trial: &Trial| trial.moved.iter().map(|(cell, _)| (trial.key.0, *cell)).collect::<Vec<_>>();
+            return Ok(trials.iter().flat_map(moved).collect());
         }
+        trials.truncate(trials.len() / 2);
     }
-    Ok(Vec::new())
-}
-
-/// Descends from beyond the flips of a batch; the gain of each within its zone.
-fn trial(
-    objective: &Objective<'_>,
-    from: &[f64],
-    before: &[Vec<f64>],
-    batch: &[Candidate],
-) -> Result<(Vec<f64>, Vec<f64>), Error> {
-    let offsets = offsets(objective);
-    let mut start = from.to_vec();
-    for candidate in batch {
-        let own = &mut start[offsets[candidate.key.0]..];
-        own.iter_mut().zip(&candidate.displacement).for_each(|(e, d)| *e += d);
-    }
-    let mut silent = |_, _| ControlFlow::Continue(());
-    let parameters = optimise(objective, start, TRIAL_STEPS, &mut silent)?.parameters;
-    let after = shares(objective, &parameters);
-    let gains = batch
-        .iter()
-        .map(|candidate| {
-            let frame = candidate.key.0;
-            candidate.zone.iter().map(|&cell| before[frame][cell] - after[frame][cell]).sum()
-        })
-        .collect();
-    Ok((parameters, gains))
-}
-
-/// Each cell's share of Φ, by frame.
-fn shares(objective: &Objective<'_>, parameters: &[f64]) -> Vec<Vec<f64>> {
-    let (free, nudges) = objective.split(parameters);
-    let coefficients = objective.space.coefficients(free);
-    let share = |(frame, nudges): (&crate::Observation, &&[f64])| {
-        let mut shares: Vec<f64> =
-            nudges.chunks_exact(2).map(|e| objective.spring() * (e[0] * e[0] + e[1] * e[1])).collect();
-        match objective.nudge(frame, nudges) {
-            Ok(nudged) => {
-                for (datum, rest) in objective.residuals(frame, &nudged, &coefficients) {
-                    shares[frame.owner(datum)] += rest.norm_squared();
-                }
-            }
-            Err(_) => shares.fill(f64::INFINITY),
-        }
-        shares
-    };
-    objective.frames.iter().zip(&nudges).map(share).collect()
+    Ok(HashSet::new())
 }
 
 /// Where the nudges of each frame begin.
 fn offsets(objective: &Objective<'_>) -> Vec<usize> {
     let mut next = objective.space.dimension();
-    let begin = |frame: &crate::Observation| {
+    let begin = |frame: &Observation| {
         let own = next;
         next += 2 * frame.positions.len();
         own
@@ -201,97 +132,81 @@ fn offsets(objective: &Objective<'_>) -> Vec<usize> {
     objective.frames.iter().map(begin).collect()
 }
 
-/// Takes candidates whose zones do not meet, cheapest first.
-fn apart(waiting: &mut Vec<Candidate>) -> Vec<Candidate> {
-    let mut taken: HashSet<(usize, usize)> = HashSet::new();
-    let (mut batch, mut rest) = (Vec::new(), Vec::new());
-    for candidate in waiting.drain(..) {
-        let frame = candidate.key.0;
-        if candidate.zone.iter().any(|cell| taken.contains(&(frame, *cell))) {
-            rest.push(candidate);
-        } else {
-            taken.extend(candidate.zone.iter().map(|cell| (frame, *cell)));
-            batch.push(candidate);
-        }
-    }
-    *waiting = rest;
-    batch
-}
-
-/// All sides whose flip is cheap enough, cheapest first.
-fn candidates(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Candidate>, Error> {
-    let equations = objective.linearise(at)?;
-    let (_, nudges) = objective.split(at);
-    let limit = LARGEST_COST * objective.levels.velocity.powi(2);
-    let spring = objective.spring();
+/// Tries every side whose flip is cheap and has not failed before.
+fn trials(
+    objective: &Objective<'_>,
+    found: &Found,
+    failed: &HashSet<Key>,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Trial>, Error> {
+    let (free, nudges) = objective.split(&found.parameters);
+    let pinned = CoefficientSpace::pinned(&objective.space.coefficients(free));
     let mut all = Vec::new();
     for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
         let nudged =
             objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
-        let factor = equations.frames[index].factor(spring)?;
-        // gᵀH⁻¹g ≤ g²/k bounds the cost from below.
-        let sides: Vec<Side> = sides(&nudged.tessellation, &nudged.positions)
-            .filter(|side| {
-                let steepness: f64 = side.gradient.iter().map(|g| g.norm_squared()).sum();
-                (side.length + MARGIN).powi(2) * spring <= limit * steepness
-            })
+        let whole = Whole { frame, nudges, nudged: &nudged };
+        let tessellation = &nudged.tessellation;
+        let sides: Vec<Side> = (0..tessellation.len())
+            .flat_map(|cell| tessellation.ring(cell).map(move |h| (cell, h)))
+            .filter(|(_, h)| *h < tessellation.twin(*h))
+            .filter_map(|(cell, h)| Side::new(tessellation, &nudged.positions, cell, h))
+            .filter(|side| may_be_cheap(objective, side) && !failed.contains(&(index, side.cells)))
             .collect();
-        let n = nudges.len();
-        let found: Vec<Vec<Candidate>> = sides
-            .par_chunks(SOLVED_AT_ONCE)
-            .map(|sides| {
-                let mut solved = vec![0.0; n * sides.len()];
-                for (column, side) in solved.chunks_exact_mut(n).zip(sides) {
-                    for (cell, g) in side.cells.iter().zip(side.gradient) {
-                        column[2 * cell] += g.x;
-                        column[2 * cell + 1] += g.y;
-                    }
-                }
-                factor.solve(&mut solved);
-                let candidate = |(side, column): (&Side, &[f64])| {
-                    let yields: f64 = (side.cells.iter().zip(side.gradient))
-                        .map(|(cell, g)| g.x * column[2 * cell] + g.y * column[2 * cell + 1])
-                        .sum();
-                    let target = side.length + MARGIN;
-                    let cost = target * target / yields;
-                    (cost <= limit).then(|| Candidate {
-                        key: (index, side.cells),
-                        cost,
-                        displacement: column.iter().map(|s| -s * target / yields).collect(),
-                        zone: zone(&nudged.tessellation, &side.cells),
-                    })
-                };
-                sides.iter().zip(solved.chunks_exact(n)).filter_map(candidate).collect()
-            })
-            .collect();
-        all.extend(found.into_iter().flatten());
+        for (done, chunk) in sides.chunks(AT_ONCE).enumerate() {
+            let progress = ((done * AT_ONCE) as u64, sides.len() as u64);
+            watch.tell("contacts", progress, found.value / objective.expected())?;
+            let tried = chunk
+                .par_iter()
+                .map(|side| trial(objective, &pinned, &whole, index, side))
+                .collect::<Result<Vec<_>, _>>()?;
+            all.extend(tried.into_iter().flatten());
+        }
     }
-    all.sort_by(|a, b| a.cost.total_cmp(&b.cost));
     Ok(all)
 }
 
-/// Each side once.
-fn sides(
-    tessellation: &Tessellation,
-    positions: &[voronudge_geometry::Vector<f64>],
-) -> impl Iterator<Item = Side> {
-    (0..tessellation.len())
-        .flat_map(|cell| tessellation.ring(cell).map(move |h| (cell, h)))
-        .filter(|(_, h)| *h < tessellation.twin(*h))
-        .filter_map(|(cell, h)| Side::new(tessellation, positions, cell, h))
+/// Whether a flip can cost little: `gᵀH⁻¹g ≤ g²/k` bounds its cost from below.
+fn may_be_cheap(objective: &Objective<'_>, side: &Side) -> bool {
+    let steepness: f64 = side.gradient.iter().map(|g| g.norm_squared()).sum();
+    let limit = LARGEST_COST * objective.levels.velocity.powi(2);
+    (side.length + MARGIN).powi(2) * objective.spring() <= limit * steepness
 }
 
-/// The cells within some rings of given ones, ascending.
-fn zone(tessellation: &Tessellation, cells: &[usize]) -> Vec<usize> {
-    let mut zone: Vec<usize> = cells.to_vec();
-    zone.sort_unstable();
-    zone.dedup();
-    for _ in 0..ZONE {
-        let further: Vec<usize> =
-            zone.iter().flat_map(|cell| tessellation.neighbours(*cell)).map(|cell| *cell as usize).collect();
-        zone.extend(further);
-        zone.sort_unstable();
-        zone.dedup();
+/// Descends from beyond the flip of a side; `None` if the flip costs too much.
+fn trial(
+    objective: &Objective<'_>,
+    pinned: &CoefficientSpace,
+    whole: &Whole<'_>,
+    frame: usize,
+    side: &Side,
+) -> Result<Option<Trial>, Error> {
+    let patch = Patch::new(whole, &side.cells)?;
+    let local = patch.objective(objective.terms, pinned, objective.levels);
+    let factor = local.linearise(&patch.nudges)?.frames[0].factor(local.spring())?;
+    let mut gradient = vec![0.0; patch.nudges.len()];
+    for (cell, g) in side.cells.iter().zip(side.gradient) {
+        if let Some(own) = patch.index(*cell) {
+            gradient[2 * own] += g.x;
+            gradient[2 * own + 1] += g.y;
+        }
     }
-    zone
+    let mut solved = gradient.clone();
+    factor.solve(&mut solved);
+    let yields: f64 = gradient.iter().zip(&solved).map(|(g, s)| g * s).sum();
+    let target = side.length + MARGIN;
+    let unit = objective.levels.velocity.powi(2);
+    if target * target > LARGEST_COST * unit * yields {
+        return Ok(None);
+    }
+    let before = local.value(&patch.nudges);
+    let start = patch.nudges.iter().zip(&solved).map(|(e, s)| e - s * target / yields).collect();
+    let mut silent = |_, _| ControlFlow::Continue(());
+    let optimum = optimise(&local, start, TRIAL_STEPS, &mut silent)?;
+    let nudge = |own: usize| [optimum.parameters[2 * own], optimum.parameters[2 * own + 1]];
+    Ok(Some(Trial {
+        key: (frame, side.cells),
+        gain: before - optimum.value,
+        moved: patch.free().map(|(cell, own)| (cell, nudge(own))).collect(),
+    }))
 }
