@@ -26,14 +26,7 @@ enum Command {
         only: Vec<check::Check>,
     },
     /// Run a statistical study and print its table.
-    Study {
-        /// Which study.
-        #[arg(value_enum)]
-        which: study::Study,
-        /// Number of seeds.
-        #[arg(long, default_value_t = 10)]
-        seeds: u64,
-    },
+    Study(study::Arguments),
     /// Make everything in fixtures/ from recorded seeds; twice gives the same bytes.
     Fixtures {
         /// Folder to write to.
@@ -49,7 +42,7 @@ fn main() -> ExitCode {
     let root = root();
     let outcome = match Arguments::parse().command {
         Command::Check { only } => check::run(&root, &only),
-        Command::Study { which, seeds } => study::run(which, seeds),
+        Command::Study(arguments) => study::run(&arguments),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),
     };
     match outcome {

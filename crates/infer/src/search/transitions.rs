@@ -29,6 +29,10 @@ const MARGIN: f64 = 0.02;
 /// Steps of a trial.
 const TRIAL_STEPS: u64 = 10;
 
+/// A trial is given up after so many steps if the last one gained less than this share of what it still lacks.
+const FIRST_STEPS: u64 = 3;
+const HOPE: f64 = 0.15;
+
 /// Least gain that counts, in units of σ_v².
 const GAIN: f64 = 0.02;
 
@@ -201,11 +205,20 @@ fn trial(
     }
     let before = local.value(&patch.nudges);
     let start = patch.nudges.iter().zip(&solved).map(|(e, s)| e - s * target / yields).collect();
-    let mut silent = |_, _| ControlFlow::Continue(());
-    let optimum = optimise(&local, start, TRIAL_STEPS, &mut silent)?;
+    let mut previous = f64::INFINITY;
+    let mut observer = |step: u64, value: f64| {
+        let hopeless = step >= FIRST_STEPS && previous - value < HOPE * (value - before);
+        previous = value;
+        if hopeless { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    };
+    let key = (frame, side.cells);
+    let optimum = match optimise(&local, start, TRIAL_STEPS, &mut observer) {
+        Err(Error::Interrupted) => return Ok(Some(Trial { key, gain: 0.0, moved: Vec::new() })),
+        other => other?,
+    };
     let nudge = |own: usize| [optimum.parameters[2 * own], optimum.parameters[2 * own + 1]];
     Ok(Some(Trial {
-        key: (frame, side.cells),
+        key,
         gain: before - optimum.value,
         moved: patch.free().map(|(cell, own)| (cell, nudge(own))).collect(),
     }))
