@@ -3,7 +3,8 @@
 use crate::least_squares::{self, residuals};
 use crate::objective::Objective;
 use crate::search::{Effort, Watch, search};
-use crate::{Error, Observation};
+use crate::{Error, Observation, Progress};
+use std::ops::ControlFlow;
 
 /// Blocks along each axis into which a single frame is cut.
 const BLOCKS: usize = 2;
@@ -26,48 +27,26 @@ pub(crate) fn cross_validate(
     whole: &Objective<'_>,
     watch: &mut Watch<'_>,
 ) -> Result<Option<[f64; 2]>, Error> {
-    let Objective { frames, terms, space, .. } = *whole;
+    let frames = whole.frames;
     let folds = if frames.len() >= 3 { Folds::Frames(frames.len()) } else { Folds::Blocks };
     let count = match folds {
         Folds::Frames(count) => count,
         Folds::Blocks => BLOCKS * BLOCKS,
     };
-    let mut errors = Vec::new();
-    for fold in 0..count {
-        let held_out: Vec<Vec<bool>> = frames
-            .iter()
-            .enumerate()
-            .map(|(index, frame)| match folds {
+    let folds: Vec<Vec<Vec<bool>>> = (0..count)
+        .map(|fold| {
+            let held_out = |(index, frame): (usize, &Observation)| match folds {
                 Folds::Frames(_) => vec![index == fold; frame.velocities.values().len()],
                 Folds::Blocks => in_block(frame, fold),
-            })
-            .collect();
-        let training: Vec<Observation> = frames
-            .iter()
-            .zip(&held_out)
-            .filter(|(_, out)| !out.iter().all(|out| *out))
-            .map(|(frame, out)| without(frame, out))
-            .collect();
-        let used: usize = training.iter().map(|frame| frame.targets().count()).sum();
-        if used < 2 * space.dimension() + 2 {
-            return Ok(None);
-        }
-        let naive = least_squares::fit(&training, terms, space)?;
-        let objective = Objective { frames: &training, ..*whole };
-        let found = search(&objective, &naive, &EFFORT, "cross-validation", watch)?;
-        let coefficients = space.coefficients(objective.split(&found.parameters).0);
-        let (mut error, mut total) = (0.0, 0.0);
-        for (frame, out) in frames.iter().zip(&held_out) {
-            let rests = residuals(frame, terms, coefficients.as_slice());
-            for ((_, v), (_, rest)) in frame.targets().zip(rests).filter(|((datum, _), _)| out[*datum]) {
-                error += rest.norm_squared();
-                total += v.norm_squared();
-            }
-        }
-        if total > 0.0 {
-            errors.push((error, total));
-        }
-    }
+            };
+            frames.iter().enumerate().map(held_out).collect()
+        })
+        .collect();
+    let tested = watch.each("cross-validation", &folds, 1.0, |held_out| test(whole, held_out))?;
+    let Some(tested) = tested.into_iter().collect::<Option<Vec<(f64, f64)>>>() else {
+        return Ok(None);
+    };
+    let errors: Vec<(f64, f64)> = tested.into_iter().filter(|(_, total)| *total > 0.0).collect();
     if errors.len() < 2 {
         return Ok(None);
     }
@@ -76,6 +55,35 @@ pub(crate) fn cross_validate(
     // Standard error of a ratio of sums over folds.
     let spread: f64 = errors.iter().map(|(error, weight)| (error - pooled * weight).powi(2)).sum();
     Ok(Some([pooled, (n / (n - 1.0) * spread).sqrt() / total]))
+}
+
+/// Fits without some velocities: the squared error on them and their sum of squares. `None` if too few are left.
+fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f64)>, Error> {
+    let Objective { frames, terms, space, .. } = *whole;
+    let training: Vec<Observation> = frames
+        .iter()
+        .zip(held_out)
+        .filter(|(_, out)| !out.iter().all(|out| *out))
+        .map(|(frame, out)| without(frame, out))
+        .collect();
+    let used: usize = training.iter().map(|frame| frame.targets().count()).sum();
+    if used < 2 * space.dimension() + 2 {
+        return Ok(None);
+    }
+    let naive = least_squares::fit(&training, terms, space)?;
+    let objective = Objective { frames: &training, ..*whole };
+    let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
+    let found = search(&objective, &naive, &EFFORT, "", &mut Watch { observe: &mut silent })?;
+    let coefficients = space.coefficients(objective.split(&found.parameters).0);
+    let (mut error, mut total) = (0.0, 0.0);
+    for (frame, out) in frames.iter().zip(held_out) {
+        let rests = residuals(frame, terms, coefficients.as_slice());
+        for ((_, v), (_, rest)) in frame.targets().zip(rests).filter(|((datum, _), _)| out[*datum]) {
+            error += rest.norm_squared();
+            total += v.norm_squared();
+        }
+    }
+    Ok(Some((error, total)))
 }
 
 /// Whether a cell is in one of the blocks between the quantiles of the coordinates of cells with a target.

@@ -64,11 +64,11 @@ pub(crate) const LARGEST_POSITION_NOISE: f64 = 0.15;
 pub(crate) const SMALLEST_VELOCITY_NOISE: f64 = 1e-3;
 
 /// The likelihood is first looked at on this many values of log k to either side, this far apart.
-const GRID: i32 = 4;
+const GRID: i32 = 2;
 const SPACING: f64 = 1.0;
 
 /// Precision of log k.
-const PRECISION: f64 = 1e-3;
+const PRECISION: f64 = 3e-3;
 
 /// The restricted likelihood of one linearised problem.
 pub(crate) struct Restricted<'a> {
@@ -79,7 +79,7 @@ pub(crate) struct Restricted<'a> {
 
 impl Restricted<'_> {
     /// The noise levels of greatest restricted likelihood near the present ones. They move by no more than the
-    /// linearisation is worth: a factor of about seven each.
+    /// linearisation is worth: a factor of about e each.
     pub fn most_likely(&self, present: NoiseLevels) -> Result<NoiseLevels, Error> {
         let centre = present.spring().ln();
         let grid: Vec<(f64, f64)> = (-GRID..=GRID)

@@ -10,6 +10,9 @@ use std::ops::ControlFlow;
 /// Rounds of estimating the noise levels before contacts are flipped, and after.
 const ROUNDS: [usize; 2] = [8, 3];
 
+/// Steps of the optimiser between two estimates.
+const STEPS_PER_ROUND: u64 = 8;
+
 /// Change of log σ that counts as none.
 const SETTLED: f64 = 0.01;
 
@@ -77,7 +80,9 @@ fn settle(
             + (next.velocity / objective.levels.velocity).ln().abs();
         objective.levels = next;
         let mut silent = |_, _| ControlFlow::Continue(());
-        let optimum = optimise(objective, found.parameters, effort.max_steps, &mut silent)?;
+        let settled = change < SETTLED || round + 1 == rounds;
+        let steps = if settled { effort.max_steps } else { STEPS_PER_ROUND.min(effort.max_steps) };
+        let optimum = optimise(objective, found.parameters, steps, &mut silent)?;
         found = Found {
             steps: found.steps + optimum.steps,
             parameters: optimum.parameters,
@@ -85,7 +90,7 @@ fn settle(
             status: optimum.status,
             ..found
         };
-        if change < SETTLED {
+        if settled {
             break;
         }
     }

@@ -16,7 +16,11 @@ use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
 use crate::objective::Objective;
 use crate::{Error, Progress, Status};
 use argmin::core::{Executor, TerminationReason, TerminationStatus};
+use rayon::prelude::*;
 use std::ops::ControlFlow;
+
+/// Tasks at once between two reports of progress, whatever the number of threads.
+const AT_ONCE: usize = 8;
 
 /// Relative decrease of the objective that counts as none.
 const TOLERANCE: f64 = 1e-5;
@@ -59,6 +63,22 @@ impl Watch<'_> {
             ControlFlow::Continue(()) => Ok(()),
             ControlFlow::Break(()) => Err(Error::Interrupted),
         }
+    }
+
+    /// Independent tasks in parallel, told of by their number done.
+    pub fn each<T: Sync, R: Send>(
+        &mut self,
+        stage: &str,
+        tasks: &[T],
+        objective: f64,
+        task: impl Fn(&T) -> Result<R, Error> + Sync,
+    ) -> Result<Vec<R>, Error> {
+        let mut results = Vec::with_capacity(tasks.len());
+        for chunk in tasks.chunks(AT_ONCE) {
+            self.tell(stage, (results.len() as u64, tasks.len() as u64), objective)?;
+            results.extend(chunk.par_iter().map(&task).collect::<Result<Vec<R>, Error>>()?);
+        }
+        Ok(results)
     }
 }
 

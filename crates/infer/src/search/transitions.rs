@@ -39,7 +39,12 @@ const GAIN: f64 = 0.02;
 /// Rounds of trials at most.
 const MOST_ROUNDS: u64 = 12;
 
-/// Trials between two reports of progress, whatever the number of threads.
+/// Mean gain of a trial, in units of σ_v², below which the search ends: so little says nothing about contacts, and a
+/// tissue that the model does not describe has thousands of such flips.
+const WORTHWHILE: f64 = 0.02;
+
+/// Trials at once, cheapest first, whatever the number of threads. Where so many are not worthwhile together, dearer ones
+/// are not tried.
 const AT_ONCE: usize = 256;
 
 /// A side, by the frame and its four cells.
@@ -67,12 +72,14 @@ pub(super) fn flip(
         if trials.is_empty() {
             break;
         }
+        let worthwhile = WORTHWHILE * trials.len() as f64 * objective.levels.velocity.powi(2);
         found.transitions_tried += trials.len();
         failed.extend(trials.iter().map(|trial| trial.key));
+        let before = found.value;
         let changed = adopt(objective, found, trials, max_steps)?;
         found.trace.push(found.value);
         failed.retain(|(frame, cells)| !cells.iter().any(|cell| changed.contains(&(*frame, *cell))));
-        if changed.is_empty() {
+        if before - found.value < worthwhile {
             break;
         }
     }
@@ -151,12 +158,13 @@ fn trials(
             objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
         let whole = Whole { frame, nudges, nudged: &nudged };
         let tessellation = &nudged.tessellation;
-        let sides: Vec<Side> = (0..tessellation.len())
+        let mut sides: Vec<Side> = (0..tessellation.len())
             .flat_map(|cell| tessellation.ring(cell).map(move |h| (cell, h)))
             .filter(|(_, h)| *h < tessellation.twin(*h))
             .filter_map(|(cell, h)| Side::new(tessellation, &nudged.positions, cell, h))
             .filter(|side| may_be_cheap(objective, side) && !failed.contains(&(index, side.cells)))
             .collect();
+        sides.sort_by(|a, b| least_cost(a).total_cmp(&least_cost(b)));
         for (done, chunk) in sides.chunks(AT_ONCE).enumerate() {
             let progress = ((done * AT_ONCE) as u64, sides.len() as u64);
             watch.tell("contacts", progress, found.value / objective.expected())?;
@@ -164,17 +172,27 @@ fn trials(
                 .par_iter()
                 .map(|side| trial(objective, &pinned, &whole, index, side))
                 .collect::<Result<Vec<_>, _>>()?;
-            all.extend(tried.into_iter().flatten());
+            let tried: Vec<Trial> = tried.into_iter().flatten().collect();
+            let gain: f64 = tried.iter().map(|trial| trial.gain.max(0.0)).sum();
+            let worthwhile = WORTHWHILE * tried.len() as f64 * objective.levels.velocity.powi(2);
+            all.extend(tried);
+            if gain < worthwhile {
+                break;
+            }
         }
     }
     Ok(all)
 }
 
-/// Whether a flip can cost little: `gᵀH⁻¹g ≤ g²/k` bounds its cost from below.
-fn may_be_cheap(objective: &Objective<'_>, side: &Side) -> bool {
+/// `gᵀH⁻¹g ≤ g²/k` bounds the cost of a flip from below; here in units of k.
+fn least_cost(side: &Side) -> f64 {
     let steepness: f64 = side.gradient.iter().map(|g| g.norm_squared()).sum();
-    let limit = LARGEST_COST * objective.levels.velocity.powi(2);
-    (side.length + MARGIN).powi(2) * objective.spring() <= limit * steepness
+    (side.length + MARGIN).powi(2) / steepness
+}
+
+/// Whether a flip can cost little.
+fn may_be_cheap(objective: &Objective<'_>, side: &Side) -> bool {
+    least_cost(side) * objective.spring() <= LARGEST_COST * objective.levels.velocity.powi(2)
 }
 
 /// Descends from beyond the flip of a side; `None` if the flip costs too much.

@@ -1,6 +1,6 @@
 //! Parametric bootstrap: what the same procedure makes of data that the fit itself could have made.
 
-use super::in_chunks;
+use crate::search::Watch;
 use crate::{
     CrossValidation, Error, Flow, Inference, Observation, Prior, Progress, Quantity, Request, Velocities,
     infer,
@@ -58,10 +58,8 @@ pub fn bootstrap(
 ) -> Result<Bootstrap, Error> {
     let numbers: Vec<u64> = (1..=replicates as u64).collect();
     let objective = result.objective / result.expected_objective;
-    let fitted =
-        in_chunks("bootstrap", &numbers, &mut crate::search::Watch { observe }, objective, |number| {
-            Ok(replicate(frames, request, result, *number).ok())
-        })?;
+    let refit = |number: &u64| Ok(replicate(frames, request, result, *number).ok());
+    let fitted = Watch { observe }.each("bootstrap", &numbers, objective, refit)?;
     let failed = fitted.iter().filter(|fit| fit.is_none()).count();
     Ok(Bootstrap { replicates: fitted.into_iter().flatten().collect(), failed })
 }

@@ -41,7 +41,7 @@ pub fn landscape(
     let places: Vec<[f64; 2]> = values[1].iter().flat_map(|y| values[0].iter().map(|x| [*x, *y])).collect();
     let mut watch = Watch { observe };
     let refitted =
-        point.each("landscape", &places, &mut watch, |at| point.refitted(&[(x, at[0]), (y, at[1])]))?;
+        watch.each("landscape", &places, point.level(), |at| point.refitted(&[(x, at[0]), (y, at[1])]))?;
     let slice = Slice::new(&point)?;
     // K_P first: the ratios are kept when it changes.
     let order = if y == Quantity::PerimeterElasticity { [1, 0] } else { [0, 1] };

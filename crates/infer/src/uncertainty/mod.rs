@@ -9,15 +9,11 @@ pub use landscape::{Landscape, landscape};
 pub use profile::{Profile, profile};
 
 use crate::objective::Objective;
-use crate::search::{Watch, optimise};
+use crate::search::optimise;
 use crate::{CoefficientSpace, Error, Inference, Observation, Quantity, Request};
 use nalgebra::Vector4;
-use rayon::prelude::*;
 use std::ops::ControlFlow;
 use voronudge_model::{Term, base_terms};
-
-/// Refits at once between two reports of progress, whatever the number of threads.
-const AT_ONCE: usize = 8;
 
 /// Steps of a refit from a neighbouring solution.
 const STEPS: u64 = 30;
@@ -97,31 +93,10 @@ impl<'a> Point<'a> {
         Ok((0..points).map(|k| low + (high - low) * k as f64 / (points - 1) as f64).collect())
     }
 
-    /// Refits many times in parallel, with progress.
-    fn each<T: Sync, R: Send>(
-        &self,
-        stage: &str,
-        tasks: &[T],
-        watch: &mut Watch<'_>,
-        task: impl Fn(&T) -> Result<R, Error> + Sync,
-    ) -> Result<Vec<R>, Error> {
-        in_chunks(stage, tasks, watch, self.result.objective / self.result.expected_objective, task)
+    /// Φ over its expected value, for progress.
+    fn level(&self) -> f64 {
+        self.result.objective / self.result.expected_objective
     }
-}
-
-fn in_chunks<T: Sync, R: Send>(
-    stage: &str,
-    tasks: &[T],
-    watch: &mut Watch<'_>,
-    objective: f64,
-    task: impl Fn(&T) -> Result<R, Error> + Sync,
-) -> Result<Vec<R>, Error> {
-    let mut results = Vec::with_capacity(tasks.len());
-    for chunk in tasks.chunks(AT_ONCE) {
-        watch.tell(stage, (results.len() as u64, tasks.len() as u64), objective)?;
-        results.extend(chunk.par_iter().map(&task).collect::<Result<Vec<R>, Error>>()?);
-    }
-    Ok(results)
 }
 
 /// Coefficients with one quantity changed and the other parameters kept.

@@ -33,7 +33,7 @@ pub fn profile(
     let values = point.range(quantity, points)?;
     let mut watch = Watch { observe };
     let heights =
-        point.each("profile", &values, &mut watch, |value| point.refitted(&[(quantity, *value)]))?;
+        watch.each("profile", &values, point.level(), |value| point.refitted(&[(quantity, *value)]))?;
     let best = point.result.objective / point.result.excess();
     let least = heights.iter().copied().fold(best, f64::min);
     let mut curve: Vec<(f64, f64)> = values.into_iter().zip(heights.iter().map(|h| h - least)).collect();
