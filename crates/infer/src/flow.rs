@@ -217,3 +217,93 @@ impl Sampling {
         matrix
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::{COEFFICIENTS, cells};
+    use voronudge_model::{Model, base_terms, jacobian, velocities};
+
+    fn windows() -> [Window; 2] {
+        [Window::Square, Window::Gaussian { width: 0.5 }]
+    }
+
+    /// ∂v_g/∂r against central differences of what is measured.
+    #[test]
+    fn jacobians_are_those_of_the_averages() {
+        let (positions, domain) = cells();
+        let terms = base_terms(1.0);
+        let model = Model::with_coefficients(&terms, &COEFFICIENTS);
+        let tessellation = Tessellation::new(&positions, domain).unwrap();
+        let visibility = vec![Visibility::Counted; positions.len()];
+        for window in windows() {
+            let grid = Grid::new([-0.7, 0.4], [0.9, 1.1], [6, 5]).unwrap();
+            let flow = Flow { grid, velocities: vec![None; 30], window };
+            let average = |positions: &[Vector<f64>]| {
+                let sampling = Sampling::new(&flow, &tessellation, positions, &visibility);
+                sampling.average(&velocities(&tessellation, positions, &model))
+            };
+            let sampling = Sampling::new(&flow, &tessellation, &positions, &visibility);
+            assert!(sampling.filled().iter().all(|filled| *filled));
+            let v = velocities(&tessellation, &positions, &model);
+            let exact = sampling.jacobian(&v, &jacobian(&tessellation, &positions, &model));
+            let scale = exact.block.iter().flatten().fold(0.0, |max: f64, b| max.max(b.abs()));
+            for cell in 0..positions.len() {
+                for axis in 0..2 {
+                    let at = |sign: f64| {
+                        let mut moved = positions.clone();
+                        moved[cell][axis] += sign * 1e-5;
+                        average(&moved)
+                    };
+                    let (above, below) = (at(1.0), at(-1.0));
+                    for datum in 0..30 {
+                        let difference = (above[datum] - below[datum]) / 2e-5;
+                        let block =
+                            exact.row(datum).find(|(column, _)| *column == cell).map(|(_, block)| *block);
+                        let block = block.unwrap_or([0.0; 4]);
+                        let found = Vector::new(block[axis], block[2 + axis]);
+                        // The cut of a Gaussian window leaves steps of 3e-4 of a weight.
+                        let tolerance = if window == Window::Square { 1e-7 } else { 2e-6 };
+                        assert!((difference - found).norm() < tolerance * scale, "{window:?} {datum} {cell}");
+                    }
+                }
+            }
+        }
+    }
+
+    /// A field that is the same for all cells is the same at every grid point, also across the boundary.
+    #[test]
+    fn averages_keep_a_uniform_field() {
+        let (positions, domain) = cells();
+        let tessellation = Tessellation::new(&positions, domain).unwrap();
+        let visibility = vec![Visibility::Counted; positions.len()];
+        for window in windows() {
+            let grid = Grid::new([-1.0, -2.0], [0.5, 0.7], [15, 14]).unwrap();
+            let flow = Flow { grid, velocities: vec![None; 210], window };
+            let sampling = Sampling::new(&flow, &tessellation, &positions, &visibility);
+            let uniform = vec![Vector::new(0.3, -2.0); positions.len()];
+            let worst =
+                sampling.average(&uniform).iter().map(|v| (v - uniform[0]).norm()).fold(0.0, f64::max);
+            assert!(worst < 1e-12, "{worst:e}");
+        }
+    }
+
+    /// Grid points that no trusted cells fill take no part.
+    #[test]
+    fn an_open_field_leaves_out_the_rim() {
+        let (positions, _) = cells();
+        let grid = Grid::new([-3.0, -3.0], [1.0, 1.0], [12, 12]).unwrap();
+        for window in windows() {
+            let flow = Flow { grid, velocities: vec![Some(Vector::new(1.0, 0.0)); 144], window };
+            let frame = crate::Observation::new(
+                0,
+                positions.clone(),
+                crate::Velocities::OnGrid(flow),
+                Domain::Open,
+                3.0,
+            );
+            let targets = frame.unwrap().targets().count();
+            assert!(targets < 20, "{window:?} {targets}");
+        }
+    }
+}

@@ -31,8 +31,12 @@ mod quadratic;
 mod quantity;
 mod request;
 mod result;
+#[cfg(test)]
+mod sample;
 mod scale;
 mod search;
+#[cfg(test)]
+mod tests;
 mod uncertainty;
 
 pub use coefficients::CoefficientSpace;

@@ -165,3 +165,68 @@ impl CostFunction for &Restricted<'_> {
         Ok(self.criterion(*log_k)?)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::objective::Objective;
+    use crate::{CoefficientSpace, Constraints};
+    use voronudge_model::base_terms;
+
+    /// −2 log L with dense matrices, from the definition: the likelihood of the data projected on what no coefficient
+    /// can explain.
+    #[test]
+    fn the_criterion_is_that_of_the_dense_form() {
+        let frames = [crate::sample::observation(0.03, 0.05, 1)];
+        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+        let terms = base_terms(1.0);
+        let levels = NoiseLevels { position: 0.03, velocity: 0.05 };
+        let objective = Objective { frames: &frames, terms: &terms, space: &space, levels };
+        let mut at = vec![0.1, 3.9, 1.0, 1.6];
+        at.extend((0..72).map(|k| 0.01 * f64::from(k).sin()));
+        let equations = objective.linearise(&at).unwrap();
+        let (free, nudges) = objective.split(&at);
+        let nudged = objective.nudge(&frames[0], nudges[0]).unwrap();
+        let c = space.coefficients(free);
+        let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(&terms, &c).to_dense());
+        let x = DMatrix::from_fn(72, 4, |row, term| nudged.columns()[term][row / 2][row % 2]);
+        let residual: Vec<f64> =
+            objective.residuals(&frames[0], &nudged, &c).flat_map(|(_, rest)| [rest.x, rest.y]).collect();
+        let y = DVector::from_column_slice(&residual) + &j * DVector::from_column_slice(nudges[0]);
+        for known in [
+            KnownNoise::default(),
+            KnownNoise { position: Some(0.02), velocity: None },
+            KnownNoise { position: None, velocity: Some(0.07) },
+        ] {
+            let restricted = Restricted { equations: &equations, components: 72.0, known };
+            let dense = |log_k: f64| {
+                let w = DMatrix::identity(72, 72) + &j * j.transpose() / log_k.exp();
+                let inverse = w.clone().try_inverse().unwrap();
+                let information = x.transpose() * &inverse * &x;
+                let beta = information.clone().try_inverse().unwrap() * x.transpose() * &inverse * &y;
+                let rest = &y - &x * beta;
+                let misfit = (rest.transpose() * &inverse * &rest).sum();
+                let log_det =
+                    |m: &DMatrix<f64>| m.clone().symmetric_eigen().eigenvalues.map(|e| e.ln()).sum();
+                let variance = match known {
+                    KnownNoise { velocity: Some(v), .. } => v * v,
+                    KnownNoise { position: Some(r), .. } => r * r * log_k.exp(),
+                    _ => misfit / 68.0,
+                };
+                68.0 * variance.ln() + log_det(&w) + log_det(&information) + misfit / variance
+            };
+            for log_k in [-3.0, 0.0, 2.5] {
+                let (sparse, dense) = (restricted.criterion(log_k).unwrap(), dense(log_k));
+                assert!((sparse - dense).abs() < 1e-8 * dense.abs().max(1.0), "{sparse} {dense}");
+            }
+            // One call moves by a limited step.
+            let found = (0..12).fold(levels, |levels, _| restricted.most_likely(levels).unwrap());
+            let least = restricted.criterion(found.spring().ln()).unwrap();
+            for aside in [-0.1, 0.1] {
+                assert!(restricted.criterion(found.spring().ln() + aside).unwrap() > least - 1e-6);
+            }
+            assert!(known.position.is_none_or(|r| r == found.position));
+            assert!(known.velocity.is_none_or(|v| v == found.velocity));
+        }
+    }
+}

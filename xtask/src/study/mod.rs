@@ -3,7 +3,7 @@
 mod nada;
 mod noise;
 mod recovery;
-mod snapshot;
+mod seeds;
 
 use crate::Outcome;
 use clap::{Args, ValueEnum};

@@ -3,13 +3,14 @@
 mod figures;
 mod table;
 
-use super::snapshot::{Noise, Snapshot, on_one_core_each};
+use super::seeds::on_one_core_each;
 use crate::Outcome;
+use claims::{Noise, Tissue};
 use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use voronudge_infer::{
-    CrossValidation, Inference, KnownNoise, Loss, Method, Progress, Quantity, Request, infer,
+    CrossValidation, Inference, KnownNoise, Loss, Method, Observation, Progress, Quantity, Request, infer,
 };
 
 const POSITION_NOISE: [f64; 5] = [0.0, 0.01, 0.02, 0.05, 0.1];
@@ -20,9 +21,9 @@ const CELLS: [usize; 2] = [100, 400];
 const LEAST_POSITION_NOISE: f64 = 0.005;
 
 /// Steps of the first-order descent.
-const DESCENT_STEPS: u64 = 2000;
+const DESCENT_STEPS: u64 = 1000;
 
-/// One method on one snapshot.
+/// One method on one tissue.
 #[derive(Clone, Copy)]
 struct Outcomes {
     /// Relative errors of K_P α and P_0.
@@ -40,7 +41,7 @@ struct Outcomes {
     seconds: f64,
 }
 
-/// All methods on one snapshot.
+/// All methods on one tissue.
 struct Row {
     edges_before: usize,
     sides_before: usize,
@@ -79,21 +80,21 @@ pub fn run(seeds: u64, cells: Option<usize>, figures: Option<&Path>) -> Outcome 
 }
 
 fn row(cells: usize, noise: Noise, seed: u64) -> Result<Row, Box<dyn std::error::Error>> {
-    let snapshot = Snapshot::new(cells, seed, noise)?;
+    let tissue = Tissue::new(cells, seed)?;
+    let measured = tissue.measured(noise, seed)?;
     let known = KnownNoise {
         position: Some(noise.position.max(LEAST_POSITION_NOISE)),
         velocity: Some(noise.velocity),
     };
-    let search = Request { cross_validation: CrossValidation::Skipped, ..snapshot.request(known) };
+    let search = Request { cross_validation: CrossValidation::Skipped, ..tissue.request(known) };
     let descent =
         Request { method: Method::Descent { max_steps: DESCENT_STEPS, loss: Loss::Norms }, ..search.clone() };
     let begun = Instant::now();
-    let paper =
-        infer(std::slice::from_ref(&snapshot.measured), &descent, &mut |_| ControlFlow::Continue(()))?;
+    let paper = infer(std::slice::from_ref(&measured), &descent, &mut |_| ControlFlow::Continue(()))?;
     let paper_seconds = begun.elapsed().as_secs_f64();
     let goal = paper.objective / paper.expected_objective;
     let (begun, mut reached) = (Instant::now(), None);
-    let ours = infer(std::slice::from_ref(&snapshot.measured), &search, &mut |progress: Progress<'_>| {
+    let ours = infer(std::slice::from_ref(&measured), &search, &mut |progress: Progress<'_>| {
         // During the continuation the objective is told with stiffer springs, so that it is never too small.
         if progress.objective <= goal && reached.is_none() {
             reached = Some(begun.elapsed().as_secs_f64());
@@ -101,14 +102,14 @@ fn row(cells: usize, noise: Noise, seed: u64) -> Result<Row, Box<dyn std::error:
         ControlFlow::Continue(())
     })?;
     let seconds = begun.elapsed().as_secs_f64();
-    let sides = |tessellation| snapshot.lost_sides(tessellation, noise.position.max(0.01));
-    let naive = naive(&snapshot, &ours, noise);
+    let sides = |tessellation| tissue.lost_sides(tessellation, noise.position.max(0.01));
+    let naive = naive(&tissue, &measured, &ours, noise);
     Ok(Row {
-        edges_before: snapshot.wrong_edges(&snapshot.measured.tessellation),
-        sides_before: sides(&snapshot.measured.tessellation),
+        edges_before: tissue.wrong_edges(&measured.tessellation),
+        sides_before: sides(&measured.tessellation),
         naive,
-        paper: outcomes(&snapshot, &paper, noise, paper_seconds),
-        ours: outcomes(&snapshot, &ours, noise, seconds),
+        paper: outcomes(&tissue, &paper, noise, paper_seconds),
+        ours: outcomes(&tissue, &ours, noise, seconds),
         seconds_to_paper: match reached {
             Some(reached) => reached,
             None if ours.objective <= paper.objective => seconds,
@@ -117,19 +118,19 @@ fn row(cells: usize, noise: Noise, seed: u64) -> Result<Row, Box<dyn std::error:
     })
 }
 
-fn outcomes(snapshot: &Snapshot, fit: &Inference, noise: Noise, seconds: f64) -> Outcomes {
+fn outcomes(tissue: &Tissue, fit: &Inference, noise: Noise, seconds: f64) -> Outcomes {
     let (chiral, perimeter) = (Quantity::ChiralCoefficient, Quantity::PreferredPerimeter);
     let estimate = |quantity| fit.parameters.get(quantity);
-    let error = |quantity| (estimate(quantity).value / snapshot.truth(quantity) - 1.0).abs();
-    let covers = |quantity| estimate(quantity).covers(snapshot.truth(quantity));
+    let error = |quantity| (estimate(quantity).value / tissue.truth(quantity) - 1.0).abs();
+    let covers = |quantity| estimate(quantity).covers(tissue.truth(quantity));
     Outcomes {
         chiral: error(chiral),
         perimeter: error(perimeter),
         covered: Some([covers(chiral), covers(perimeter)]),
-        deviation: (estimate(chiral).value - snapshot.truth(chiral)).abs() / estimate(chiral).standard_error,
-        wrong_edges: snapshot.wrong_edges(&fit.frames[0].tessellation),
-        lost_sides: snapshot.lost_sides(&fit.frames[0].tessellation, noise.position.max(0.01)),
-        position_error: snapshot.position_error(&fit.frames[0].nudged_positions),
+        deviation: (estimate(chiral).value - tissue.truth(chiral)).abs() / estimate(chiral).standard_error,
+        wrong_edges: tissue.wrong_edges(&fit.frames[0].tessellation),
+        lost_sides: tissue.lost_sides(&fit.frames[0].tessellation, noise.position.max(0.01)),
+        position_error: tissue.position_error(&fit.frames[0].nudged_positions),
         objective: fit.objective / fit.expected_objective,
         flagged: !fit.doubts.is_empty(),
         seconds,
@@ -137,17 +138,17 @@ fn outcomes(snapshot: &Snapshot, fit: &Inference, noise: Noise, seconds: f64) ->
 }
 
 /// Least squares at the measured positions, which every fit reports.
-fn naive(snapshot: &Snapshot, fit: &Inference, noise: Noise) -> Outcomes {
+fn naive(tissue: &Tissue, measured: &Observation, fit: &Inference, noise: Noise) -> Outcomes {
     let naive = &fit.naive;
     let chiral = naive.perimeter_elasticity * naive.chirality;
     Outcomes {
-        chiral: (chiral / snapshot.truth(Quantity::ChiralCoefficient) - 1.0).abs(),
-        perimeter: (naive.preferred_perimeter / snapshot.truth(Quantity::PreferredPerimeter) - 1.0).abs(),
+        chiral: (chiral / tissue.truth(Quantity::ChiralCoefficient) - 1.0).abs(),
+        perimeter: (naive.preferred_perimeter / tissue.truth(Quantity::PreferredPerimeter) - 1.0).abs(),
         covered: None,
         deviation: f64::NAN,
-        wrong_edges: snapshot.wrong_edges(&snapshot.measured.tessellation),
-        lost_sides: snapshot.lost_sides(&snapshot.measured.tessellation, noise.position.max(0.01)),
-        position_error: snapshot.position_error(&snapshot.measured.positions),
+        wrong_edges: tissue.wrong_edges(&measured.tessellation),
+        lost_sides: tissue.lost_sides(&measured.tessellation, noise.position.max(0.01)),
+        position_error: tissue.position_error(&measured.positions),
         objective: f64::NAN,
         flagged: false,
         seconds: f64::NAN,

@@ -1,7 +1,8 @@
 //! Noise levels from one snapshot by restricted maximum likelihood, and whether intervals cover.
 
-use super::snapshot::{Noise, Snapshot, on_one_core_each, quartiles};
+use super::seeds::{on_one_core_each, quartiles};
 use crate::Outcome;
+use claims::{Noise, Tissue};
 use std::ops::ControlFlow;
 use voronudge_infer::{CrossValidation, KnownNoise, Quantity, Request, infer};
 
@@ -14,13 +15,14 @@ pub fn levels(seeds: u64) -> Outcome {
         for velocity in [0.02, 0.05, 0.1] {
             let noise = Noise { position, velocity };
             let rows = on_one_core_each(seeds, |seed| {
-                let snapshot = Snapshot::new(CELLS, seed, noise)?;
+                let tissue = Tissue::new(CELLS, seed)?;
                 let request = Request {
                     cross_validation: CrossValidation::Skipped,
-                    ..snapshot.request(KnownNoise::default())
+                    ..tissue.request(KnownNoise::default())
                 };
                 let begun = std::time::Instant::now();
-                let fit = infer(&[snapshot.measured], &request, &mut |_| ControlFlow::Continue(()))?;
+                let fit =
+                    infer(&[tissue.measured(noise, seed)?], &request, &mut |_| ControlFlow::Continue(()))?;
                 let left = 2.0 * CELLS as f64 - fit.degrees_of_freedom - 3.0;
                 Ok([
                     fit.noise.position / position,
@@ -55,16 +57,15 @@ pub fn coverage(seeds: u64) -> Outcome {
         let given = KnownNoise { position: Some(noise.position), velocity: Some(noise.velocity) };
         for (levels, known) in [("estimated", KnownNoise::default()), ("given", given)] {
             let covered = on_one_core_each(seeds, |seed| {
-                let snapshot = Snapshot::new(CELLS, seed, noise)?;
-                let mut request = snapshot.request(known);
+                let tissue = Tissue::new(CELLS, seed)?;
+                let mut request = tissue.request(known);
                 request.cross_validation = CrossValidation::Skipped;
                 if !held {
                     request.constraints.fixed.clear();
                 }
-                let frames = std::slice::from_ref(&snapshot.measured);
-                let fit = infer(frames, &request, &mut |_| ControlFlow::Continue(()))?;
-                Ok(Quantity::ALL
-                    .map(|quantity| fit.parameters.get(quantity).covers(snapshot.truth(quantity))))
+                let frames = [tissue.measured(noise, seed)?];
+                let fit = infer(&frames, &request, &mut |_| ControlFlow::Continue(()))?;
+                Ok(Quantity::ALL.map(|quantity| fit.parameters.get(quantity).covers(tissue.truth(quantity))))
             })?;
             let share = |quantity: Quantity| {
                 let index = Quantity::ALL.iter().position(|q| *q == quantity).unwrap_or(0);

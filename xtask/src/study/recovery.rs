@@ -1,8 +1,8 @@
 //! How well K_P α and P_0 are recovered from one snapshot (N = 100, K_A 0.1, K_P 1, P_0 4, α 3.4) whose positions err by
 //! 5 % of the cell size and whose velocities by 2 % of their root mean square, per component.
 
-use super::snapshot::{Noise, Snapshot, TRUTH};
 use crate::Outcome;
+use claims::{Noise, TRUTH, Tissue};
 use statrs::function::erf::erf;
 use std::ops::ControlFlow;
 use voronudge_infer::{CrossValidation, KnownNoise, Request, infer};
@@ -45,26 +45,26 @@ fn table(case: &Case, seeds: u64) -> Outcome {
     let (mut chiral, mut perimeter, mut covered, mut naive, mut expected) = (0, 0, [0, 0], [0, 0], 0.0);
     for seed in 0..seeds {
         let noise = Noise { position: POSITION_NOISE, velocity: VELOCITY_NOISE };
-        let snapshot = Snapshot::new(CELLS, seed, noise)?;
-        let rms = snapshot.rms;
+        let tissue = Tissue::new(CELLS, seed)?;
+        let measured = tissue.measured(noise, seed)?;
+        let exact = tissue.measured(Noise { position: 0.0, velocity: 0.0 }, seed)?;
+        let rms = tissue.rms;
         let given = KnownNoise { position: Some(POSITION_NOISE), velocity: Some(VELOCITY_NOISE) };
         let known = if case.noise == Known::Given { given } else { KnownNoise::default() };
-        let mut request = Request { cross_validation: CrossValidation::Skipped, ..snapshot.request(known) };
+        let mut request = Request { cross_validation: CrossValidation::Skipped, ..tissue.request(known) };
         if case.area_elasticity == Known::Estimated {
             request.constraints.fixed.clear();
         }
         let begun = std::time::Instant::now();
-        let result =
-            infer(std::slice::from_ref(&snapshot.measured), &request, &mut |_| ControlFlow::Continue(()))?;
+        let result = infer(std::slice::from_ref(&measured), &request, &mut |_| ControlFlow::Continue(()))?;
         let seconds = begun.elapsed().as_secs_f64();
         // The information in the data at the true positions bounds the error of any unbiased estimate.
-        let bound =
-            infer(std::slice::from_ref(&snapshot.exact), &Request { noise: given, ..request }, &mut |_| {
-                ControlFlow::Continue(())
-            })?
-            .parameters
-            .preferred_perimeter
-            .standard_error;
+        let bound = infer(std::slice::from_ref(&exact), &Request { noise: given, ..request }, &mut |_| {
+            ControlFlow::Continue(())
+        })?
+        .parameters
+        .preferred_perimeter
+        .standard_error;
         expected += erf(0.02 * TRUTH.preferred_perimeter / (bound * 2f64.sqrt()));
         let (c, p) = (result.parameters.chiral_coefficient, result.parameters.preferred_perimeter);
         let (k_p_alpha, half) = (c.value * rms, 1.96 * c.standard_error * rms);
@@ -84,8 +84,8 @@ fn table(case: &Case, seeds: u64) -> Outcome {
             result.parameters.area_elasticity.value * rms,
             result.naive.preferred_perimeter,
             result.objective / result.expected_objective,
-            snapshot.wrong_edges(&snapshot.measured.tessellation),
-            snapshot.wrong_edges(&result.frames[0].tessellation),
+            tissue.wrong_edges(&measured.tessellation),
+            tissue.wrong_edges(&result.frames[0].tessellation),
         );
     }
     println!(

@@ -1,6 +1,6 @@
 //! The study as figures.
 
-use super::super::snapshot::quartiles;
+use super::super::seeds::quartiles;
 use super::{Outcomes, Row, Setting};
 use crate::Outcome;
 use std::path::Path;

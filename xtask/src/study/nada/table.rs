@@ -1,6 +1,6 @@
 //! The study as tables.
 
-use super::super::snapshot::quartiles;
+use super::super::seeds::quartiles;
 use super::{Outcomes, Row, Setting};
 
 pub(super) fn print(settings: &[Setting]) {
