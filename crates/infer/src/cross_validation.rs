@@ -1,6 +1,6 @@
 //! The error on velocities that a fit has not seen.
 
-use crate::least_squares::{self, residuals};
+use crate::least_squares::{self, residuals_as_measured};
 use crate::objective::Objective;
 use crate::search::{Effort, Watch, search};
 use crate::{Error, Observation, Progress};
@@ -77,8 +77,8 @@ fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f6
     let coefficients = space.coefficients(objective.split(&found.parameters).0);
     let (mut error, mut total) = (0.0, 0.0);
     for (frame, out) in frames.iter().zip(held_out) {
-        let rests = residuals(frame, terms, coefficients.as_slice());
-        for ((_, v), (_, rest)) in frame.targets().zip(rests).filter(|((datum, _), _)| out[*datum]) {
+        let rests = residuals_as_measured(frame, terms, coefficients.as_slice());
+        for (v, (_, rest)) in frame.explainable().iter().zip(rests).filter(|(_, (datum, _))| out[*datum]) {
             error += rest.norm_squared();
             total += v.norm_squared();
         }
@@ -114,5 +114,8 @@ fn without(frame: &Observation, held_out: &[bool]) -> Observation {
             *v = None;
         }
     }
-    training
+    match training.background_degree() {
+        Some(degree) => training.with_background(degree),
+        None => training,
+    }
 }

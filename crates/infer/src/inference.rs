@@ -3,7 +3,7 @@
 use crate::coefficients::parameters;
 use crate::cross_validation::cross_validate;
 use crate::estimates::Fitted;
-use crate::least_squares::{self, residuals};
+use crate::least_squares::{self, residuals_as_measured};
 use crate::noisy_fit::{at_limit, fit};
 use crate::objective::{Nudged, Objective};
 use crate::search::Watch;
@@ -32,11 +32,12 @@ pub fn infer(
 ) -> Result<Inference, Error> {
     let space = CoefficientSpace::new(&request.constraints)?;
     let used: usize = frames.iter().map(|frame| frame.targets().count()).sum();
-    let required = 2 * space.dimension() + 2;
+    let required =
+        2 * space.dimension() + 2 + frames.iter().map(Observation::background_dimension).sum::<usize>() / 2;
     if used < required {
         return Err(Error::TooFewVelocities { used, required });
     }
-    let total: f64 = frames.iter().flat_map(Observation::targets).map(|(_, v)| v.norm_squared()).sum();
+    let total: f64 = frames.iter().flat_map(Observation::explainable).map(|v| v.norm_squared()).sum();
     if total <= 0.0 {
         return Err(Error::NothingMoves);
     }
@@ -69,9 +70,8 @@ pub fn infer(
         Fitted { space: &space, constraints: &request.constraints, free, information: &information, centre };
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
-        let squares =
-            |frame| residuals(frame, &terms, coefficients.as_slice()).map(|(_, rest)| rest.norm_squared());
-        frames.iter().map(|frame| squares(frame).sum::<f64>()).sum()
+        let squares = |frame| residuals_as_measured(frame, &terms, coefficients.as_slice());
+        frames.iter().flat_map(squares).map(|(_, rest)| rest.norm_squared()).sum()
     };
     let mut sensitivity = 0.0;
     let mut results = Vec::with_capacity(frames.len());
@@ -97,7 +97,8 @@ pub fn infer(
             naive: residual_at(&naive) / total,
             nudged: parts.residual / total,
             un_nudged: residual_at(free) / total,
-            noise_floor: (2.0 * used as f64 * variance + sensitivity * levels.position.powi(2)) / total,
+            noise_floor: (objective.components() as f64 * variance + sensitivity * levels.position.powi(2))
+                / total,
             cross_validated,
         },
         coefficients,

@@ -38,12 +38,9 @@ pub(crate) fn fit(
     let (mut normal, mut right) = (DMatrix::zeros(p, p), DVector::zeros(p));
     for frame in frames {
         let columns = measured_columns(frame, &frame.tessellation, &frame.positions, terms);
-        for (datum, target) in frame.targets() {
-            let x = free_columns(&columns, space, datum);
-            let rest = target - predict(&columns, space.origin().as_slice(), datum);
-            normal += x.transpose() * &x;
-            right += x.transpose() * DVector::from_column_slice(rest.as_slice());
-        }
+        let (own, part) = normal_equations(frame, &columns, space);
+        normal += own;
+        right += part;
     }
     let free = invert(normal.clone())? * right;
     within_bounds(space, free, normal).map(|beta| beta.as_slice().to_vec())
@@ -63,19 +60,61 @@ pub(crate) fn within_bounds(
     minimum.map(|minimum| minimum.at).ok_or(Error::Constraint("no parameters lie within all bounds"))
 }
 
-/// What coefficients leave unexplained at the measured positions: datum and residual, for each target.
+/// XᵀX and Xᵀ(v − X c₀) of one frame.
+pub(crate) fn normal_equations(
+    frame: &Observation,
+    columns: &Columns,
+    space: &CoefficientSpace,
+) -> (DMatrix<f64>, DVector<f64>) {
+    let p = space.dimension();
+    let (mut normal, mut right) = (DMatrix::zeros(p, p), DVector::zeros(p));
+    let rows = free_rows(frame, columns, space);
+    for (x, (_, rest)) in rows.iter().zip(residuals(frame, columns, space.origin().as_slice())) {
+        normal += x.transpose() * x;
+        right += x.transpose() * DVector::from_column_slice(rest.as_slice());
+    }
+    (normal, right)
+}
+
+/// What coefficients leave unexplained: datum and residual, for each target.
 pub(crate) fn residuals(
+    frame: &Observation,
+    columns: &Columns,
+    coefficients: &[f64],
+) -> Vec<(usize, Vector<f64>)> {
+    let mut rests: Vec<Vector<f64>> =
+        frame.targets().map(|(datum, v)| v - predict(columns, coefficients, datum)).collect();
+    frame.remove_background(&mut rests);
+    frame.targets().map(|(datum, _)| datum).zip(rests).collect()
+}
+
+/// The same at the measured positions.
+pub(crate) fn residuals_as_measured(
     frame: &Observation,
     terms: &[Term],
     coefficients: &[f64],
-) -> impl Iterator<Item = (usize, Vector<f64>)> {
+) -> Vec<(usize, Vector<f64>)> {
     let columns = measured_columns(frame, &frame.tessellation, &frame.positions, terms);
-    frame.targets().map(move |(datum, v)| (datum, v - predict(&columns, coefficients, datum)))
+    residuals(frame, &columns, coefficients)
 }
 
-/// `X B` at one place (2, p).
-pub(crate) fn free_columns(columns: &Columns, space: &CoefficientSpace, datum: usize) -> DMatrix<f64> {
-    DMatrix::from_fn(2, columns.len(), |axis, term| columns[term][datum][axis]) * space.basis()
+/// `X B` (2, p) for each target.
+pub(crate) fn free_rows(
+    frame: &Observation,
+    columns: &Columns,
+    space: &CoefficientSpace,
+) -> Vec<DMatrix<f64>> {
+    let fields: Vec<Vec<Vector<f64>>> = (0..space.dimension())
+        .map(|k| {
+            let along = space.basis().column(k);
+            let mut field: Vec<Vector<f64>> =
+                frame.targets().map(|(datum, _)| predict(columns, along.as_slice(), datum)).collect();
+            frame.remove_background(&mut field);
+            field
+        })
+        .collect();
+    let count = fields.first().map_or_else(|| frame.targets().count(), Vec::len);
+    (0..count).map(|row| DMatrix::from_fn(2, fields.len(), |axis, k| fields[k][row][axis])).collect()
 }
 
 /// The inverse of a normal matrix, refused if its columns are dependent to rounding.

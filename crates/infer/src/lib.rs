@@ -11,6 +11,7 @@
 //!
 //! Everything here is dimensionless or in the units of what is passed in.
 
+mod background;
 mod coefficients;
 mod constraints;
 mod cross_validation;

@@ -190,8 +190,11 @@ mod tests {
         let c = space.coefficients(free);
         let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(&terms, &c).to_dense());
         let x = DMatrix::from_fn(72, 4, |row, term| nudged.columns()[term][row / 2][row % 2]);
-        let residual: Vec<f64> =
-            objective.residuals(&frames[0], &nudged, &c).flat_map(|(_, rest)| [rest.x, rest.y]).collect();
+        let residual: Vec<f64> = objective
+            .residuals(&frames[0], &nudged, &c)
+            .into_iter()
+            .flat_map(|(_, rest)| [rest.x, rest.y])
+            .collect();
         let y = DVector::from_column_slice(&residual) + &j * DVector::from_column_slice(nudges[0]);
         for known in [
             KnownNoise::default(),

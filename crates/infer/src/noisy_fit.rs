@@ -1,6 +1,6 @@
 //! Fit and noise levels in turn.
 
-use crate::least_squares::residuals;
+use crate::least_squares::residuals_as_measured;
 use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
 use crate::objective::Objective;
 use crate::search::{Effort, Found, Watch, descend, improve, optimise, search};
@@ -113,7 +113,7 @@ fn first_levels(objective: &Objective<'_>, naive: &[f64], known: &KnownNoise) ->
     let mut sizes: Vec<f64> = objective
         .frames
         .iter()
-        .flat_map(|frame| residuals(frame, objective.terms, coefficients.as_slice()))
+        .flat_map(|frame| residuals_as_measured(frame, objective.terms, coefficients.as_slice()))
         .flat_map(|(_, rest)| [rest.x.abs(), rest.y.abs()])
         .collect();
     sizes.sort_unstable_by(f64::total_cmp);

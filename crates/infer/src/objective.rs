@@ -1,6 +1,6 @@
 //! The penalised objective of nudged inference as a problem for argmin.
 
-use crate::least_squares::{Columns, free_columns, predict};
+use crate::least_squares::{Columns, free_rows, predict, residuals};
 use crate::linearisation::{Linearisation, Local};
 use crate::normal_equations::NormalEquations;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Prior, Quantity};
@@ -94,9 +94,11 @@ impl Objective<'_> {
         self.frames.iter().map(|frame| 2 * frame.positions.len()).sum()
     }
 
-    /// Number of measured components.
+    /// Number of measured components that no background takes up.
     pub fn components(&self) -> usize {
-        2 * self.frames.iter().map(|frame| frame.targets().count()).sum::<usize>()
+        let own =
+            |frame: &Observation| (2 * frame.targets().count()).saturating_sub(frame.background_dimension());
+        self.frames.iter().map(own).sum()
     }
 
     /// What Φ is expected to be if model and noise levels are right: σ_v² for each component that no coefficient takes up.
@@ -118,16 +120,14 @@ impl Objective<'_> {
         Ok(Nudged { positions, tessellation, of_cells, sampling })
     }
 
-    /// `v − F` of a frame for each target.
-    pub fn residuals<'f>(
+    /// `v − F` of a frame for each target, the background removed.
+    pub fn residuals(
         &self,
-        frame: &'f Observation,
-        nudged: &'f Nudged,
-        coefficients: &'f Vector4<f64>,
-    ) -> impl Iterator<Item = (usize, Vector<f64>)> + 'f {
-        frame
-            .targets()
-            .map(move |(datum, v)| (datum, v - predict(nudged.columns(), coefficients.as_slice(), datum)))
+        frame: &Observation,
+        nudged: &Nudged,
+        coefficients: &Vector4<f64>,
+    ) -> Vec<(usize, Vector<f64>)> {
+        residuals(frame, nudged.columns(), coefficients.as_slice())
     }
 
     /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
@@ -143,8 +143,11 @@ impl Objective<'_> {
                 let Ok(nudged) = self.nudge(frame, nudges) else {
                     return (f64::INFINITY, 0.0);
                 };
-                let residual =
-                    self.residuals(frame, &nudged, &coefficients).map(|(_, rest)| rest.norm_squared()).sum();
+                let residual = self
+                    .residuals(frame, &nudged, &coefficients)
+                    .iter()
+                    .map(|(_, rest)| rest.norm_squared())
+                    .sum();
                 (residual, nudges.iter().map(|e| e * e).sum())
             })
             .collect();
@@ -182,7 +185,9 @@ impl Objective<'_> {
                     self.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
                 let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = self
                     .residuals(frame, &nudged, &coefficients)
-                    .map(|(datum, rest)| (datum, rest, free_columns(nudged.columns(), self.space, datum)))
+                    .into_iter()
+                    .zip(free_rows(frame, nudged.columns(), self.space))
+                    .map(|((datum, rest), x)| (datum, rest, x))
                     .collect();
                 let mut jacobian = nudged.jacobian(self.terms, &coefficients);
                 if !frame.is_free() {

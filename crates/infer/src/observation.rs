@@ -1,6 +1,7 @@
 //! One snapshot: where the cells are and how fast they move.
 
 use crate::Error;
+use crate::background::Background;
 use crate::flow::{Flow, Sampling};
 use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, Visibility};
 
@@ -21,6 +22,8 @@ pub struct Observation {
     used: Vec<bool>,
     /// Cells without a nudge; empty if all have one.
     held: Vec<bool>,
+    /// Degree of the polynomials that are no concern of the model, and what they are here.
+    background: Option<(u32, Background)>,
 }
 
 /// How velocities were measured.
@@ -86,7 +89,49 @@ impl Observation {
                 Sampling::new(flow, &tessellation, &positions, &visibility).filled().to_vec()
             }
         };
-        Ok(Self { positions, velocities, tessellation, visibility, largest_area, used, held: Vec::new() })
+        Ok(Self {
+            positions,
+            velocities,
+            tessellation,
+            visibility,
+            largest_area,
+            used,
+            held: Vec::new(),
+            background: None,
+        })
+    }
+
+    /// Lets a smooth flow, polynomials of the position up to a degree, be no concern of the model. Velocities must not
+    /// change afterwards.
+    #[must_use]
+    pub fn with_background(mut self, degree: u32) -> Self {
+        let places: Vec<Vector<f64>> = self.targets().map(|(datum, _)| self.place(datum)).collect();
+        self.background = Some((degree, Background::new(&places, degree)));
+        self
+    }
+
+    /// Degree of the background, if there is one.
+    pub(crate) fn background_degree(&self) -> Option<u32> {
+        self.background.as_ref().map(|(degree, _)| *degree)
+    }
+
+    /// Number of coefficients of the background.
+    pub fn background_dimension(&self) -> usize {
+        self.background.as_ref().map_or(0, |(_, background)| background.dimension())
+    }
+
+    /// Removes the background from a field over the targets.
+    pub(crate) fn remove_background(&self, field: &mut [Vector<f64>]) {
+        if let Some((_, background)) = &self.background {
+            background.remove(field);
+        }
+    }
+
+    /// The targets without their background.
+    pub fn explainable(&self) -> Vec<Vector<f64>> {
+        let mut targets: Vec<Vector<f64>> = self.targets().map(|(_, v)| v).collect();
+        self.remove_background(&mut targets);
+        targets
     }
 
     /// Some cells of a tissue, cut out, with the velocities that are to be explained.

@@ -9,7 +9,7 @@
 //! their columns. At the end the coefficients are those that fit best at the nudged positions.
 
 use super::{Found, Optimum, Watch, own_error};
-use crate::least_squares::{free_columns, invert, predict, within_bounds};
+use crate::least_squares::{free_rows, invert, normal_equations, within_bounds};
 use crate::objective::Objective;
 use crate::{Error, Loss, Status};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, Gradient};
@@ -92,12 +92,9 @@ fn refit(objective: &Objective<'_>, parameters: &mut [f64]) -> Result<(), Error>
     for (index, (frame, nudges)) in objective.frames.iter().zip(nudges).enumerate() {
         let nudged =
             objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
-        for (datum, v) in frame.targets() {
-            let x = free_columns(nudged.columns(), objective.space, datum);
-            let rest = v - predict(nudged.columns(), objective.space.origin().as_slice(), datum);
-            normal += x.transpose() * &x;
-            right += x.transpose() * DVector::from_column_slice(rest.as_slice());
-        }
+        let (own, part) = normal_equations(frame, nudged.columns(), objective.space);
+        normal += own;
+        right += part;
     }
     let free = within_bounds(objective.space, invert(normal.clone())? * right, normal)?;
     parameters[..p].copy_from_slice(free.as_slice());
@@ -111,8 +108,7 @@ fn scales(objective: &Objective<'_>) -> Result<Vec<f64>, Error> {
         let zero = vec![0.0; 2 * frame.positions.len()];
         let nudged =
             objective.nudge(frame, &zero).map_err(|source| Error::Geometry { frame: index, source })?;
-        for (datum, _) in frame.targets() {
-            let x = free_columns(nudged.columns(), objective.space, datum);
+        for x in free_rows(frame, nudged.columns(), objective.space) {
             squares.iter_mut().zip(x.column_iter()).for_each(|(sum, column)| *sum += column.norm_squared());
         }
     }
@@ -164,8 +160,9 @@ impl Problem<'_> {
             let nudged =
                 objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
             let jacobian = nudged.jacobian(objective.terms, &coefficients);
-            for (datum, rest) in objective.residuals(frame, &nudged, &coefficients) {
-                let x = free_columns(nudged.columns(), objective.space, datum);
+            let rows = free_rows(frame, nudged.columns(), objective.space);
+            for ((datum, rest), x) in objective.residuals(frame, &nudged, &coefficients).into_iter().zip(rows)
+            {
                 for k in 0..p {
                     of_residual[k] -= Vector::new(x[(0, k)], x[(1, k)]).dot(&rest);
                 }

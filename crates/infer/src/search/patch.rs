@@ -30,6 +30,8 @@ pub(super) struct Whole<'a> {
     pub frame: &'a Observation,
     pub nudges: &'a [f64],
     pub nudged: &'a Nudged,
+    /// The velocities to be explained, the present background removed.
+    pub targets: &'a [Option<Vector<f64>>],
 }
 
 impl Patch {
@@ -38,7 +40,7 @@ impl Patch {
         let rings = Rings::new(whole.nudged, around, FREE + AFFECTED + CONTEXT);
         // A patch that meets itself around the periodic box is not cut out, nor one of velocities on a grid.
         let cut = match &whole.frame.velocities {
-            Velocities::OfCells(_) if !rings.wraps => Some(|cell: &usize| whole.frame.target(*cell)),
+            Velocities::OfCells(_) if !rings.wraps => Some(|cell: &usize| whole.targets[*cell]),
             _ => None,
         };
         let cells = match cut {

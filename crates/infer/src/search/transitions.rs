@@ -156,7 +156,13 @@ fn trials(
     for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
         let nudged =
             objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
-        let whole = Whole { frame, nudges, nudged: &nudged };
+        let coefficients = objective.space.coefficients(free);
+        let predicted = nudged.predictions(&coefficients);
+        let mut targets = vec![None; predicted.len()];
+        for (datum, rest) in objective.residuals(frame, &nudged, &coefficients) {
+            targets[datum] = Some(predicted[datum] + rest);
+        }
+        let whole = Whole { frame, nudges, nudged: &nudged, targets: &targets };
         let tessellation = &nudged.tessellation;
         let mut sides: Vec<Side> = (0..tessellation.len())
             .flat_map(|cell| tessellation.ring(cell).map(move |h| (cell, h)))

@@ -93,7 +93,11 @@ fn replicate(
             Velocities::OnGrid(flow) => Velocities::OnGrid(Flow { velocities: values, ..flow.clone() }),
         };
         let domain = frame.tessellation.domain();
-        synthetic.push(Observation::new(index, positions, velocities, domain, frame.largest_area)?);
+        let refitted = Observation::new(index, positions, velocities, domain, frame.largest_area)?;
+        synthetic.push(match frame.background_degree() {
+            Some(degree) => refitted.with_background(degree),
+            None => refitted,
+        });
     }
     let mut request = Request { cross_validation: CrossValidation::Skipped, seed: number, ..request.clone() };
     // A prior is a measurement too.
