@@ -3,6 +3,7 @@
 mod page;
 mod prepare;
 mod report;
+mod scaling;
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments};
@@ -15,7 +16,7 @@ use prepare::Prepared;
 use std::process::Stdio;
 use std::time::Duration;
 use voronudge_geometry::Vector;
-use voronudge_infer::{Fixed, Inference, infer};
+use voronudge_infer::{Constraints, Inference, Quantity, infer};
 use voronudge_io::{DataSet, Difference, FrameSelection, OutputDirectory};
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
@@ -34,7 +35,7 @@ pub(crate) struct Arguments {
     difference: Difference,
     /// Hold a parameter: `--fix K_A=0.1` (repeatable), in the units of the data.
     #[arg(long, value_name = "NAME=VALUE", value_parser = fixed_parameter, allow_hyphen_values = true)]
-    fix: Vec<(String, f64)>,
+    fix: Vec<(Quantity, f64)>,
     /// Which mean velocity to remove first: drift of the stage shows as one.
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     remove_mean: MeanToRemove,
@@ -62,32 +63,25 @@ pub(crate) enum MeanToRemove {
     PerFrame,
 }
 
-fn fixed_parameter(text: &str) -> Result<(String, f64), String> {
+fn fixed_parameter(text: &str) -> Result<(Quantity, f64), String> {
     let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for example K_A=0.1")?;
-    if !["K_A", "K_P", "P_0", "alpha"].contains(&name) {
-        return Err(format!("{name} is not a parameter; there are K_A, K_P, P_0 and alpha"));
-    }
+    let quantity = Quantity::from_name(name)
+        .ok_or_else(|| format!("{name} is not a parameter; there are K_A, K_P, P_0, alpha and K_P_alpha"))?;
     let number: f64 = value.parse().map_err(|_| format!("{value} is not a number"))?;
-    Ok((name.into(), number))
+    Ok((quantity, number))
 }
 
 impl Arguments {
-    /// The parameters held, in units of the data.
-    fn fixed(&self) -> Result<Fixed, Failure> {
-        let mut fixed = Fixed::default();
-        for (name, value) in &self.fix {
-            let slot = match name.as_str() {
-                "K_A" => &mut fixed.area_elasticity,
-                "K_P" => &mut fixed.perimeter_elasticity,
-                "P_0" => &mut fixed.preferred_perimeter,
-                _ => &mut fixed.chirality,
-            };
-            if slot.replace(*value).is_some() {
-                return Err(Failure::new(format!("--fix: {name} is fixed twice"))
+    /// What is known of the parameters, in the units of the data.
+    fn constraints(&self) -> Result<Constraints, Failure> {
+        let mut constraints = Constraints::default();
+        for (quantity, value) in &self.fix {
+            if constraints.fixed.insert(*quantity, *value).is_some() {
+                return Err(Failure::new(format!("--fix: {} is fixed twice", quantity.name()))
                     .with_hint("give each parameter at most once"));
             }
         }
-        Ok(fixed)
+        Ok(constraints)
     }
 }
 

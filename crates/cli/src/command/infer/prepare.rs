@@ -1,12 +1,12 @@
 //! From a data set to the scaled problem, and back.
 
-use super::{Arguments, MeanToRemove};
+use super::{Arguments, MeanToRemove, scaling};
 use crate::failure::Failure;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain};
 use ndarray::Axis;
 use voronudge_geometry::{Domain, PeriodicBox, Vector, Visibility, areas};
-use voronudge_infer::{Fixed, Inference, Observation, Request, Scale};
+use voronudge_infer::{Inference, KnownNoise, Method, Observation, Request, Scale};
 use voronudge_io::{DataSet, Difference, Noise, derive_velocities};
 use voronudge_report::infer_report::{MeanRemoved, NoiseSource};
 
@@ -149,7 +149,7 @@ fn remove_median(observation: &mut Observation) {
         if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
     };
     let drift = Vector::new(median(0), median(1));
-    observation.velocities.iter_mut().flatten().for_each(|v| *v -= drift);
+    observation.velocities.values_mut().iter_mut().flatten().for_each(|v| *v -= drift);
 }
 
 /// ℓ₀² is the mean area of the cells that count; τ makes the root mean square velocity one.
@@ -192,13 +192,13 @@ fn scaled(
         Domain::Open => Domain::Open,
     };
     let positions = observation.positions.iter().map(|r| r / scale.length).collect();
-    let velocities = observation.velocities.iter().map(|v| v.map(|v| v / scale.velocity())).collect();
+    let velocities: Vec<_> =
+        observation.velocities.values().iter().map(|v| v.map(|v| v / scale.velocity())).collect();
     Ok(Observation::new(index, positions, velocities, domain, largest_area)?)
 }
 
 fn request(arguments: &Arguments, data: &DataSet, scale: &Scale) -> Result<(Request, NoiseSource), Failure> {
-    let fixed = arguments.fixed()?;
-    let factor = scale.coefficients();
+    let constraints = arguments.constraints()?;
     let level = |noise: Option<Noise>, unit: f64| {
         noise.map(|noise| match noise {
             Noise::Absolute(value) => value / unit,
@@ -209,16 +209,12 @@ fn request(arguments: &Arguments, data: &DataSet, scale: &Scale) -> Result<(Requ
     let from_flags = arguments.data.position_noise.is_some() || arguments.data.velocity_noise.is_some();
     Ok((
         Request {
-            fixed: Fixed {
-                area_elasticity: fixed.area_elasticity.map(|k_a| k_a / factor[0]),
-                perimeter_elasticity: fixed.perimeter_elasticity.map(|k_p| k_p / factor[2]),
-                preferred_perimeter: fixed.preferred_perimeter.map(|p_0| p_0 / scale.length),
-                chirality: fixed.chirality,
+            noise: KnownNoise {
+                position: level(data.position_noise, scale.length),
+                velocity: level(data.velocity_noise, scale.velocity()),
             },
-            preferred_area: 1.0,
-            position_noise: level(data.position_noise, scale.length),
-            velocity_noise: level(data.velocity_noise, scale.velocity()),
-            max_steps: arguments.max_steps,
+            method: Method::Search { max_steps: arguments.max_steps, starts: 1 },
+            ..Request::new(scaling::scaled(&constraints, scale))
         },
         if from_flags { NoiseSource::Given } else { NoiseSource::DataSet },
     ))

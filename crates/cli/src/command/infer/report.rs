@@ -1,22 +1,20 @@
 //! The result of `infer` as its report and as a summary on stdout.
 
 use super::prepare::Prepared;
+use super::scaling;
 use crate::run::Run;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_geometry::Visibility;
-use voronudge_infer::{Estimate, Inference, NoiseSource as Source, Status};
+use voronudge_infer::{Inference, NoiseSource as Source, Quantity as What, Status};
 use voronudge_io::DataSet;
 use voronudge_report::Units;
 use voronudge_report::infer_report::{
     CellCounts, EigenDirection, Fit, FitStatus, InferReport, NaiveParameters, Nmse, Noise, NoiseSource,
     Nudge, Parameter, Parameters, Quantity,
 };
-use voronudge_report::numbers::significant;
-
-/// Half the width of a 95 % interval in standard errors.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
+use voronudge_report::numbers::{interval_text, significant};
 
 /// Names of the coefficients along which directions are given.
 const COEFFICIENTS: [&str; 4] = ["K_A", "K_P_P_0", "K_P", "K_P_alpha"];
@@ -26,14 +24,17 @@ pub(super) fn report(run: &Run, data: &DataSet, prepared: &Prepared, result: &In
     let rate = format!("1/{time}");
     let area_rate = format!("1/({length}^2*{time})");
     let scale = &prepared.scale;
-    let factor = scale.coefficients();
-    let fixed = &prepared.request.fixed;
-    let parameter = |estimate: Estimate, factor: f64, unit: &str, fixed: bool| {
-        let (value, half) = (estimate.value * factor, NORMAL_95 * estimate.standard_error * factor);
-        Parameter { value, ci95: (!fixed).then_some([value - half, value + half]), fixed, unit: unit.into() }
+    let factor = |quantity| scaling::factor(scale, quantity);
+    let parameter = |quantity: What, factor: f64, unit: &str| {
+        let estimate = result.parameters.get(quantity);
+        let [low, high] = estimate.interval;
+        let ends = [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)];
+        // What does not vary is held, by itself or by others together.
+        let fixed = estimate.standard_error == 0.0;
+        let ci95 = (!fixed).then(|| ends.map(|end| end * factor));
+        Parameter { value: estimate.value * factor, ci95, fixed, unit: unit.into() }
     };
-    let p = &result.parameters;
-    let fixed_product = fixed.perimeter_elasticity.is_some() && fixed.chirality.is_some();
+    let in_units = |quantity: What, unit: &str| parameter(quantity, factor(quantity), unit);
     let naive = &result.naive;
     InferReport {
         run: run.record(Some(data)),
@@ -41,25 +42,25 @@ pub(super) fn report(run: &Run, data: &DataSet, prepared: &Prepared, result: &In
         length_scale: Quantity { value: scale.length, unit: length.clone() },
         cells: cell_counts(prepared, result),
         parameters: Parameters {
-            K_A: parameter(p.area_elasticity, factor[0], &area_rate, fixed.area_elasticity.is_some()),
-            K_P: parameter(p.perimeter_elasticity, factor[2], &rate, fixed.perimeter_elasticity.is_some()),
-            P_0: parameter(p.preferred_perimeter, scale.length, &length, fixed.preferred_perimeter.is_some()),
+            K_A: in_units(What::AreaElasticity, &area_rate),
+            K_P: in_units(What::PerimeterElasticity, &rate),
+            P_0: in_units(What::PreferredPerimeter, &length),
             A_0: Parameter {
                 value: scale.length * scale.length,
                 ci95: None,
                 fixed: true,
                 unit: format!("{length}^2"),
             },
-            alpha: parameter(p.chirality, 1.0, "", fixed.chirality.is_some()),
-            K_P_alpha: parameter(p.chiral_coefficient, factor[3], &rate, fixed_product),
-            shape_index: parameter(p.preferred_perimeter, 1.0, "", fixed.preferred_perimeter.is_some()),
+            alpha: in_units(What::Chirality, ""),
+            K_P_alpha: in_units(What::ChiralCoefficient, &rate),
+            shape_index: parameter(What::PreferredPerimeter, 1.0, ""),
         },
         naive: NaiveParameters {
-            K_A: naive.area_elasticity * factor[0],
-            K_P: naive.perimeter_elasticity * factor[2],
+            K_A: naive.area_elasticity * factor(What::AreaElasticity),
+            K_P: naive.perimeter_elasticity * factor(What::PerimeterElasticity),
             P_0: naive.preferred_perimeter * scale.length,
             alpha: naive.chirality,
-            K_P_alpha: naive.perimeter_elasticity * naive.chirality * factor[3],
+            K_P_alpha: naive.perimeter_elasticity * naive.chirality * factor(What::ChiralCoefficient),
             shape_index: naive.preferred_perimeter,
         },
         nmse: Nmse {
@@ -123,7 +124,7 @@ fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts {
                 Visibility::OnHull => "polygon_not_closed",
                 Visibility::TooLarge => "polygon_too_large",
                 Visibility::NextToRim => "next_to_rim",
-                Visibility::Counted if observation.velocities[cell].is_none() => "no_velocity",
+                Visibility::Counted if observation.velocities.values()[cell].is_none() => "no_velocity",
                 Visibility::Counted => continue,
             };
             *left_out.entry(reason.to_owned()).or_insert(0) += 1;
@@ -154,11 +155,11 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         ("K_P", &p.K_P, n.K_P),
         ("P_0", &p.P_0, n.P_0),
     ] {
-        let interval = match parameter.ci95 {
-            Some([low, high]) => format!("{} to {}", significant(low, 3), significant(high, 3)),
-            None => "fixed".into(),
+        let [value, interval] = match parameter.interval() {
+            Some(ends) => interval_text(parameter.value, ends),
+            None => [significant(parameter.value, 4), "fixed".into()],
         };
-        let (value, naive) = (significant(parameter.value, 4), significant(naive, 4));
+        let naive = significant(naive, 4);
         let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
         let _ = writeln!(text, "{}", row.trim_end());
     }
