@@ -37,14 +37,16 @@ impl Progress {
         if self.verbosity == Verbosity::Normal && self.bar.is_hidden() && self.begun.elapsed() > PATIENCE {
             self.bar = ProgressBar::new(total).with_elapsed(self.begun.elapsed());
             let style =
-                ProgressStyle::with_template("{msg:20} {bar:30} {pos}/{len}  {elapsed} elapsed, {eta} left");
+                ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}  {elapsed} elapsed, {eta} left");
             if let Ok(style) = style {
                 self.bar.set_style(style);
             }
         }
-        if self.bar.message() != stage {
-            self.bar.reset_eta();
+        // The time left is that of a stage; one that begins again is timed anew.
+        if self.bar.message() != stage || done < self.bar.position() {
             self.bar.set_message(stage.to_owned());
+            self.bar.set_position(done);
+            self.bar.reset_eta();
         }
         self.bar.set_length(total);
         self.bar.set_position(done);

@@ -1,68 +1,54 @@
-//! The result of `infer` as its report and as a summary on stdout.
+//! The result of `infer` as its report.
 
+use super::answers;
+use super::flow::OrderedField;
 use super::prepare::Prepared;
-use super::scaling;
+use super::questions::Answers;
+use super::scaling::{factor, unit};
+use super::words;
 use crate::run::Run;
 use std::collections::BTreeMap;
-use std::fmt::Write as _;
-use std::path::Path;
 use voronudge_geometry::Visibility;
-use voronudge_infer::{Inference, NoiseSource as Source, Quantity as What, Status};
+use voronudge_infer::{
+    Constraints, Inference, Method, NoiseSource as Source, Observation, Prior, Quantity as What, Scale,
+    Status, Velocities,
+};
 use voronudge_io::DataSet;
 use voronudge_report::Units;
 use voronudge_report::infer_report::{
-    CellCounts, EigenDirection, Fit, FitStatus, InferReport, NaiveParameters, Nmse, Noise, NoiseSource,
-    Nudge, Parameter, Parameters, Quantity,
+    CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, InferReport,
+    NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, Quantity, Transitions,
 };
-use voronudge_report::numbers::{interval_text, significant};
 
 /// Names of the coefficients along which directions are given.
 const COEFFICIENTS: [&str; 4] = ["K_A", "K_P_P_0", "K_P", "K_P_alpha"];
 
-pub(super) fn report(run: &Run, data: &DataSet, prepared: &Prepared, result: &Inference) -> InferReport {
-    let (length, time) = (data.length_unit.clone(), data.time_unit.clone());
-    let rate = format!("1/{time}");
-    let area_rate = format!("1/({length}^2*{time})");
+pub(super) fn report(
+    run: &Run,
+    data: &DataSet,
+    prepared: &Prepared,
+    result: &Inference,
+    answers: &Answers,
+) -> InferReport {
+    let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
     let scale = &prepared.scale;
-    let factor = |quantity| scaling::factor(scale, quantity);
-    let parameter = |quantity: What, factor: f64, unit: &str| {
-        let estimate = result.parameters.get(quantity);
-        let [low, high] = estimate.interval;
-        let ends = [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)];
-        // What does not vary is held, by itself or by others together.
-        let fixed = estimate.standard_error == 0.0;
-        let ci95 = (!fixed).then(|| ends.map(|end| end * factor));
-        Parameter { value: estimate.value * factor, ci95, fixed, unit: unit.into() }
-    };
-    let in_units = |quantity: What, unit: &str| parameter(quantity, factor(quantity), unit);
     let naive = &result.naive;
     InferReport {
         run: run.record(Some(data)),
-        units: Units { length: length.clone(), time },
-        length_scale: Quantity { value: scale.length, unit: length.clone() },
+        length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: cell_counts(prepared, result),
-        parameters: Parameters {
-            K_A: in_units(What::AreaElasticity, &area_rate),
-            K_P: in_units(What::PerimeterElasticity, &rate),
-            P_0: in_units(What::PreferredPerimeter, &length),
-            A_0: Parameter {
-                value: scale.length * scale.length,
-                ci95: None,
-                fixed: true,
-                unit: format!("{length}^2"),
-            },
-            alpha: in_units(What::Chirality, ""),
-            K_P_alpha: in_units(What::ChiralCoefficient, &rate),
-            shape_index: parameter(What::PreferredPerimeter, 1.0, ""),
-        },
+        flow: prepared.velocities.flow().map(OrderedField::described),
+        constraints: given(&prepared.constraints),
+        parameters: parameters(result, scale, &units),
         naive: NaiveParameters {
-            K_A: naive.area_elasticity * factor(What::AreaElasticity),
-            K_P: naive.perimeter_elasticity * factor(What::PerimeterElasticity),
-            P_0: naive.preferred_perimeter * scale.length,
-            alpha: naive.chirality,
-            K_P_alpha: naive.perimeter_elasticity * naive.chirality * factor(What::ChiralCoefficient),
+            K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),
+            K_P: naive.perimeter_elasticity * factor(scale, What::PerimeterElasticity),
+            P_0: naive.preferred_perimeter * factor(scale, What::PreferredPerimeter),
+            alpha: naive.chirality * factor(scale, What::Chirality),
+            K_P_alpha: naive.perimeter_elasticity * naive.chirality * factor(scale, What::ChiralCoefficient),
             shape_index: naive.preferred_perimeter,
         },
+        units,
         nmse: Nmse {
             naive: result.nmse.naive,
             nudged: result.nmse.nudged,
@@ -84,109 +70,133 @@ pub(super) fn report(run: &Run, data: &DataSet, prepared: &Prepared, result: &In
                 Source::Estimated => NoiseSource::Estimated,
             },
         },
-        nudge: Nudge {
-            k: result.noise.spring() / (scale.time * scale.time),
-            rms: result.nudge_rms * scale.length,
-            degrees_of_freedom: result.degrees_of_freedom,
-            edges_changed: result.frames.iter().map(|f| f.edges_lost.len() + f.edges_gained.len()).sum(),
+        nudge: nudge(prepared, result),
+        identifiability: identifiability(result),
+        profiles: answers.profiles.iter().map(|profile| answers::profile(profile, scale)).collect(),
+        landscapes: answers.landscapes.iter().map(|slice| answers::landscape(slice, scale)).collect(),
+        bootstrap: answers.bootstrap.as_ref().map(|all| answers::bootstrap(all, result, scale)),
+        fit: fit(prepared, result),
+    }
+}
+
+fn parameters(result: &Inference, scale: &Scale, units: &Units) -> Parameters {
+    let parameter = |quantity: What, factor: f64, unit: String| {
+        let estimate = result.parameters.get(quantity);
+        let [low, high] = estimate.interval;
+        let ends = [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)];
+        // What does not vary is held, by itself or by others together.
+        let fixed = estimate.standard_error == 0.0;
+        Parameter {
+            value: estimate.value * factor,
+            ci95: (!fixed).then(|| ends.map(|end| end * factor)),
+            fixed,
+            unit,
+            words: words::parameter(quantity, estimate),
+        }
+    };
+    let in_units = |quantity: What| parameter(quantity, factor(scale, quantity), unit(quantity, units));
+    Parameters {
+        K_A: in_units(What::AreaElasticity),
+        K_P: in_units(What::PerimeterElasticity),
+        P_0: in_units(What::PreferredPerimeter),
+        A_0: Parameter {
+            value: scale.length * scale.length,
+            ci95: None,
+            fixed: true,
+            unit: format!("{}^2", units.length),
+            words: "A_0 is never fitted: no velocity depends on it".into(),
         },
-        identifiability: result
-            .directions
-            .iter()
-            .map(|direction| EigenDirection {
-                eigenvalue: direction.eigenvalue,
-                direction: COEFFICIENTS
-                    .iter()
-                    .map(|name| name.to_string())
-                    .zip(direction.components)
-                    .collect(),
-            })
-            .collect(),
-        fit: Fit {
-            status: match result.status {
-                Status::Converged => FitStatus::Converged,
-                Status::StepLimit => FitStatus::IterationLimit,
-                Status::Stalled => FitStatus::Stalled,
-            },
-            iterations: result.steps as usize,
-            objective: result.objective,
-            expected_objective: result.expected_objective,
-            trace: result.trace.clone(),
+        alpha: in_units(What::Chirality),
+        K_P_alpha: in_units(What::ChiralCoefficient),
+        shape_index: parameter(What::PreferredPerimeter, 1.0, String::new()),
+    }
+}
+
+/// Constraints by name.
+fn given(constraints: &Constraints) -> GivenConstraints {
+    let name = |quantity: &What| quantity.name().to_owned();
+    let prior = |prior: &Prior| GivenPrior { mean: prior.mean, standard_deviation: prior.standard_deviation };
+    GivenConstraints {
+        fixed: constraints.fixed.iter().map(|(q, value)| (name(q), *value)).collect(),
+        bounds: constraints.bounds.iter().map(|(q, ends)| (name(q), *ends)).collect(),
+        priors: constraints.priors.iter().map(|(q, known)| (name(q), prior(known))).collect(),
+    }
+}
+
+fn nudge(prepared: &Prepared, result: &Inference) -> Nudge {
+    let scale = &prepared.scale;
+    let left = 2.0 * result.used as f64 - result.degrees_of_freedom - result.directions.len() as f64;
+    Nudge {
+        k: result.noise.spring() / (scale.time * scale.time),
+        rms: result.nudge_rms * scale.length,
+        degrees_of_freedom: result.degrees_of_freedom,
+        contribution_ratio: result.contribution_ratio,
+        expected_contribution_ratio: if left > 0.0 { result.degrees_of_freedom / left } else { f64::NAN },
+        edges_changed: result.frames.iter().map(|f| f.edges_lost.len() + f.edges_gained.len()).sum(),
+    }
+}
+
+fn identifiability(result: &Inference) -> Vec<EigenDirection> {
+    let words = words::directions(&result.directions, &result.parameters);
+    let named = |components: [f64; 4]| {
+        COEFFICIENTS.iter().map(|name| name.to_string()).zip(components).collect::<BTreeMap<_, _>>()
+    };
+    let directions = result.directions.iter().zip(words);
+    directions
+        .map(|(direction, words)| EigenDirection {
+            eigenvalue: direction.eigenvalue,
+            direction: named(direction.components),
+            words,
+        })
+        .collect()
+}
+
+fn fit(prepared: &Prepared, result: &Inference) -> Fit {
+    let [tried, made] = result.transitions;
+    Fit {
+        method: match prepared.request.method {
+            Method::Search { .. } => FitMethod::Search,
+            Method::Descent { .. } => FitMethod::Descent,
         },
+        status: match result.status {
+            Status::Converged => FitStatus::Converged,
+            Status::StepLimit => FitStatus::IterationLimit,
+            Status::Stalled => FitStatus::Stalled,
+        },
+        trustworthy: result.doubts.is_empty(),
+        doubts: result.doubts.iter().map(|doubt| words::doubt(*doubt, result)).collect(),
+        iterations: result.steps as usize,
+        objective: result.objective,
+        expected_objective: result.expected_objective,
+        trace: result.trace.clone(),
+        starts: result.starts.clone(),
+        transitions: Transitions { tried, made },
     }
 }
 
 fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts {
     let mut left_out = BTreeMap::new();
     for observation in &prepared.observations {
-        for (cell, visibility) in observation.visibility.iter().enumerate() {
-            let reason = match visibility {
-                Visibility::OnHull => "polygon_not_closed",
-                Visibility::TooLarge => "polygon_too_large",
-                Visibility::NextToRim => "next_to_rim",
-                Visibility::Counted if observation.velocities.values()[cell].is_none() => "no_velocity",
-                Visibility::Counted => continue,
-            };
-            *left_out.entry(reason.to_owned()).or_insert(0) += 1;
+        for datum in 0..observation.velocities.values().len() {
+            if let Some(reason) = reason_to_leave_out(observation, datum) {
+                *left_out.entry(reason.to_owned()).or_insert(0) += 1;
+            }
         }
     }
     CellCounts { frames: prepared.frames.clone(), used: result.used, left_out }
 }
 
-/// What the terminal shows.
-pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
-    let mut text = String::new();
-    let left_out: usize = report.cells.left_out.values().sum();
-    let frames = report.cells.frames.len();
-    let _ = writeln!(
-        text,
-        "{} velocities in {frames} frame{}, {left_out} cells left out\n",
-        report.cells.used,
-        if frames == 1 { "" } else { "s" }
-    );
-    let p = &report.parameters;
-    let n = &report.naive;
-    let _ = writeln!(text, "{:<13} {:>12}  {:<26} {:>12}", "parameter", "nudged", "95 % interval", "naive");
-    for (name, parameter, naive) in [
-        ("K_P alpha", &p.K_P_alpha, n.K_P_alpha),
-        ("P_0 / l_0", &p.shape_index, n.shape_index),
-        ("alpha", &p.alpha, n.alpha),
-        ("K_A", &p.K_A, n.K_A),
-        ("K_P", &p.K_P, n.K_P),
-        ("P_0", &p.P_0, n.P_0),
-    ] {
-        let [value, interval] = match parameter.interval() {
-            Some(ends) => interval_text(parameter.value, ends),
-            None => [significant(parameter.value, 4), "fixed".into()],
-        };
-        let naive = significant(naive, 4);
-        let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
-        let _ = writeln!(text, "{}", row.trim_end());
+/// Why the velocity of a cell or at a grid point was not used, if it was not.
+fn reason_to_leave_out(observation: &Observation, datum: usize) -> Option<&'static str> {
+    let missing = observation.velocities.values()[datum].is_none();
+    match &observation.velocities {
+        Velocities::OfCells(_) => match observation.visibility[datum] {
+            Visibility::OnHull => Some("polygon_not_closed"),
+            Visibility::TooLarge => Some("polygon_too_large"),
+            Visibility::NextToRim => Some("next_to_rim"),
+            Visibility::Counted => missing.then_some("no_velocity"),
+        },
+        Velocities::OnGrid(_) if missing => Some("missing"),
+        Velocities::OnGrid(_) => (!observation.is_in_reach(datum)).then_some("window_not_filled"),
     }
-    let e = &report.nmse;
-    let held_out = match (e.cross_validated, e.cross_validated_standard_error) {
-        (Some(error), Some(spread)) => format!("{} ± {}", significant(error, 3), significant(spread, 1)),
-        _ => "–".into(),
-    };
-    let floor = match e.noise_floor.is_finite() {
-        true => format!("; noise alone {}", significant(e.noise_floor, 3)),
-        false => String::new(),
-    };
-    let _ = writeln!(
-        text,
-        "\nerror (NMSE)  naive {}, nudged {}, same parameters un-nudged {}, held out {held_out}{floor}",
-        significant(e.naive, 3),
-        significant(e.nudged, 3),
-        significant(e.un_nudged, 3)
-    );
-    let _ = writeln!(
-        text,
-        "noise         sigma_r {}, sigma_v {}; {} degrees of freedom in the nudges, {} contacts changed",
-        significant(report.noise.sigma_r, 3),
-        significant(report.noise.sigma_v, 3),
-        significant(report.nudge.degrees_of_freedom, 3),
-        report.nudge.edges_changed
-    );
-    let _ = writeln!(text, "\nfigures in {}", folder.join("report.html").display());
-    text
 }

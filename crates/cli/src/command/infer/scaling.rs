@@ -1,6 +1,7 @@
 //! Between the units of the data and those of the fit, in which ℓ₀ and the root mean square velocity are one.
 
 use voronudge_infer::{Constraints, Prior, Quantity, Scale};
+use voronudge_report::Units;
 
 /// A quantity in the units of the data, per unit of the fit.
 pub(super) fn factor(scale: &Scale, quantity: Quantity) -> f64 {
@@ -11,6 +12,26 @@ pub(super) fn factor(scale: &Scale, quantity: Quantity) -> f64 {
         Quantity::PreferredPerimeter => scale.length,
         Quantity::Chirality => 1.0,
         Quantity::ChiralCoefficient => coefficients[3],
+    }
+}
+
+/// The unit of a quantity in the data.
+pub(super) fn unit(quantity: Quantity, units: &Units) -> String {
+    let Units { length, time } = units;
+    match quantity {
+        Quantity::AreaElasticity => format!("1/({length}^2*{time})"),
+        Quantity::PerimeterElasticity | Quantity::ChiralCoefficient => format!("1/{time}"),
+        Quantity::PreferredPerimeter => length.clone(),
+        Quantity::Chirality => String::new(),
+    }
+}
+
+/// A quantity as it is printed.
+pub(super) fn symbol(quantity: Quantity) -> &'static str {
+    match quantity {
+        Quantity::Chirality => "α",
+        Quantity::ChiralCoefficient => "K_P α",
+        other => other.name(),
     }
 }
 
