@@ -60,27 +60,15 @@ pub(super) fn printed(words: &str) -> String {
 }
 
 fn profile_figure(curve: &ProfileCurve) -> Figure {
-    Figure::new(
-        profile(curve),
-        "The parameter is held at each value and everything else fitted again. Where the curve is no \
-         parabola, believe the profile.",
-    )
+    Figure::new(profile(curve), &format!("profile of {}", curve.parameter.replace('_', "")))
 }
 
 fn bootstrap_figure(histogram: &BootstrapHistogram) -> Figure {
-    Figure::new(
-        bootstrap_histogram(histogram),
-        "The same fit of synthetic data with the noise of this fit. Estimates that lie to one side of the \
-         upright line mean that the fit is biased.",
-    )
+    let caption = format!("bootstrap estimates of {}", histogram.parameter.replace('_', ""));
+    Figure::new(bootstrap_histogram(histogram), &caption)
 }
 
 fn landscape_figure(slice: &Landscape) -> Figure {
-    let caption = format!(
-        "{} and {} on a grid, {}. Dark is likely; the lines bound 68 % and 95 %.",
-        printed(&slice.x.label),
-        printed(&slice.y.label),
-        slice.title
-    );
-    Figure::new(landscape(slice), &caption)
+    let [x, y] = [&slice.x, &slice.y].map(|axis| axis.label.replace('_', ""));
+    Figure::new(landscape(slice), &format!("{x} and {y}, {}", slice.title))
 }

@@ -52,9 +52,14 @@ fn two_quantities(text: &str) -> Result<[Quantity; 2], String> {
     if x == y { Err(format!("{} is named twice", x.name())) } else { Ok([x, y]) }
 }
 
-/// Whether a quantity can still vary in a space. One that is held can be held at one value only.
+/// Whether a quantity can still vary in a space: whether it differs between two of its points.
 fn varies(space: &CoefficientSpace, quantity: Quantity) -> bool {
-    [0.37, 1.73].into_iter().all(|value| space.hold(quantity, value).is_ok())
+    let at = |step: f64| -> f64 {
+        let free: Vec<f64> = (0..space.dimension()).map(|k| 1.3 + step * (k as f64 + 0.7)).collect();
+        quantity.of(&space.coefficients(&free))
+    };
+    let (one, other) = (at(0.37), at(0.91));
+    (one - other).abs() > 1e-9 * one.abs()
 }
 
 impl UncertaintyArguments {

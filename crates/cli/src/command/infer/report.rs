@@ -10,8 +10,8 @@ use crate::run::Run;
 use std::collections::BTreeMap;
 use voronudge_geometry::Visibility;
 use voronudge_infer::{
-    Constraints, Inference, Method, NoiseSource as Source, Observation, Prior, Quantity as What, Scale,
-    Status, Velocities,
+    Constraints, Inference, Method, NoiseSource as Source, Observation, Prior, Quantity as What, Status,
+    Velocities,
 };
 use voronudge_io::DataSet;
 use voronudge_report::Units;
@@ -39,7 +39,7 @@ pub(super) fn report(
         cells: cell_counts(prepared, result),
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: given(&prepared.constraints),
-        parameters: parameters(result, scale, &units),
+        parameters: parameters(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),
             K_P: naive.perimeter_elasticity * factor(scale, What::PerimeterElasticity),
@@ -79,7 +79,8 @@ pub(super) fn report(
     }
 }
 
-fn parameters(result: &Inference, scale: &Scale, units: &Units) -> Parameters {
+fn parameters(prepared: &Prepared, result: &Inference, units: &Units) -> Parameters {
+    let scale = &prepared.scale;
     let parameter = |quantity: What, factor: f64, unit: String| {
         let estimate = result.parameters.get(quantity);
         let [low, high] = estimate.interval;
@@ -94,7 +95,12 @@ fn parameters(result: &Inference, scale: &Scale, units: &Units) -> Parameters {
             words: words::parameter(quantity, estimate),
         }
     };
-    let in_units = |quantity: What| parameter(quantity, factor(scale, quantity), unit(quantity, units));
+    let in_units = |quantity: What| {
+        let fitted = parameter(quantity, factor(scale, quantity), unit(quantity, units));
+        // What was given keeps its last digit.
+        let given = prepared.constraints.fixed.get(&quantity);
+        Parameter { value: given.copied().unwrap_or(fitted.value), ..fitted }
+    };
     Parameters {
         K_A: in_units(What::AreaElasticity),
         K_P: in_units(What::PerimeterElasticity),

@@ -37,16 +37,16 @@ pub(super) fn symbol(quantity: Quantity) -> &'static str {
 
 /// What is known of the parameters in the units of the data, in those of the fit.
 pub(super) fn scaled(constraints: &Constraints, scale: &Scale) -> Constraints {
-    let per = |quantity: &Quantity| 1.0 / factor(scale, *quantity);
+    let unit = |quantity: &Quantity| factor(scale, *quantity);
     Constraints {
-        fixed: constraints.fixed.iter().map(|(q, value)| (*q, value * per(q))).collect(),
-        bounds: constraints.bounds.iter().map(|(q, ends)| (*q, ends.map(|end| end * per(q)))).collect(),
+        fixed: constraints.fixed.iter().map(|(q, value)| (*q, value / unit(q))).collect(),
+        bounds: constraints.bounds.iter().map(|(q, ends)| (*q, ends.map(|end| end / unit(q)))).collect(),
         priors: constraints
             .priors
             .iter()
             .map(|(q, prior)| {
-                let standard_deviation = prior.standard_deviation * per(q);
-                (*q, Prior { mean: prior.mean * per(q), standard_deviation })
+                let standard_deviation = prior.standard_deviation / unit(q);
+                (*q, Prior { mean: prior.mean / unit(q), standard_deviation })
             })
             .collect(),
     }

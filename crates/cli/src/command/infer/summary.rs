@@ -39,6 +39,10 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         ("P_0", &p.P_0, n.P_0),
     ] {
         let [value, interval] = match parameter.interval() {
+            Some(ends) if ends.contains(&Some(parameter.value)) => {
+                let [value, interval] = interval_text(parameter.value, ends);
+                [value, format!("{interval}, at a bound")]
+            }
             Some(ends) => interval_text(parameter.value, ends),
             None => [significant(parameter.value, 4), "fixed".into()],
         };

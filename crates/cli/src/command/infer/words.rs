@@ -7,7 +7,7 @@ use voronudge_report::numbers::significant;
 const IDENTIFIED: f64 = 0.5;
 
 /// Share of a direction that is told; the rest is small.
-const TOLD: f64 = 0.9;
+const TOLD: f64 = 0.8;
 
 /// Coefficients in the order of a direction's components.
 const COEFFICIENTS: [&str; 4] = ["K_A", "K_P P_0", "K_P", "K_P alpha"];
@@ -123,28 +123,29 @@ fn combination(components: &[f64; 4], estimates: &ParameterEstimates) -> String 
         true => format!("raises {} together", listed(&raised)),
         false => format!("raises {} and lowers {}", listed(&raised), listed(&lowered)),
     };
-    text + &kept_ratios(&chosen, components, estimates)
+    text + &told_ratios(&chosen, components, estimates)
 }
 
-/// The ratios to K_P that a direction leaves much as they are.
-fn kept_ratios(chosen: &[usize], components: &[f64; 4], estimates: &ParameterEstimates) -> String {
+/// What a direction does to the ratios to K_P: where both coefficients follow the sign of their ratio, it stays much as it
+/// is, and otherwise it changes.
+fn told_ratios(chosen: &[usize], components: &[f64; 4], estimates: &ParameterEstimates) -> String {
+    if !chosen.contains(&DENOMINATOR) {
+        return String::new();
+    }
     let ratios = [(1, Quantity::PreferredPerimeter), (3, Quantity::Chirality)];
-    let kept: Vec<Quantity> = ratios
-        .into_iter()
-        .filter(|(index, quantity)| {
-            let moves_along =
-                components[*index] * components[DENOMINATOR] * estimates.get(*quantity).value > 0.0;
-            chosen.contains(index) && chosen.contains(&DENOMINATOR) && moves_along
-        })
-        .map(|(_, quantity)| quantity)
-        .collect();
-    match kept[..] {
-        [] => String::new(),
-        [only] => format!(" (their ratio {})", parameter(only, estimates.get(only))),
-        _ => {
-            let words: Vec<String> = kept.iter().map(|q| parameter(*q, estimates.get(*q))).collect();
-            format!(" (of their ratios, {})", words.join(" and "))
+    let (mut kept, mut changed) = (Vec::new(), Vec::new());
+    for (index, quantity) in ratios.into_iter().filter(|(index, _)| chosen.contains(index)) {
+        let ratio = estimates.get(quantity);
+        match components[index] * components[DENOMINATOR] * ratio.value > 0.0 {
+            true => kept.push(parameter(quantity, ratio)),
+            false => changed.push(spoken(quantity)),
         }
+    }
+    match (kept.as_slice(), changed.as_slice()) {
+        ([], []) => String::new(),
+        ([], changed) => format!(", which changes {}", listed(changed)),
+        ([only], _) => format!(" (their ratio {only})"),
+        (several, _) => format!(" (of their ratios, {})", several.join(" and ")),
     }
 }
 
@@ -206,7 +207,10 @@ mod tests {
             &estimates(),
         );
         assert_eq!(words[0], "the stiffest combination is K_P alpha");
-        assert_eq!(words[1], "the second stiffest combination raises K_P and lowers K_P P_0");
+        assert_eq!(
+            words[1],
+            "the second stiffest combination raises K_P and lowers K_P P_0, which changes P_0"
+        );
         assert_eq!(words[2], "the third stiffest combination is K_P P_0");
         let last =
             "the sloppiest combination raises K_P P_0 and K_P together (their ratio P_0 is known to 3 %)";
@@ -221,7 +225,7 @@ mod tests {
             say([0.0, 0.0, 0.6, -0.8]),
             "raises K_P alpha and lowers K_P (their ratio alpha is known to 21 %)"
         );
-        assert_eq!(say([0.0, 0.0, 0.6, 0.8]), "raises K_P alpha and K_P together");
+        assert_eq!(say([0.0, 0.0, 0.6, 0.8]), "raises K_P alpha and K_P together, which changes alpha");
         let both = say([0.0, 0.7, 0.5, -0.5]);
         assert!(
             both.ends_with("(of their ratios, P_0 is known to 3 % and alpha is known to 21 %)"),
