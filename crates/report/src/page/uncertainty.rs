@@ -60,15 +60,15 @@ pub(super) fn printed(words: &str) -> String {
 }
 
 fn profile_figure(curve: &ProfileCurve) -> Figure {
-    Figure::new(profile(curve), &format!("profile of {}", curve.parameter.replace('_', "")))
+    Figure::new(profile(curve), &format!("profile of {}", curve.parameter))
 }
 
 fn bootstrap_figure(histogram: &BootstrapHistogram) -> Figure {
-    let caption = format!("bootstrap estimates of {}", histogram.parameter.replace('_', ""));
+    let caption = format!("bootstrap estimates of {}", histogram.parameter);
     Figure::new(bootstrap_histogram(histogram), &caption)
 }
 
 fn landscape_figure(slice: &Landscape) -> Figure {
-    let [x, y] = [&slice.x, &slice.y].map(|axis| axis.label.replace('_', ""));
+    let [x, y] = [&slice.x, &slice.y].map(|axis| &axis.label);
     Figure::new(landscape(slice), &format!("{x} and {y}, {}", slice.title))
 }

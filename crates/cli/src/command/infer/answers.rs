@@ -8,9 +8,6 @@ use voronudge_report::figure::{self, BootstrapHistogram, LandscapeAxis, ProfileC
 use voronudge_report::infer_report::{BootstrapResult, LandscapeResult, ProfileResult};
 use voronudge_report::{Uncertainty, Units};
 
-/// Half the width of a 95 % interval in standard errors.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
-
 /// Rises of −2 log likelihood that bound 68 % and 95 % of two parameters.
 const CONTOURS: [(f64, &str); 2] = [(2.30, "68 %"), (5.99, "95 %")];
 
@@ -105,14 +102,16 @@ pub(super) fn figures(answers: &Answers, result: &Inference, scale: &Scale, unit
         })
     };
     let histogram = |bootstrap: &Bootstrap, quantity: Quantity| {
-        let half = NORMAL_95 * error(quantity);
         let factor = factor(scale, quantity);
         BootstrapHistogram {
             parameter: symbol(quantity).into(),
             unit: unit(quantity, units),
             estimates: bootstrap.values(quantity).into_iter().map(|value| value * factor).collect(),
             estimate: best(quantity),
-            normal: Some([best(quantity) - half, best(quantity) + half]),
+            fitted: match result.parameters.get(quantity).interval {
+                [Some(low), Some(high)] => Some([low * factor, high * factor]),
+                _ => None,
+            },
             percentile: bootstrap.interval(quantity).map(|ends| ends.map(|end| end * factor)),
         }
     };

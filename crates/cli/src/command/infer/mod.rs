@@ -101,9 +101,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     });
     progress.finish();
     let (result, answers) = answered.map_err(|error| prepared.place(error, &arguments))?;
-    for doubt in &result.doubts {
-        run.warn(words::doubt(*doubt, &result));
-    }
+    let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
+    doubts.iter().for_each(|doubt| run.warn(doubt));
     write_arrays(&mut out, &data, &prepared, &result)?;
     let report = report::report(&run, &data, &prepared, &result, &answers);
     let json = report.to_json()?;

@@ -4,9 +4,10 @@ use super::Arguments;
 use super::answers;
 use super::prepare::{Measured, Prepared};
 use super::questions::Answers;
+use super::scaling::symbol;
 use crate::failure::Failure;
 use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
-use voronudge_infer::Inference;
+use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
@@ -134,12 +135,15 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
 
 /// What the constraints were, in a sentence, if there were bounds or priors.
 fn beforehand(report: &InferReport) -> Option<String> {
-    let bounds = report.constraints.bounds.iter().map(|(name, [low, high])| match (low, high) {
-        (low, high) if high.is_infinite() => format!("{name} at least {}", as_given(*low)),
-        (low, high) if low.is_infinite() => format!("{name} at most {}", as_given(*high)),
-        (low, high) => format!("{name} between {} and {}", as_given(*low), as_given(*high)),
-    });
+    let printed = |name: &str| Quantity::from_name(name).map_or("", symbol);
+    let bounds =
+        report.constraints.bounds.iter().map(|(name, [low, high])| match (printed(name), low, high) {
+            (name, low, high) if high.is_infinite() => format!("{name} at least {}", as_given(*low)),
+            (name, low, high) if low.is_infinite() => format!("{name} at most {}", as_given(*high)),
+            (name, low, high) => format!("{name} between {} and {}", as_given(*low), as_given(*high)),
+        });
     let priors = report.constraints.priors.iter().map(|(name, prior)| {
+        let name = printed(name);
         format!("{name} {} ± {}", as_given(prior.mean), as_given(prior.standard_deviation))
     });
     let all: Vec<String> = bounds.chain(priors).collect();

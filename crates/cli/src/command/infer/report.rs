@@ -75,7 +75,7 @@ pub(super) fn report(
         profiles: answers.profiles.iter().map(|profile| answers::profile(profile, scale)).collect(),
         landscapes: answers.landscapes.iter().map(|slice| answers::landscape(slice, scale)).collect(),
         bootstrap: answers.bootstrap.as_ref().map(|all| answers::bootstrap(all, result, scale)),
-        fit: fit(prepared, result),
+        fit: fit(prepared, result, answers),
     }
 }
 
@@ -157,7 +157,8 @@ fn identifiability(result: &Inference) -> Vec<EigenDirection> {
         .collect()
 }
 
-fn fit(prepared: &Prepared, result: &Inference) -> Fit {
+fn fit(prepared: &Prepared, result: &Inference, answers: &Answers) -> Fit {
+    let doubts = words::doubts(result, &answers.profiles, prepared.request.method);
     let [tried, made] = result.transitions;
     Fit {
         method: match prepared.request.method {
@@ -169,8 +170,8 @@ fn fit(prepared: &Prepared, result: &Inference) -> Fit {
             Status::StepLimit => FitStatus::IterationLimit,
             Status::Stalled => FitStatus::Stalled,
         },
-        trustworthy: result.doubts.is_empty(),
-        doubts: result.doubts.iter().map(|doubt| words::doubt(*doubt, result)).collect(),
+        trustworthy: doubts.is_empty(),
+        doubts,
         iterations: result.steps as usize,
         objective: result.objective,
         expected_objective: result.expected_objective,

@@ -25,7 +25,12 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         "{} velocities in {frames} frame{}, {left_out} {} left out\n",
         report.cells.used,
         if frames == 1 { "" } else { "s" },
-        if report.flow.is_some() { "grid points" } else { "cells" }
+        match (report.flow.is_some(), left_out) {
+            (true, 1) => "grid point",
+            (true, _) => "grid points",
+            (false, 1) => "cell",
+            (false, _) => "cells",
+        }
     );
     let p = &report.parameters;
     let n = &report.naive;

@@ -1,6 +1,6 @@
 //! What a fit and its uncertainty mean, in plain words.
 
-use voronudge_infer::{Direction, Doubt, Estimate, Inference, ParameterEstimates, Quantity};
+use voronudge_infer::{Direction, Doubt, Estimate, Inference, Method, ParameterEstimates, Profile, Quantity};
 use voronudge_report::numbers::significant;
 
 /// Relative standard error above which a parameter counts as not identified.
@@ -8,6 +8,9 @@ const IDENTIFIED: f64 = 0.5;
 
 /// Share of a direction that is told; the rest is small.
 const TOLD: f64 = 0.8;
+
+/// Fall of −2 log likelihood from the estimate to elsewhere that is no accident.
+const MISSED: f64 = 3.84;
 
 /// Coefficients in the order of a direction's components.
 const COEFFICIENTS: [&str; 4] = ["K_A", "K_P P_0", "K_P", "K_P alpha"];
@@ -24,11 +27,15 @@ pub(super) fn spoken(quantity: Quantity) -> &'static str {
 }
 
 /// A reason not to trust a fit, and what to do.
-pub(super) fn doubt(doubt: Doubt, result: &Inference) -> String {
+fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
+    let remedy = match method {
+        Method::Search { .. } => "--starts 8",
+        Method::Descent { .. } => "--method search",
+    };
     match doubt {
         Doubt::Objective(deviations) => format!(
             "the objective is {} times its expected value ({} standard deviations above it): the fit is in a wrong minimum, \
-             the noise levels are too small, or the model lacks something; try --starts 8 and check the noise levels \
+             the noise levels are too small, or the model lacks something; try {remedy}, and check the noise levels \
              (intervals are widened accordingly)",
             significant(result.excess(), 2),
             significant(deviations, 2)
@@ -40,6 +47,22 @@ pub(super) fn doubt(doubt: Doubt, result: &Inference) -> String {
         }
         Doubt::Steps => "the fit used up its steps before it reached a minimum; raise --max-steps".into(),
     }
+}
+
+/// Every reason not to trust a fit: its own, and profiles that are lower elsewhere.
+pub(super) fn doubts(result: &Inference, profiles: &[Profile], method: Method) -> Vec<String> {
+    let missed = profiles.iter().filter_map(|profile| {
+        let estimate = result.parameters.get(profile.quantity).value;
+        let (_, rise) = profile.points.iter().find(|(value, _)| *value == estimate)?;
+        (*rise > MISSED).then(|| {
+            format!(
+                "the profile of {} is lower elsewhere than at the estimate, by {}: the fit missed a minimum; try --starts 8",
+                spoken(profile.quantity),
+                significant(*rise, 2)
+            )
+        })
+    });
+    result.doubts.iter().map(|own| doubt(*own, result, method)).chain(missed).collect()
 }
 
 /// How well a quantity is known.
@@ -60,14 +83,21 @@ pub(super) fn parameter(quantity: Quantity, estimate: &Estimate) -> String {
         return format!("{name} is at its {side} bound");
     }
     match interval {
+        _ if is_identified(estimate) => {
+            format!("{name} is known to {}", percent(standard_error / value.abs()))
+        }
         [Some(low), Some(high)] if *low < 0.0 && *high > 0.0 => {
             format!("{name} is not identified by these data: its sign is not determined")
         }
-        [Some(_), Some(_)] if standard_error / value.abs() <= IDENTIFIED => {
-            format!("{name} is known to {}", percent(standard_error / value.abs()))
-        }
         _ => format!("{name} is not identified by these data"),
     }
+}
+
+/// Whether an interval is bounded and away from zero, and the standard error a moderate share of the value.
+fn is_identified(estimate: &Estimate) -> bool {
+    let Estimate { value, standard_error, interval } = estimate;
+    let [Some(low), Some(high)] = interval else { return false };
+    low * high > 0.0 && standard_error / value.abs() <= IDENTIFIED
 }
 
 fn percent(share: f64) -> String {
@@ -126,16 +156,17 @@ fn combination(components: &[f64; 4], estimates: &ParameterEstimates) -> String 
     text + &told_ratios(&chosen, components, estimates)
 }
 
-/// What a direction does to the ratios to K_P: where both coefficients follow the sign of their ratio, it stays much as it
-/// is, and otherwise it changes.
+/// What a direction does to those ratios to K_P that are known: where both coefficients follow the sign of their ratio, it
+/// stays much as it is, and otherwise it changes.
 fn told_ratios(chosen: &[usize], components: &[f64; 4], estimates: &ParameterEstimates) -> String {
-    if !chosen.contains(&DENOMINATOR) {
-        return String::new();
-    }
     let ratios = [(1, Quantity::PreferredPerimeter), (3, Quantity::Chirality)];
     let (mut kept, mut changed) = (Vec::new(), Vec::new());
-    for (index, quantity) in ratios.into_iter().filter(|(index, _)| chosen.contains(index)) {
+    for (index, quantity) in ratios {
         let ratio = estimates.get(quantity);
+        let both = chosen.contains(&index) && chosen.contains(&DENOMINATOR);
+        if !both || !is_identified(ratio) {
+            continue;
+        }
         match components[index] * components[DENOMINATOR] * ratio.value > 0.0 {
             true => kept.push(parameter(quantity, ratio)),
             false => changed.push(spoken(quantity)),
