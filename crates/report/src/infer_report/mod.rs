@@ -75,7 +75,7 @@ pub struct InferReport {
     pub noise: Noise,
     /// The nudges.
     pub nudge: Nudge,
-    /// Eigenvalues and directions of the information matrix, stiffest first.
+    /// Principal axes of the covariance of the coefficients, stiffest first.
     pub identifiability: Vec<EigenDirection>,
     /// Profile likelihoods, where asked for.
     pub profiles: Vec<ProfileResult>,

@@ -7,7 +7,7 @@ use serde::Serialize;
 /// One direction in the space of parameters and how well the data determine it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct EigenDirection {
-    /// Eigenvalue of the information matrix.
+    /// One over the variance along it.
     pub eigenvalue: f64,
     /// Components of the unit vector by parameter.
     pub direction: BTreeMap<String, f64>,

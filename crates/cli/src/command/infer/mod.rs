@@ -65,11 +65,11 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MeanToRemove {
-    /// The median of each frame if velocities are derived from tracks in an open field, none otherwise.
+    /// The median of each frame in an open field, unless velocities of cells are given; none otherwise.
     Auto,
     /// None.
     None,
-    /// The median velocity of the cells used in each frame.
+    /// The median of the velocities used in each frame.
     PerFrame,
 }
 
