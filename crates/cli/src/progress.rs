@@ -1,7 +1,8 @@
 //! Progress with time left on stderr, and Ctrl-C.
 
 use crate::arguments::Verbosity;
-use indicatif::{ProgressBar, ProgressStyle};
+use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
+use std::fmt::Write;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -37,14 +38,16 @@ impl Progress {
         if self.verbosity == Verbosity::Normal && self.bar.is_hidden() && self.begun.elapsed() > PATIENCE {
             self.bar = ProgressBar::new(total).with_elapsed(self.begun.elapsed());
             let style =
-                ProgressStyle::with_template("{msg:20} {bar:30} {pos}/{len}  {elapsed} elapsed, {eta} left");
+                ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}  {elapsed} elapsed{left}");
             if let Ok(style) = style {
-                self.bar.set_style(style);
+                self.bar.set_style(style.with_key("left", time_left));
             }
         }
-        if self.bar.message() != stage {
-            self.bar.reset_eta();
+        // The time left is that of a stage; one that begins again is timed anew.
+        if self.bar.message() != stage || done < self.bar.position() {
             self.bar.set_message(stage.to_owned());
+            self.bar.set_position(done);
+            self.bar.reset_eta();
         }
         self.bar.set_length(total);
         self.bar.set_position(done);
@@ -58,5 +61,13 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();
+    }
+}
+
+/// The time left, once a step has been seen.
+fn time_left(state: &ProgressState, text: &mut dyn Write) {
+    let left = state.eta();
+    if !left.is_zero() {
+        let _ = write!(text, ", {:#} left", HumanDuration(left));
     }
 }

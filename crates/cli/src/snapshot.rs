@@ -1,7 +1,7 @@
 //! Between data sets, whose cells come and go, and snapshots of the cells that are there.
 
 use crate::failure::Failure;
-use ndarray::{Array3, ArrayD, ArrayView2, Axis, Ix2};
+use ndarray::{Array, Array3, ArrayD, ArrayView2, Axis, Ix2, RemoveAxis};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_io::{Boundary, DataSet, YAxis};
 
@@ -62,10 +62,7 @@ pub(crate) fn to_array<'a>(
     data: &DataSet,
     frames: impl ExactSizeIterator<Item = (&'a Snapshot, &'a [Vector<f64>])>,
 ) -> ArrayD<f64> {
-    let flip = match data.y_axis {
-        YAxis::Up => 1.0,
-        YAxis::Down => -1.0,
-    };
+    let flip = y_sign(data);
     let mut array = Array3::from_elem((frames.len(), data.cells(), 2), f64::NAN);
     for (index, (snapshot, vectors)) in frames.enumerate() {
         for (&cell, v) in snapshot.cells.iter().zip(vectors) {
@@ -74,6 +71,14 @@ pub(crate) fn to_array<'a>(
         }
     }
     as_given(data, array)
+}
+
+/// What turns y up into the y of the files.
+pub(crate) fn y_sign(data: &DataSet) -> f64 {
+    match data.y_axis {
+        YAxis::Up => 1.0,
+        YAxis::Down => -1.0,
+    }
 }
 
 /// Numbers of the cells of several frames, as an array (frames, cells), or (cells,) if the data set has a single frame.
@@ -94,6 +99,7 @@ pub(crate) fn to_scalars<'a>(
     }
 }
 
-fn as_given(data: &DataSet, array: Array3<f64>) -> ArrayD<f64> {
+/// An array whose first axis counts frames; without it if the data set has a single frame.
+pub(crate) fn as_given<D: RemoveAxis>(data: &DataSet, array: Array<f64, D>) -> ArrayD<f64> {
     if data.frames() == 1 { array.index_axis_move(Axis(0), 0).into_dyn() } else { array.into_dyn() }
 }

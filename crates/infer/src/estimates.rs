@@ -2,10 +2,16 @@
 
 use crate::quadratic::{Functional, Interval, Quadratic, Ratio};
 use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, ParameterEstimates, Quantity};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix4};
 
 /// A change of −2 log likelihood that one parameter exceeds by chance in 5 % of cases: the 95 % quantile of χ²₁.
 pub const CHI_SQUARED_95: f64 = 3.841_458_820_694_124;
+
+/// Usual sizes of the coefficients relative to K_P, in units of ℓ₀: P_0 is about the perimeter of a regular hexagon.
+const SIZES: [f64; 4] = [1.0, 3.722, 1.0, 1.0];
+
+/// Distance from a bound, in standard errors, that is rounding.
+const ROUNDING: f64 = 1e-9;
 
 /// The quadratic about a fit.
 pub(crate) struct Fitted<'a> {
@@ -49,7 +55,17 @@ impl Fitted<'_> {
                 quadratic.linear_interval(&coefficient(quantity.coefficient()), &bounds, CHI_SQUARED_95)
             };
             let Interval { lower, upper } = interval.unwrap_or(Interval { lower: None, upper: None });
-            Estimate { value, standard_error: variance.max(0.0).sqrt(), interval: [lower, upper] }
+            let standard_error = variance.max(0.0).sqrt();
+            let ends = [lower, upper];
+            let stopped = |bound: &&f64| (value - **bound).abs() <= ROUNDING * standard_error;
+            match self.constraints.bounds.get(&quantity).and_then(|bounds| bounds.iter().find(stopped)) {
+                None => Estimate { value, standard_error, interval: ends },
+                Some(&bound) => {
+                    let near = |end: &f64| (end - bound).abs() <= ROUNDING * standard_error;
+                    let ends = ends.map(|end| if end.as_ref().is_some_and(near) { Some(bound) } else { end });
+                    Estimate { value: bound, standard_error, interval: ends }
+                }
+            }
         };
         Ok(ParameterEstimates {
             area_elasticity: estimate(Quantity::AreaElasticity),
@@ -67,21 +83,24 @@ impl Fitted<'_> {
         along.amax() <= 1e-12 * self.space.basis().amax()
     }
 
-    /// Eigenvectors of the information on β as directions in the space of coefficients, stiffest first.
-    pub fn directions(&self) -> Vec<Direction> {
-        let eigen = self.information.clone().symmetric_eigen();
-        let mut directions: Vec<Direction> = (0..self.information.nrows())
-            .map(|k| {
-                let along = self.space.basis() * eigen.eigenvectors.column(k);
-                // The sign of an eigenvector is arbitrary: the largest component is positive.
-                let sign = along[along.iamax()].signum() / along.norm();
-                Direction {
-                    eigenvalue: eigen.eigenvalues[k],
-                    components: std::array::from_fn(|i| sign * along[i]),
-                }
-            })
-            .collect();
-        directions.sort_by(|a, b| b.eigenvalue.total_cmp(&a.eigenvalue));
-        directions
+    /// Principal axes of the covariance of the coefficients, each measured in its usual size: stiffest first.
+    pub fn directions(&self) -> Result<Vec<Direction>, Error> {
+        let covariance = self.space.covariance(&crate::least_squares::invert(self.information.clone())?);
+        let relative = Matrix4::from_fn(|i, j| covariance[(i, j)] / (SIZES[i] * SIZES[j]));
+        let eigen = relative.symmetric_eigen();
+        let mut order: Vec<usize> = (0..4).collect();
+        order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
+        // What is held has no variance.
+        let free = order.split_off(4 - self.information.nrows());
+        let directions = free.into_iter().map(|k| {
+            let along = eigen.eigenvectors.column(k);
+            // The sign of an eigenvector is arbitrary: the largest component is positive.
+            let sign = along[along.iamax()].signum();
+            Direction {
+                eigenvalue: 1.0 / eigen.eigenvalues[k],
+                components: std::array::from_fn(|i| sign * along[i]),
+            }
+        });
+        Ok(directions.collect())
     }
 }

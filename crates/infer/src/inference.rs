@@ -107,7 +107,7 @@ pub fn infer(
         degrees_of_freedom: equations.degrees_of_freedom()?,
         nudge_rms: (parts.nudges / cells as f64).sqrt(),
         contribution_ratio: objective.spring() * parts.nudges / parts.residual,
-        directions: fitted.directions(),
+        directions: fitted.directions()?,
         frames: results,
         status: found.status,
         steps: found.steps,

@@ -160,6 +160,11 @@ impl Observation {
         self.velocities.values()[datum].filter(|_| self.used[datum])
     }
 
+    /// Whether the model can say what a velocity should be, measured or not.
+    pub fn is_in_reach(&self, datum: usize) -> bool {
+        self.used[datum]
+    }
+
     /// The data with a target, and their targets.
     pub fn targets(&self) -> impl Iterator<Item = (usize, Vector<f64>)> {
         (0..self.used.len()).filter_map(|datum| Some((datum, self.target(datum)?)))

@@ -81,9 +81,10 @@ pub struct Nmse {
 /// A direction in the space of coefficients and how well the data determine it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Direction {
-    /// Eigenvalue of the Fisher information (one over the variance along the direction).
+    /// One over the variance along the direction.
     pub eigenvalue: f64,
-    /// Components along `K_A`, `K_P P_0`, `K_P`, `K_P α` (scaled).
+    /// Components of the unit vector along `K_A`, `K_P P_0 / 3.722`, `K_P`, `K_P α`: where the first of the middle two
+    /// equals the second, `P_0` stays at the perimeter of a regular hexagon of unit area.
     pub components: [f64; 4],
 }
 

@@ -7,12 +7,12 @@ mod figure_sample;
 #[path = "../tests/report/sample.rs"]
 mod sample;
 
-use voronudge_report::Units;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::figure::{
     FlowMap, NudgeHistogram, VelocityField, bootstrap_histogram, flow_map, landscape, method_comparison,
     nudge_histogram, parameter_intervals, profile,
 };
+use voronudge_report::{Uncertainty, Units};
 
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = std::env::args().nth(1).ok_or("usage: sample_page DIR")?;
@@ -23,8 +23,14 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         ("large.html", report, vec![sample::frame("frame 0", 41)]),
         ("degenerate.html", sample::degenerate_report(), vec![sample::degenerate_frame()]),
     ];
+    let slice = figure_sample::landscape();
+    let uncertainty = Uncertainty {
+        profiles: vec![figure_sample::profile()],
+        bootstrap: vec![figure_sample::bootstrap()],
+        landscapes: vec![[slice.clone(), slice]],
+    };
     for (name, report, frames) in pages {
-        let html = sample::page(&report, &frames).render()?;
+        let html = sample::page(&report, &frames, &uncertainty).render()?;
         println!("{name}: {} kB", html.len() / 1000);
         std::fs::write(format!("{folder}/{name}"), html)?;
     }

@@ -36,5 +36,5 @@ mod view;
 
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use page::InferPage;
+pub use page::{InferPage, Uncertainty};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

@@ -97,6 +97,11 @@ impl DataSetArguments {
         self.file(self.velocities.as_ref(), "velocities.npy")
     }
 
+    /// The file that holds the flow field, for messages.
+    pub fn flow_file(&self) -> PathBuf {
+        self.file(self.flow.as_ref(), "flow.npy")
+    }
+
     fn file(&self, given: Option<&PathBuf>, name: &str) -> PathBuf {
         match (given, &self.dataset) {
             (Some(file), _) => file.clone(),

@@ -16,21 +16,6 @@ fn assert_line_refused(line: &str, facts: &[&str]) {
 }
 
 #[test]
-fn parameters_fixed_wrongly_are_refused() {
-    assert_infer_refuses("--fix K_B=1", &["--fix", "K_B is not a parameter", "K_A, K_P, P_0 and alpha"]);
-    assert_infer_refuses("--fix K_A", &["--fix", "NAME=VALUE"]);
-    assert_infer_refuses("--fix K_A=soft", &["--fix", "soft is not a number"]);
-    assert_infer_refuses("--fix K_A=nan", &["not finite"]);
-    assert_infer_refuses("--fix K_P=0", &["K_P is fixed to zero"]);
-    assert_infer_refuses("--fix K_A=0.1 --fix alpha=1 --fix K_A=0.1", &["--fix", "K_A is fixed twice"]);
-}
-
-#[test]
-fn a_fit_of_nothing_is_refused() {
-    assert_infer_refuses("--fix K_A=0.1 --fix K_P=1 --fix P_0=4 --fix alpha=-1", &["nothing to fit"]);
-}
-
-#[test]
 fn impossible_noise_is_refused() {
     assert_infer_refuses("--position-noise -0.1", &["--position-noise", "-0.1", "not negative"]);
     assert_infer_refuses("--velocity-noise -2%", &["--velocity-noise", "-0.02", "not negative"]);
@@ -65,7 +50,7 @@ fn impossible_numbers_of_threads_are_refused() {
 
 #[test]
 fn negative_numbers_are_refused_where_counts_are_needed() {
-    for flag in ["--seed", "--threads", "--max-steps"] {
+    for flag in ["--seed", "--threads", "--max-steps", "--starts", "--bootstrap", "--points"] {
         assert_infer_refuses(&format!("{flag} -1"), &[flag, "-1"]);
     }
     assert_line_refused("simulate --cells -1", &["--cells", "-1"]);

@@ -19,7 +19,8 @@ const FILES: [&str; 5] = [
 /// The chirality coefficient `K_P α` of the chiral liquid.
 const TRUTH: f64 = 3.4;
 
-fn infer(data: &Path, flags: &str) -> Folder {
+/// The results of a fit.
+pub fn infer(data: &Path, flags: &str) -> Folder {
     let out = Folder::new();
     succeed(&format!("infer {flags}"), &[("", data), ("--out", out.path())]);
     out
@@ -31,8 +32,9 @@ fn schema() -> jsonschema::Validator {
     jsonschema::validator_for(&schema).unwrap()
 }
 
+/// Asserts that a report is as the schema says.
 #[track_caller]
-fn assert_valid(report: &Value) {
+pub fn assert_valid(report: &Value) {
     let faults: Vec<String> =
         schema().iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
     assert!(faults.is_empty(), "{faults:#?}");

@@ -3,10 +3,12 @@
 
 mod bad_arguments;
 mod bad_arrays;
+mod bad_fits;
 mod bad_folders;
 mod bad_places;
 mod evaluations;
 mod flow_imports;
+mod flow_inferences;
 mod gradient_checks;
 mod imports;
 mod inferences;
@@ -18,3 +20,4 @@ mod refusal;
 mod scratch;
 mod simulations;
 mod stdout;
+mod uncertainties;

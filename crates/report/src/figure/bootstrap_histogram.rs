@@ -22,13 +22,13 @@ pub struct BootstrapHistogram {
     pub estimates: Vec<f64>,
     /// The estimate from the data themselves.
     pub estimate: f64,
-    /// 95 % interval of the normal approximation.
-    pub normal: Option<[f64; 2]>,
+    /// 95 % interval of the fit, without the bootstrap.
+    pub fitted: Option<[f64; 2]>,
     /// 95 % interval between percentiles of the estimates.
     pub percentile: Option<[f64; 2]>,
 }
 
-/// Histogram of the bootstrap estimates, with the estimate from the data, the normal interval
+/// Histogram of the bootstrap estimates, with the estimate from the data, the interval of the fit
 /// (solid) and the percentile interval (dashed) above it. The axis leaves out the farthest one
 /// percent of the estimates; their number is stated.
 #[must_use]
@@ -85,7 +85,7 @@ enum Kind {
 impl Kind {
     fn name(self) -> &'static str {
         match self {
-            Self::Normal => "normal",
+            Self::Normal => "fit",
             Self::Percentile => "percentile",
         }
     }
@@ -101,7 +101,7 @@ impl Kind {
 /// The intervals that are known.
 fn intervals(bootstrap: &BootstrapHistogram) -> [(Option<[f64; 2]>, Kind); 2] {
     let known = |interval: Option<[f64; 2]>| interval.filter(|ends| ends.iter().all(|end| end.is_finite()));
-    [(known(bootstrap.normal), Kind::Normal), (known(bootstrap.percentile), Kind::Percentile)]
+    [(known(bootstrap.fitted), Kind::Normal), (known(bootstrap.percentile), Kind::Percentile)]
 }
 
 /// The histogram over nearly all estimates, the estimate and its intervals.

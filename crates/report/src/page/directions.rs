@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::parameter_table::symbol_of;
+use super::uncertainty::printed;
 use crate::colour::diverging;
 use crate::infer_report::EigenDirection;
 use crate::numbers::NO_VALUE;
@@ -16,6 +17,7 @@ pub(super) struct Directions {
 
 #[derive(Serialize)]
 struct DirectionRow {
+    words: String,
     eigenvalue: f64,
     cells: Vec<DirectionCell>,
 }
@@ -44,6 +46,7 @@ pub(super) fn directions(modes: &[EigenDirection]) -> Directions {
         }
     };
     let rows = modes.iter().map(|mode| DirectionRow {
+        words: printed(&mode.words),
         eigenvalue: mode.eigenvalue,
         cells: names.iter().map(|name| cell(mode.direction.get(*name))).collect(),
     });

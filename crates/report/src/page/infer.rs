@@ -2,15 +2,15 @@
 
 use serde::Serialize;
 
-use super::directions::{Directions, directions};
 use super::parameter_table::{TableRow, parameter_rows};
+use super::uncertainty::{Known, Uncertainty};
 use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
 use crate::error::ReportError;
 use crate::figure::{
-    CellScalar, Emphasis, ErrorBar, NudgeHistogram, ObjectiveTrace, ParameterRow, VelocityField, cell_map,
-    error_bars, nudge_histogram, nudge_map, objective_trace, parameter_intervals, predicted_against_measured,
-    velocity_map, velocity_pairs,
+    CellScalar, Emphasis, ErrorBar, FlowMap, NudgeHistogram, ObjectiveTrace, ParameterRow, VelocityField,
+    VelocityPair, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
+    predicted_against_measured, velocity_map, velocity_pairs,
 };
 use crate::infer_report::{FitStatus, InferReport, MeanRemoved, NoiseSource};
 use crate::numbers::{NO_VALUE, significant};
@@ -32,6 +32,10 @@ pub struct InferPage<'a> {
     pub report: &'a InferReport,
     /// The frames to draw; each adds about 0.5 kB per cell to the page.
     pub frames: &'a [FrameView],
+    /// Their velocities, one map for each frame, where these are on a grid; empty otherwise.
+    pub flows: &'a [FlowMap<'a>],
+    /// What was asked beyond the fit.
+    pub uncertainty: &'a Uncertainty,
 }
 
 impl InferPage<'_> {
@@ -47,6 +51,8 @@ impl InferPage<'_> {
             title: self.title,
             headline: self.headline,
             summary: self.summary,
+            doubts: &report.fit.doubts,
+            warnings: warnings(report),
             cards: cards(report, &rows),
             run: &report.run,
         };
@@ -57,12 +63,8 @@ impl InferPage<'_> {
             noise_source: noise_source(report.noise.source),
             fit_status: fit_status(report.fit.status),
             velocity_unit: report.units.velocity_text(),
-            intervals: Figure::new(
-                parameter_intervals(&rows),
-                "Each parameter on its own axis; the dashed upright line is zero. An arrow head says that \
-                 the interval is not bounded there, a thick upright line that the estimate stopped at a \
-                 bound.",
-            ),
+            data: data(report),
+            known: Known::new(report, &rows, self.uncertainty),
             parameters: rows.iter().map(TableRow::new).collect(),
             error_figure: self.error_figure(),
             trace_figure: self.trace_figure(),
@@ -77,7 +79,6 @@ impl InferPage<'_> {
                  position noise. Nudges are usually smaller than the noise, because the data \
                  determine only part of it.",
             ),
-            directions: directions(&report.identifiability),
             panels: self.panels(),
         };
         render(TEMPLATE, &context)
@@ -108,23 +109,32 @@ impl InferPage<'_> {
 
     fn scatter_figure(&self) -> Figure {
         let report = self.report;
-        let pairs = velocity_pairs(self.frames);
-        Figure::new(
-            predicted_against_measured(&pairs, report.nmse.nudged, &report.units),
-            "Every cell used in the frames drawn, after the fit (at nudged positions); on the \
-             dashed line a prediction is perfect.",
-        )
+        let pairs = match report.flow {
+            None => velocity_pairs(self.frames),
+            Some(_) => self.flows.iter().flat_map(flow_pairs).collect(),
+        };
+        let what = if report.flow.is_some() { "grid point" } else { "cell" };
+        let caption = format!(
+            "Every {what} used in the frames drawn, after the fit (at nudged positions); on the dashed line a \
+             prediction is perfect."
+        );
+        Figure::new(predicted_against_measured(&pairs, report.nmse.nudged, &report.units), &caption)
     }
 
     fn panels(&self) -> Vec<Panel> {
         let units = &self.report.units;
         let velocities = ArrowScale::velocities(self.frames);
+        let flow_scale = FlowMap::scale(self.flows);
         let nudges = ArrowScale::nudges(self.frames);
-        let panel = |frame: &FrameView| {
+        let panel = |(index, frame): (usize, &FrameView)| {
             let area = CellScalar::area_ratio(frame);
             let shape = CellScalar::shape_index(frame);
             let velocity = |field: VelocityField| {
-                Figure::new(velocity_map(frame, field, velocities.as_ref(), units), field.caption())
+                let map = match self.flows.get(index) {
+                    Some(flow) => flow_map(flow, field, flow_scale.as_ref(), units),
+                    None => velocity_map(frame, field, velocities.as_ref(), units),
+                };
+                Figure::new(map, field.caption())
             };
             let mut figures: Vec<Figure> = VelocityField::ALL.map(velocity).into();
             figures.extend([
@@ -134,7 +144,7 @@ impl InferPage<'_> {
             ]);
             Panel { label: frame.label.clone(), figures, columns: Columns::for_cells(frame.cells.len()) }
         };
-        self.frames.iter().map(panel).collect()
+        self.frames.iter().enumerate().map(panel).collect()
     }
 }
 
@@ -146,14 +156,34 @@ struct Context<'a> {
     noise_source: &'static str,
     fit_status: &'static str,
     velocity_unit: String,
-    intervals: Figure,
+    data: &'static str,
+    known: Known,
     parameters: Vec<TableRow>,
     error_figure: Figure,
     trace_figure: Figure,
     scatter_figure: Figure,
     nudge_figure: Figure,
-    directions: Directions,
     panels: Vec<Panel>,
+}
+
+/// What velocities belong to.
+fn data(report: &InferReport) -> &'static str {
+    if report.flow.is_some() { "grid points" } else { "cells" }
+}
+
+/// The warnings that are no doubts, which have a box of their own.
+fn warnings(report: &InferReport) -> Vec<&str> {
+    let known = |text: &&str| !report.fit.doubts.iter().any(|doubt| doubt == text);
+    report.run.warnings.iter().map(String::as_str).filter(known).collect()
+}
+
+/// The grid points with a measured and a predicted velocity.
+fn flow_pairs(flow: &FlowMap<'_>) -> Vec<VelocityPair> {
+    let both = flow.measured.iter().zip(&flow.predicted);
+    both.filter_map(|(measured, predicted)| {
+        Some(VelocityPair { measured: (*measured)?, predicted: (*predicted)? })
+    })
+    .collect()
 }
 
 fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
@@ -179,7 +209,7 @@ fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
     };
     cards.push(Card { label: "NMSE".into(), value: significant(nmse, 2), note: note.into() });
     cards.push(Card {
-        label: "cells".into(),
+        label: data(report).into(),
         value: report.cells.used.to_string(),
         note: format!(
             "used in {}; {} left out",

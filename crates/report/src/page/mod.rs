@@ -6,8 +6,10 @@
 mod directions;
 mod infer;
 mod parameter_table;
+mod uncertainty;
 
 pub use infer::InferPage;
+pub use uncertainty::Uncertainty;
 
 use minijinja::{AutoEscape, Environment, Value};
 use serde::Serialize;
@@ -88,6 +90,10 @@ pub struct PageHead<'a> {
     pub headline: &'a str,
     /// Further sentences, one paragraph each.
     pub summary: &'a [String],
+    /// Reasons not to trust the numbers, which stand in a box of their own.
+    pub doubts: &'a [String],
+    /// What else the reader should know before using the numbers.
+    pub warnings: Vec<&'a str>,
     /// Key numbers.
     pub cards: Vec<Card>,
     /// The run.

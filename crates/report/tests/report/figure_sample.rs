@@ -61,7 +61,7 @@ pub fn bootstrap() -> BootstrapHistogram {
         unit: "1/min".into(),
         estimates,
         estimate: 0.0705,
-        normal: Some([0.0592, 0.0818]),
+        fitted: Some([0.0592, 0.0818]),
         percentile: Some([0.0614, 0.0851]),
     }
 }

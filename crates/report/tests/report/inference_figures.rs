@@ -94,9 +94,9 @@ fn a_bootstrap_shows_both_intervals_and_what_is_outside() {
     let mut sample = figure_sample::bootstrap();
     let svg = bootstrap_histogram(&sample);
     assert_sound("bootstrap", &svg);
-    assert_has(&svg, &["normal 95 %: 0.059 to 0.082 min⁻¹", "percentile 95 %: 0.061 to 0.085 min⁻¹"]);
+    assert_has(&svg, &["fit 95 %: 0.059 to 0.082 min⁻¹", "percentile 95 %: 0.061 to 0.085 min⁻¹"]);
     assert_has(&svg, &["estimate<", "number of resamples", "outside ▸"]);
-    sample.normal = Some([f64::NAN, 1.0]);
+    sample.fitted = Some([f64::NAN, 1.0]);
     sample.percentile = None;
     sample.estimate = f64::NAN;
     let svg = bootstrap_histogram(&sample);

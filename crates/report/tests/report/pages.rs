@@ -1,8 +1,9 @@
 //! The page is one file, escapes its text, and the report fits its schema.
 
-use crate::sample;
+use crate::{figure_sample, sample};
 use serde_json::Value;
-use voronudge_report::{INFER_SCHEMA, InferReport};
+use voronudge_report::figure::FlowMap;
+use voronudge_report::{INFER_SCHEMA, InferReport, Uncertainty};
 
 /// What the schema has to say against a report.
 fn errors(report: &InferReport) -> Result<Vec<String>, Box<dyn std::error::Error>> {
@@ -17,7 +18,7 @@ fn errors(report: &InferReport) -> Result<Vec<String>, Box<dyn std::error::Error
 fn the_page_is_self_contained() {
     let report = sample::report();
     let frames = [sample::frame("frame 6", 12), sample::frame("frame 7", 12)];
-    let html = sample::page(&report, &frames).render().unwrap();
+    let html = sample::page(&report, &frames, &Uncertainty::default()).render().unwrap();
     let without_namespaces = html.replace("xmlns=\"http://www.w3.org/2000/svg\"", "");
     for foreign in ["http:", "https:", " src=", "<link", "@import", "url("] {
         assert!(!without_namespaces.contains(foreign), "{foreign}");
@@ -32,6 +33,8 @@ fn the_page_is_self_contained() {
         "sha256 0f0f",
         "open polygon",
         "estimated from these data",
+        "<li>K<sub>P</sub> α is known to 2 %.</li>",
+        "2 starts ended at objectives from 871.0 to 873.5",
     ] {
         let found = html.contains(text);
         assert!(found, "{text}");
@@ -43,7 +46,7 @@ fn the_page_is_self_contained() {
 fn text_is_escaped_and_unknown_numbers_do_not_show() {
     let report = sample::degenerate_report();
     let frames = [sample::degenerate_frame()];
-    let html = sample::page(&report, &frames).render().unwrap();
+    let html = sample::page(&report, &frames, &Uncertainty::default()).render().unwrap();
     assert!(html.contains("embryo &lt;3&gt;"));
     assert!(html.contains("frame &lt;0&gt;"));
     assert!(!html.contains("<script>alert"));
@@ -51,6 +54,51 @@ fn text_is_escaped_and_unknown_numbers_do_not_show() {
     for text in ["not determined", "below 3.1", "above 0.20", "not bounded", ", at a bound"] {
         assert!(html.contains(text), "{text}");
     }
+}
+
+#[test]
+fn what_was_asked_beyond_the_fit_is_drawn() {
+    let mut report = sample::report();
+    report.bootstrap = sample::degenerate_report().bootstrap;
+    let frames = [sample::frame("frame 6", 12)];
+    let slice = figure_sample::landscape();
+    let uncertainty = Uncertainty {
+        profiles: vec![figure_sample::profile()],
+        bootstrap: vec![figure_sample::bootstrap()],
+        landscapes: vec![[slice.clone(), slice]],
+    };
+    let plain = sample::page(&report, &frames, &Uncertainty::default()).render().unwrap();
+    let html = sample::page(&report, &frames, &uncertainty).render().unwrap();
+    let figures = |html: &str| html.matches("<svg xmlns").count();
+    assert_eq!(figures(&html), figures(&plain) + 4);
+    for text in ["<h3>Profiles", "<h3>Landscapes", "<h3>Bootstrap", "3 synthetic data sets", "37 more"] {
+        assert!(html.contains(text) && !plain.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn velocities_on_a_grid_are_drawn_on_it() {
+    let mut report = sample::report();
+    report.flow = sample::degenerate_report().flow;
+    let frames = [sample::frame("frame 6", 20)];
+    let flows: Vec<FlowMap<'_>> = frames.iter().map(figure_sample::flow).collect();
+    let uncertainty = Uncertainty::default();
+    let page = sample::page(&report, &frames, &uncertainty);
+    let html = voronudge_report::InferPage { flows: &flows, ..page }.render().unwrap();
+    for text in ["grid points used", "Every grid point used", "no velocity ("] {
+        assert!(html.contains(text), "{text}");
+    }
+}
+
+#[test]
+fn doubts_stand_in_a_box_of_their_own() {
+    let frames = [sample::frame("frame 6", 12)];
+    let html =
+        |report: &InferReport| sample::page(report, &frames, &Uncertainty::default()).render().unwrap();
+    assert!(!html(&sample::report()).contains("class=\"caution\""));
+    let doubtful = html(&sample::degenerate_report());
+    assert!(doubtful.contains("class=\"caution\""));
+    assert_eq!(doubtful.matches("the fit &lt;used up&gt; its steps").count(), 1);
 }
 
 #[test]

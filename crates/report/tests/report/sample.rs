@@ -3,10 +3,11 @@
 use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
-    CellCounts, EigenDirection, Fit, FitStatus, InferReport, InputFile, MeanRemoved, NaiveParameters, Nmse,
-    Noise, NoiseSource, Nudge, Parameter, Parameters, Quantity, RunRecord,
+    BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid, FlowWindow,
+    GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, MeanRemoved, NaiveParameters,
+    Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult, Quantity, RunRecord, Transitions,
 };
-use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Units};
+use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
 /// Distance between neighbouring cells in µm.
 const SPACING: f64 = 12.0;
@@ -83,14 +84,20 @@ pub fn degenerate_frame() -> FrameView {
     }
 }
 
-/// A page around a report and frames.
-pub fn page<'a>(report: &'a InferReport, frames: &'a [FrameView]) -> InferPage<'a> {
+/// A page around a report, frames and what was asked beyond the fit.
+pub fn page<'a>(
+    report: &'a InferReport,
+    frames: &'a [FrameView],
+    uncertainty: &'a Uncertainty,
+) -> InferPage<'a> {
     InferPage {
         title: "embryo <3>",
         headline: "The chiral Voronoi model explains 69 % of the motion; chirality is part of it.",
         summary: &[],
         report,
         frames,
+        flows: &[],
+        uncertainty,
     }
 }
 
@@ -101,8 +108,15 @@ pub fn report() -> InferReport {
         ci95: Some([value - half, value + half]),
         fixed: false,
         unit: unit.to_owned(),
+        words: "K_P alpha is known to 2 %.".into(),
     };
-    let held = |value: f64, unit: &str| Parameter { value, ci95: None, fixed: true, unit: unit.into() };
+    let held = |value: f64, unit: &str| Parameter {
+        value,
+        ci95: None,
+        fixed: true,
+        unit: unit.into(),
+        words: "It is held.".into(),
+    };
     let direction = |eigenvalue: f64, components: [f64; 4]| EigenDirection {
         eigenvalue,
         direction: ["K_A", "K_P", "K_P_P_0", "K_P_alpha"]
@@ -110,6 +124,7 @@ pub fn report() -> InferReport {
             .map(String::from)
             .zip(components)
             .collect(),
+        words: "The stiffest combination is K_P alpha.".into(),
     };
     InferReport {
         run: RunRecord {
@@ -132,6 +147,12 @@ pub fn report() -> InferReport {
             frames: vec![6, 7],
             used: 636,
             left_out: BTreeMap::from([("open_polygon".into(), 152), ("no_velocity".into(), 12)]),
+        },
+        flow: None,
+        constraints: GivenConstraints {
+            fixed: BTreeMap::from([("K_A".into(), 0.0008)]),
+            bounds: BTreeMap::from([("K_P".into(), [0.0, f64::INFINITY])]),
+            priors: BTreeMap::from([("P_0".into(), GivenPrior { mean: 44.0, standard_deviation: 4.0 })]),
         },
         parameters: Parameters {
             K_A: held(0.0008, "1/(um^2*min)"),
@@ -160,19 +181,34 @@ pub fn report() -> InferReport {
             mean_removed: MeanRemoved::PerFrame,
         },
         noise: Noise { sigma_r: 0.14, sigma_v: 0.09, source: NoiseSource::Estimated },
-        nudge: Nudge { k: 0.41, rms: 0.16, degrees_of_freedom: 412.0, edges_changed: 3 },
+        nudge: Nudge {
+            k: 0.41,
+            rms: 0.16,
+            degrees_of_freedom: 412.0,
+            contribution_ratio: 0.91,
+            expected_contribution_ratio: 0.94,
+            edges_changed: 3,
+        },
         identifiability: vec![
             direction(8.1e4, [0.01, -0.05, 0.12, 0.99]),
             direction(310.0, [0.02, 0.26, -0.95, 0.13]),
             direction(12.0, [0.15, -0.95, -0.26, -0.02]),
             direction(0.04, [0.99, 0.15, 0.05, 0.0]),
         ],
+        profiles: Vec::new(),
+        landscapes: Vec::new(),
+        bootstrap: None,
         fit: Fit {
+            method: FitMethod::Search,
             status: FitStatus::Converged,
+            trustworthy: true,
+            doubts: Vec::new(),
             iterations: 17,
             objective: 871.0,
             expected_objective: 856.0,
             trace: (0..18).map(|step| 870.0 + 29_000.0 * (-0.7 * f64::from(step)).exp()).collect(),
+            starts: vec![871.0, 873.5],
+            transitions: Transitions { tried: 41, made: 3 },
         },
     }
 }
@@ -195,7 +231,7 @@ pub fn degenerate_report() -> InferReport {
         (&mut parameters.shape_index, 1.0, [0.2, f64::INFINITY]),
         (&mut parameters.K_A, 0.0, [0.0, 3.1]),
     ] {
-        *parameter = Parameter { value, ci95: Some(ci95), fixed: false, unit: parameter.unit.clone() };
+        *parameter = Parameter { value, ci95: Some(ci95), fixed: false, ..parameter.clone() };
     }
     report.nmse.naive = 41.0;
     report.nmse.nudged = f64::NAN;
@@ -203,7 +239,35 @@ pub fn degenerate_report() -> InferReport {
     report.nmse.cross_validated = None;
     report.noise.sigma_r = f64::NAN;
     report.identifiability.clear();
+    report.flow = Some(FlowGrid {
+        grid_points: [4, 3],
+        spacing: [12.0, f64::NAN],
+        window: FlowWindow::Gaussian,
+        width: Some(6.0),
+    });
+    report.profiles = vec![ProfileResult {
+        parameter: "alpha".into(),
+        values: vec![1.0, 2.0],
+        rise: vec![f64::NAN, 0.0],
+        interval: [None, Some(2.0)],
+    }];
+    report.landscapes = vec![LandscapeResult {
+        parameters: ["K_P".into(), "alpha".into()],
+        values: [vec![1.0, 2.0], vec![1.0]],
+        fixed: vec![vec![f64::NAN, 0.0]],
+        refitted: vec![vec![0.0, f64::INFINITY]],
+    }];
+    report.bootstrap = Some(BootstrapResult {
+        replicates: 3,
+        failed: 37,
+        intervals: BTreeMap::from([("alpha".into(), None)]),
+        standard_deviations: BTreeMap::from([("alpha".into(), f64::NAN)]),
+    });
+    report.fit.trustworthy = false;
+    report.fit.doubts = vec!["the fit <used up> its steps: raise --max-steps".into()];
+    report.run.warnings.push(report.fit.doubts[0].clone());
     report.fit.status = FitStatus::Stalled;
+    report.fit.starts = vec![f64::NAN];
     report.fit.trace = vec![f64::NAN, -1.0];
     report
 }

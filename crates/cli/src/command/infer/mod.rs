@@ -1,8 +1,15 @@
 //! `voronudge infer`: parameters of the model from snapshots, by nudged inference.
 
+mod answers;
+mod fit_options;
+mod flow;
 mod page;
 mod prepare;
+mod questions;
 mod report;
+mod scaling;
+mod summary;
+mod words;
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments};
@@ -11,17 +18,21 @@ use crate::progress::Progress;
 use crate::run::Run;
 use crate::snapshot::to_array;
 use clap::{Args, ValueEnum};
+use fit_options::FitArguments;
+use flow::FlowArguments;
 use prepare::Prepared;
+use questions::UncertaintyArguments;
 use std::process::Stdio;
 use std::time::Duration;
 use voronudge_geometry::Vector;
-use voronudge_infer::{Fixed, Inference, infer};
+use voronudge_infer::{Inference, infer};
 use voronudge_io::{DataSet, Difference, FrameSelection, OutputDirectory};
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
 ///
-/// Velocities are read from the data set or derived from its tracked positions. Writes report.json, report.html,
-/// nudged_positions.npy, predicted_velocities.npy and residual_velocities.npy.
+/// Velocities are read from the data set, of cells or on a grid, or derived from its tracked positions. Writes
+/// report.json, report.html, nudged_positions.npy, predicted_velocities.npy and residual_velocities.npy (for a flow field
+/// predicted_flow.npy and residual_flow.npy).
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -32,9 +43,6 @@ pub(crate) struct Arguments {
     /// How velocities are derived from positions where none are given.
     #[arg(long, value_name = "central|forward|backward", default_value_t = Difference::Central)]
     difference: Difference,
-    /// Hold a parameter: `--fix K_A=0.1` (repeatable), in the units of the data.
-    #[arg(long, value_name = "NAME=VALUE", value_parser = fixed_parameter, allow_hyphen_values = true)]
-    fix: Vec<(String, f64)>,
     /// Which mean velocity to remove first: drift of the stage shows as one.
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     remove_mean: MeanToRemove,
@@ -42,53 +50,27 @@ pub(crate) struct Arguments {
     /// regular hexagon of that size, are taken for the rim.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     largest_area: f64,
-    /// Steps of the optimiser at the last stage of each fit.
-    #[arg(long, default_value_t = 60, allow_negative_numbers = true)]
-    max_steps: u64,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
+    #[command(flatten)]
+    flow: FlowArguments,
+    #[command(flatten)]
+    fit: FitArguments,
+    #[command(flatten)]
+    uncertainty: UncertaintyArguments,
     #[command(flatten)]
     common: CommonArguments,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MeanToRemove {
-    /// The median of each frame if velocities are derived from tracks in an open field, none otherwise.
+    /// The median of each frame in an open field, unless velocities of cells are given; none otherwise.
     Auto,
     /// None.
     None,
-    /// The median velocity of the cells used in each frame.
+    /// The median of the velocities used in each frame.
     PerFrame,
-}
-
-fn fixed_parameter(text: &str) -> Result<(String, f64), String> {
-    let (name, value) = text.split_once('=').ok_or("write NAME=VALUE, for example K_A=0.1")?;
-    if !["K_A", "K_P", "P_0", "alpha"].contains(&name) {
-        return Err(format!("{name} is not a parameter; there are K_A, K_P, P_0 and alpha"));
-    }
-    let number: f64 = value.parse().map_err(|_| format!("{value} is not a number"))?;
-    Ok((name.into(), number))
-}
-
-impl Arguments {
-    /// The parameters held, in units of the data.
-    fn fixed(&self) -> Result<Fixed, Failure> {
-        let mut fixed = Fixed::default();
-        for (name, value) in &self.fix {
-            let slot = match name.as_str() {
-                "K_A" => &mut fixed.area_elasticity,
-                "K_P" => &mut fixed.perimeter_elasticity,
-                "P_0" => &mut fixed.preferred_perimeter,
-                _ => &mut fixed.chirality,
-            };
-            if slot.replace(*value).is_some() {
-                return Err(Failure::new(format!("--fix: {name} is fixed twice"))
-                    .with_hint("give each parameter at most once"));
-            }
-        }
-        Ok(fixed)
-    }
 }
 
 /// An objective this many times its expected value is no fit: the noise levels given, or the model, are wrong.
@@ -103,23 +85,31 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         ))
         .with_hint("leave it out for 3 times the median area"));
     }
+    let constraints = arguments.fit.constraints()?;
+    arguments.fit.method()?;
+    arguments.uncertainty.check(&constraints)?;
     let data = arguments.data.load()?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
-    let prepared = prepare::prepare(&arguments, &data, &mut run)?;
+    let prepared = prepare::prepare(&arguments, constraints, &data, &mut run)?;
     let mut progress = Progress::new(arguments.common.verbosity());
-    let result = infer(&prepared.observations, &prepared.request, &mut |state| {
+    let fitted = infer(&prepared.observations, &prepared.request, &mut |state| {
         progress.step(state.stage, state.step.0, state.step.1)
     });
+    let answered = fitted.and_then(|result| {
+        let answers = arguments.uncertainty.ask(&prepared, &result, &mut progress)?;
+        Ok((result, answers))
+    });
     progress.finish();
-    let result = result.map_err(|error| prepared.place(error, &arguments))?;
-    warn_about(&result, &mut run);
+    let (result, answers) = answered.map_err(|error| prepared.place(error, &arguments))?;
+    let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
+    doubts.iter().for_each(|doubt| run.warn(doubt));
     write_arrays(&mut out, &data, &prepared, &result)?;
-    let report = report::report(&run, &data, &prepared, &result);
+    let report = report::report(&run, &data, &prepared, &result, &answers);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report)?)?;
+    out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;
     let folder = out.path().to_owned();
-    let summary = report::summary(&report, &folder);
+    let summary = summary::summary(&report, &folder);
     run.finish(Some(out), &json, &summary)?;
     if arguments.open_report {
         open(&folder.join("report.html"));
@@ -128,32 +118,34 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     Ok(if acceptable { Answer::Positive } else { Answer::Negative })
 }
 
-fn warn_about(result: &Inference, run: &mut Run) {
-    let excess = result.objective / result.expected_objective;
-    if excess > 1.5 {
-        run.warn(format!(
-            "the objective is {excess:.1} times its expected value: the noise levels are too small, or the model lacks \
-             something; intervals are widened accordingly"
-        ));
-    }
-    if result.status == voronudge_infer::Status::StepLimit {
-        run.warn("the fit used up its steps; raise --max-steps");
-    }
-}
-
 fn write_arrays(
     out: &mut OutputDirectory,
     data: &DataSet,
     prepared: &Prepared,
     result: &Inference,
 ) -> Result<(), Failure> {
-    let fields: Vec<[Vec<Vector<f64>>; 3]> =
-        (0..prepared.snapshots.len()).map(|index| prepared.fields(result, index)).collect();
-    for (k, name) in ["nudged_positions.npy", "predicted_velocities.npy", "residual_velocities.npy"]
-        .into_iter()
-        .enumerate()
-    {
-        let frames = prepared.snapshots.iter().zip(&fields).map(|(snapshot, f)| (snapshot, f[k].as_slice()));
+    type Field = fn(&Prepared, &Inference, usize) -> Vec<Vector<f64>>;
+    let all = |field: Field| -> Vec<Vec<Vector<f64>>> {
+        (0..prepared.snapshots.len()).map(|index| field(prepared, result, index)).collect()
+    };
+    let mut of_cells: Vec<(&str, Field)> = vec![
+        ("nudged_positions.npy", Prepared::nudged_positions),
+        ("predicted_velocities.npy", Prepared::predicted),
+    ];
+    match prepared.velocities.flow() {
+        None => of_cells.push(("residual_velocities.npy", Prepared::residual_data)),
+        Some(field) => {
+            for (name, of) in [
+                ("predicted_flow.npy", Prepared::predicted_data as Field),
+                ("residual_flow.npy", Prepared::residual_data),
+            ] {
+                out.write_array(name, field.to_array(data, &all(of)).view())?;
+            }
+        }
+    }
+    for (name, field) in of_cells {
+        let fields = all(field);
+        let frames = prepared.snapshots.iter().zip(&fields).map(|(snapshot, f)| (snapshot, f.as_slice()));
         out.write_array(name, to_array(data, frames).view())?;
     }
     Ok(())

@@ -1,13 +1,17 @@
 //! The result of `infer` as a page with figures.
 
 use super::Arguments;
-use super::prepare::Prepared;
+use super::answers;
+use super::prepare::{Measured, Prepared};
+use super::questions::Answers;
+use super::scaling::symbol;
 use crate::failure::Failure;
 use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
-use voronudge_infer::Inference;
+use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
+use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
-use voronudge_report::numbers::significant;
+use voronudge_report::numbers::{as_given, significant};
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Segment};
 
 /// Frames drawn at most: the first, the middle and the last.
@@ -19,12 +23,18 @@ pub(super) fn page(
     prepared: &Prepared,
     result: &Inference,
     report: &InferReport,
+    answers: &Answers,
 ) -> Result<String, Failure> {
     let count = prepared.frames.len();
     let mut drawn: Vec<usize> =
         if count <= DRAWN { (0..count).collect() } else { vec![0, count / 2, count - 1] };
     drawn.dedup();
-    let frames: Vec<FrameView> = drawn.into_iter().map(|index| frame_view(prepared, result, index)).collect();
+    let frames: Vec<FrameView> = drawn.iter().map(|&index| frame_view(prepared, result, index)).collect();
+    let flows: Vec<FlowMap<'_>> = drawn
+        .iter()
+        .zip(&frames)
+        .filter_map(|(&index, frame)| flow_map(prepared, result, index, frame))
+        .collect();
     let title = match (&arguments.data.dataset, &arguments.data.positions) {
         (Some(folder), _) => folder.file_name().map(|name| name.to_string_lossy().into_owned()),
         (None, Some(file)) => file.file_name().map(|name| name.to_string_lossy().into_owned()),
@@ -36,6 +46,8 @@ pub(super) fn page(
         summary: &paragraphs(data, prepared, report),
         report,
         frames: &frames,
+        flows: &flows,
+        uncertainty: &answers::figures(answers, result, &prepared.scale, &report.units),
     };
     Ok(page.render()?)
 }
@@ -84,9 +96,10 @@ fn headline(report: &InferReport) -> String {
 }
 
 fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<String> {
-    let source = match prepared.derived {
-        None => "Velocities were given".to_owned(),
-        Some(difference) => format!(
+    let source = match &prepared.velocities {
+        Measured::Given(_) => "Velocities were given".to_owned(),
+        Measured::Flow(_) => "Velocities were measured on a grid, and stand for averages over cells".into(),
+        Measured::Derived(_, difference) => format!(
             "Velocities are {} differences of tracked positions, {} {} apart",
             match difference {
                 Difference::Central => "central",
@@ -109,7 +122,8 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
         }
     };
     let mut paragraphs = vec![format!("{source}; {mean}. {boundary}")];
-    if prepared.derived.is_some() {
+    paragraphs.extend(beforehand(report));
+    if prepared.velocities.derived().is_some() {
         paragraphs.push(
             "Differences of positions average out what is faster than the interval. This biases K_A and K_P first, and the \
              intervals below do not contain it: compare with frames that are closer in time, where there are any."
@@ -117,6 +131,49 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
         );
     }
     paragraphs
+}
+
+/// What the constraints were, in a sentence, if there were bounds or priors.
+fn beforehand(report: &InferReport) -> Option<String> {
+    let printed = |name: &str| Quantity::from_name(name).map_or("", symbol);
+    let bounds =
+        report.constraints.bounds.iter().map(|(name, [low, high])| match (printed(name), low, high) {
+            (name, low, high) if high.is_infinite() => format!("{name} at least {}", as_given(*low)),
+            (name, low, high) if low.is_infinite() => format!("{name} at most {}", as_given(*high)),
+            (name, low, high) => format!("{name} between {} and {}", as_given(*low), as_given(*high)),
+        });
+    let priors = report.constraints.priors.iter().map(|(name, prior)| {
+        let name = printed(name);
+        format!("{name} {} ± {}", as_given(prior.mean), as_given(prior.standard_deviation))
+    });
+    let all: Vec<String> = bounds.chain(priors).collect();
+    (!all.is_empty()).then(|| format!("Known beforehand: {}.", all.join("; ")))
+}
+
+/// Velocities of one frame on their grid, if they are on one.
+fn flow_map<'f>(
+    prepared: &Prepared,
+    result: &Inference,
+    index: usize,
+    frame: &'f FrameView,
+) -> Option<FlowMap<'f>> {
+    let field = prepared.velocities.flow()?;
+    let observation = &prepared.observations[index];
+    let [x, y] = field.coordinates();
+    let velocity = |v: Vector<f64>| [v.x, v.y];
+    Some(FlowMap {
+        frame,
+        x,
+        y,
+        measured: (0..observation.velocities.values().len())
+            .map(|datum| observation.target(datum).map(|v| velocity(v * prepared.scale.velocity())))
+            .collect(),
+        predicted: prepared
+            .predicted_data(result, index)
+            .into_iter()
+            .map(|v| Some(velocity(v)).filter(|v| v[0].is_finite()))
+            .collect(),
+    })
 }
 
 fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameView {
@@ -128,12 +185,16 @@ fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameVie
     };
     let length = |r: Vector<f64>| [r.x * scale.length, r.y * scale.length];
     let velocity = |v: Vector<f64>| [v.x * scale.velocity(), v.y * scale.velocity()];
+    let on_grid = prepared.velocities.flow().is_some();
     let mut polygon = CellPolygon::default();
     let cells = (0..observation.positions.len())
         .map(|cell| {
             let centre = wrapped(observation.positions[cell]);
             let closed = observation.tessellation.is_closed(cell);
-            let target = observation.target(cell);
+            let counted = observation.visibility[cell] == Visibility::Counted;
+            // On a grid, velocities are not of cells; those that the grid points stand for are used.
+            let target = if on_grid { None } else { observation.target(cell) };
+            let used = if on_grid { counted } else { target.is_some() };
             if closed {
                 polygon.fill(&observation.tessellation, &observation.positions, cell);
             }
@@ -147,11 +208,9 @@ fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameVie
                 },
                 area: if closed { shape.area * scale.length * scale.length } else { f64::NAN },
                 perimeter: if closed { shape.perimeter * scale.length } else { f64::NAN },
-                status: if target.is_some() { CellStatus::Used } else { CellStatus::LeftOut },
+                status: if used { CellStatus::Used } else { CellStatus::LeftOut },
                 measured: target.map(velocity),
-                predicted: Some(frame.predicted[cell])
-                    .filter(|_| observation.visibility[cell] == Visibility::Counted)
-                    .map(velocity),
+                predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
                 nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
             }
         })

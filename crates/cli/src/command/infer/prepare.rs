@@ -1,12 +1,14 @@
 //! From a data set to the scaled problem, and back.
 
-use super::{Arguments, MeanToRemove};
+use super::flow::{self, OrderedField};
+use super::{Arguments, MeanToRemove, scaling};
 use crate::failure::Failure;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain};
-use ndarray::Axis;
+use ndarray::{Array3, Axis};
+use std::path::PathBuf;
 use voronudge_geometry::{Domain, PeriodicBox, Vector, Visibility, areas};
-use voronudge_infer::{Fixed, Inference, Observation, Request, Scale};
+use voronudge_infer::{Constraints, Error, Inference, KnownNoise, Observation, Request, Scale, Velocities};
 use voronudge_io::{DataSet, Difference, Noise, derive_velocities};
 use voronudge_report::infer_report::{MeanRemoved, NoiseSource};
 
@@ -20,65 +22,164 @@ pub(crate) struct Prepared {
     pub mean_removed: MeanRemoved,
     /// Where the noise levels come from if both were stated.
     pub stated_noise: NoiseSource,
-    pub derived: Option<Difference>,
+    pub velocities: Measured,
+    /// What is known of the parameters, in the units of the data.
+    pub constraints: Constraints,
+}
+
+/// The velocities to be explained.
+pub(crate) enum Measured {
+    /// Of cells, as given.
+    Given(Array3<f64>),
+    /// Of cells, from their tracks.
+    Derived(Array3<f64>, Difference),
+    /// On a grid.
+    Flow(OrderedField),
+}
+
+impl Measured {
+    fn new(arguments: &Arguments, data: &DataSet) -> Result<Self, Failure> {
+        if let Some(field) = arguments.flow.field(&arguments.data, data)? {
+            return Ok(Self::Flow(field));
+        }
+        match &data.velocities {
+            Some(given) => Ok(Self::Given(given.clone())),
+            None => derive_velocities(data, arguments.difference)
+                .map(|derived| Self::Derived(derived, arguments.difference))
+                .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display())),
+        }
+    }
+
+    /// How velocities of cells were derived, if they were.
+    pub fn derived(&self) -> Option<Difference> {
+        match self {
+            Self::Derived(_, difference) => Some(*difference),
+            _ => None,
+        }
+    }
+
+    /// The flow field, if velocities are on a grid.
+    pub fn flow(&self) -> Option<&OrderedField> {
+        match self {
+            Self::Flow(field) => Some(field),
+            _ => None,
+        }
+    }
+
+    /// The file that holds them.
+    pub fn file(&self, arguments: &Arguments) -> PathBuf {
+        match self {
+            Self::Given(_) => arguments.data.velocities_file(),
+            Self::Derived(..) => arguments.data.positions_file(),
+            Self::Flow(_) => arguments.data.flow_file(),
+        }
+    }
+
+    fn has_velocity(&self, frame: usize) -> bool {
+        match self {
+            Self::Given(all) | Self::Derived(all, _) => {
+                all.index_axis(Axis(0), frame).iter().any(|v| v.is_finite())
+            }
+            Self::Flow(field) => field.has_velocity(frame),
+        }
+    }
+
+    fn of(&self, snapshot: &Snapshot, frame: usize) -> Velocities {
+        match self {
+            Self::Given(all) | Self::Derived(all, _) => snapshot.pick(all.index_axis(Axis(0), frame)).into(),
+            Self::Flow(field) => Velocities::OnGrid(field.frame(frame)),
+        }
+    }
 }
 
 impl Prepared {
-    /// Nudged positions, predicted velocities and residual velocities of one frame, in the units of the data.
-    pub fn fields(&self, result: &Inference, index: usize) -> [Vec<Vector<f64>>; 3] {
-        let (frame, observation) = (&result.frames[index], &self.observations[index]);
-        let velocity = self.scale.velocity();
-        let nan = Vector::new(f64::NAN, f64::NAN);
-        [
-            frame.nudged_positions.iter().map(|r| r * self.scale.length).collect(),
-            frame.predicted.iter().map(|v| v * velocity).collect(),
-            (0..frame.predicted.len())
-                .map(|cell| observation.target(cell).map_or(nan, |v| (v - frame.predicted[cell]) * velocity))
-                .collect(),
-        ]
+    /// Nudged positions of one frame in the units of the data.
+    pub fn nudged_positions(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        result.frames[index].nudged_positions.iter().map(|r| r * self.scale.length).collect()
+    }
+
+    /// Predicted velocities of the cells of one frame.
+    pub fn predicted(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        result.frames[index].predicted.iter().map(|v| v * self.scale.velocity()).collect()
+    }
+
+    /// The data of one frame as the model predicts them, of cells or on the grid; NaN out of its reach.
+    pub fn predicted_data(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        let observation = &self.observations[index];
+        let predicted = result.frames[index].predicted_data.iter().enumerate();
+        predicted
+            .map(
+                |(datum, v)| if observation.is_in_reach(datum) { v * self.scale.velocity() } else { NOWHERE },
+            )
+            .collect()
+    }
+
+    /// Measured minus predicted data of one frame; NaN where there is no measurement to be explained.
+    pub fn residual_data(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        let observation = &self.observations[index];
+        let predicted = result.frames[index].predicted_data.iter().enumerate();
+        predicted
+            .map(|(datum, p)| observation.target(datum).map_or(NOWHERE, |v| (v - p) * self.scale.velocity()))
+            .collect()
     }
 
     /// Says in which file and frame a fault lies, with the cell as the file numbers it.
-    pub fn place(&self, error: voronudge_infer::Error, arguments: &Arguments) -> Failure {
+    pub fn place(&self, error: Error, arguments: &Arguments) -> Failure {
         let file = arguments.data.positions_file();
         match error {
-            voronudge_infer::Error::Geometry { frame, source } => {
+            Error::Geometry { frame, source } => {
                 let place = format!("{}, frame {}", file.display(), self.frames[frame]);
                 Failure::from(source).at(place)
             }
-            voronudge_infer::Error::Interrupted => error.into(),
-            other => Failure::from(other).at(file.display()),
+            other => faulty_data(other, &self.velocities, arguments),
         }
     }
 }
 
-pub(super) fn prepare(arguments: &Arguments, data: &DataSet, run: &mut Run) -> Result<Prepared, Failure> {
-    let (velocities, derived) = match &data.velocities {
-        Some(given) => (given.clone(), None),
-        None => {
-            let derived = derive_velocities(data, arguments.difference)
-                .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?;
-            (derived, Some(arguments.difference))
-        }
-    };
-    if let Some(difference @ (Difference::Forward | Difference::Backward)) = derived {
+/// No vector.
+const NOWHERE: Vector<f64> = Vector::new(f64::NAN, f64::NAN);
+
+/// A fault of the data as a whole.
+fn faulty_data(error: Error, velocities: &Measured, arguments: &Arguments) -> Failure {
+    let flow = velocities.flow().is_some();
+    match error {
+        Error::TooFewVelocities { used, required } if flow => Failure::new(format!(
+            "{used} grid points have a velocity and a window filled by cells with a trusted neighbourhood, but a fit needs \
+             at least {required}"
+        ))
+        .with_hint("check that grid and cells are in one frame of reference and unit, or give more frames")
+        .at(velocities.file(arguments).display()),
+        Error::NothingMoves if flow => Failure::from(error).at(velocities.file(arguments).display()),
+        Error::Constraint(_) | Error::Interrupted => error.into(),
+        other => Failure::from(other).at(arguments.data.positions_file().display()),
+    }
+}
+
+pub(super) fn prepare(
+    arguments: &Arguments,
+    constraints: Constraints,
+    data: &DataSet,
+    run: &mut Run,
+) -> Result<Prepared, Failure> {
+    let velocities = Measured::new(arguments, data)?;
+    if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
         run.warn(format!(
             "velocities are {difference} differences, which share the error of the position they start or end at: it acts \
              as a spurious force; central differences do not"
         ));
     }
     let domain = domain(data)?;
-    let frames = chosen_frames(arguments, data, &velocities, derived)?;
+    let frames = chosen_frames(arguments, data, &velocities)?;
     let mut snapshots = Vec::new();
     let mut observations = Vec::new();
     for &frame in &frames {
         let snapshot = Snapshot::new(data, frame);
-        let targets = snapshot.pick(velocities.index_axis(Axis(0), frame));
+        let targets = velocities.of(&snapshot, frame);
         let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
         let observation =
             Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.largest_area)
                 .map_err(|error| match error {
-                    voronudge_infer::Error::Geometry { source, .. } => {
+                    Error::Geometry { source, .. } => {
                         Failure::from(snapshot.in_file_numbers(source)).at(place())
                     }
                     other => Failure::from(other).at(place()),
@@ -93,45 +194,59 @@ pub(super) fn prepare(arguments: &Arguments, data: &DataSet, run: &mut Run) -> R
              the holes are wrong"
         ));
     }
-    let mean_removed = match (arguments.remove_mean, derived, domain) {
-        (MeanToRemove::PerFrame, ..) | (MeanToRemove::Auto, Some(_), Domain::Open) => {
-            observations.iter_mut().for_each(remove_median);
-            MeanRemoved::PerFrame
-        }
+    // Drift of the stage shows in tracks and in a flow field; given velocities may have been freed from it.
+    let drifts = !matches!(velocities, Measured::Given(_)) && matches!(domain, Domain::Open);
+    let mean_removed = match arguments.remove_mean {
+        MeanToRemove::PerFrame => MeanRemoved::PerFrame,
+        MeanToRemove::Auto if drifts => MeanRemoved::PerFrame,
         _ => MeanRemoved::None,
     };
-    let scale = scale_of(&observations)
-        .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?;
-    let (request, stated_noise) = request(arguments, data, &scale)?;
+    if mean_removed == MeanRemoved::PerFrame {
+        observations.iter_mut().for_each(remove_median);
+    }
+    let scale = scale_of(&observations).map_err(|error| faulty_data(error, &velocities, arguments))?;
+    let (request, stated_noise) = request(arguments, &constraints, data, &scale)?;
     let observations = observations
         .iter()
         .enumerate()
         .map(|(index, observation)| scaled(index, observation, &scale, arguments.largest_area))
         .collect::<Result<Vec<_>, _>>()?;
-    Ok(Prepared { frames, snapshots, observations, request, scale, mean_removed, stated_noise, derived })
+    Ok(Prepared {
+        frames,
+        snapshots,
+        observations,
+        request,
+        scale,
+        mean_removed,
+        stated_noise,
+        velocities,
+        constraints,
+    })
 }
 
 fn chosen_frames(
     arguments: &Arguments,
     data: &DataSet,
-    velocities: &ndarray::Array3<f64>,
-    derived: Option<Difference>,
+    velocities: &Measured,
 ) -> Result<Vec<usize>, Failure> {
-    let has_velocity = |frame: usize| velocities.index_axis(Axis(0), frame).iter().any(|v| v.is_finite());
     let Some(selection) = &arguments.frames else {
-        return Ok((0..data.frames()).filter(|&frame| has_velocity(frame)).collect());
+        return Ok((0..data.frames()).filter(|&frame| velocities.has_velocity(frame)).collect());
     };
     let file = arguments.data.positions_file();
     let frames = selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(file.display()))?;
-    if let Some(frame) = frames.iter().find(|&&frame| !has_velocity(frame)) {
-        let hint = match derived {
-            Some(Difference::Central) => "central differences need the frame before and the frame after",
-            Some(_) => "differences need the neighbouring frame",
-            None => "choose a frame whose velocities are not all NaN",
+    if let Some(frame) = frames.iter().find(|&&frame| !velocities.has_velocity(frame)) {
+        let (what, hint) = match velocities {
+            Measured::Derived(_, Difference::Central) => {
+                ("no cell has a velocity", "central differences need the frame before and the frame after")
+            }
+            Measured::Derived(..) => ("no cell has a velocity", "differences need the neighbouring frame"),
+            Measured::Given(_) => {
+                ("no cell has a velocity", "choose a frame whose velocities are not all NaN")
+            }
+            Measured::Flow(_) => ("no grid point has a velocity", "choose a frame whose flow is not all NaN"),
         };
-        let file = if derived.is_some() { file } else { arguments.data.velocities_file() };
-        let place = format!("{}, frame {frame}", file.display());
-        return Err(Failure::new("no cell has a velocity").with_hint(hint).at(place));
+        let place = format!("{}, frame {frame}", velocities.file(arguments).display());
+        return Err(Failure::new(what).with_hint(hint).at(place));
     }
     Ok(frames)
 }
@@ -149,11 +264,11 @@ fn remove_median(observation: &mut Observation) {
         if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
     };
     let drift = Vector::new(median(0), median(1));
-    observation.velocities.iter_mut().flatten().for_each(|v| *v -= drift);
+    observation.velocities.values_mut().iter_mut().flatten().for_each(|v| *v -= drift);
 }
 
 /// ℓ₀² is the mean area of the cells that count; τ makes the root mean square velocity one.
-fn scale_of(observations: &[Observation]) -> Result<Scale, voronudge_infer::Error> {
+fn scale_of(observations: &[Observation]) -> Result<Scale, Error> {
     let (mut area, mut cells, mut squares, mut used) = (0.0, 0.0, 0.0, 0usize);
     for observation in observations {
         let areas = areas(&observation.tessellation, &observation.positions);
@@ -169,10 +284,10 @@ fn scale_of(observations: &[Observation]) -> Result<Scale, voronudge_infer::Erro
         }
     }
     if used == 0 || cells == 0.0 {
-        return Err(voronudge_infer::Error::TooFewVelocities { used, required: 4 });
+        return Err(Error::TooFewVelocities { used, required: 4 });
     }
     if squares == 0.0 {
-        return Err(voronudge_infer::Error::NothingMoves);
+        return Err(Error::NothingMoves);
     }
     let length = (area / cells).sqrt();
     Ok(Scale { length, time: length / (squares / used as f64).sqrt() })
@@ -192,13 +307,21 @@ fn scaled(
         Domain::Open => Domain::Open,
     };
     let positions = observation.positions.iter().map(|r| r / scale.length).collect();
-    let velocities = observation.velocities.iter().map(|v| v.map(|v| v / scale.velocity())).collect();
+    let velocities = match &observation.velocities {
+        Velocities::OfCells(all) => {
+            Velocities::OfCells(all.iter().map(|v| v.map(|v| v / scale.velocity())).collect())
+        }
+        Velocities::OnGrid(flow) => Velocities::OnGrid(flow::scaled(flow, scale)?),
+    };
     Ok(Observation::new(index, positions, velocities, domain, largest_area)?)
 }
 
-fn request(arguments: &Arguments, data: &DataSet, scale: &Scale) -> Result<(Request, NoiseSource), Failure> {
-    let fixed = arguments.fixed()?;
-    let factor = scale.coefficients();
+fn request(
+    arguments: &Arguments,
+    constraints: &Constraints,
+    data: &DataSet,
+    scale: &Scale,
+) -> Result<(Request, NoiseSource), Failure> {
     let level = |noise: Option<Noise>, unit: f64| {
         noise.map(|noise| match noise {
             Noise::Absolute(value) => value / unit,
@@ -209,16 +332,13 @@ fn request(arguments: &Arguments, data: &DataSet, scale: &Scale) -> Result<(Requ
     let from_flags = arguments.data.position_noise.is_some() || arguments.data.velocity_noise.is_some();
     Ok((
         Request {
-            fixed: Fixed {
-                area_elasticity: fixed.area_elasticity.map(|k_a| k_a / factor[0]),
-                perimeter_elasticity: fixed.perimeter_elasticity.map(|k_p| k_p / factor[2]),
-                preferred_perimeter: fixed.preferred_perimeter.map(|p_0| p_0 / scale.length),
-                chirality: fixed.chirality,
+            noise: KnownNoise {
+                position: level(data.position_noise, scale.length),
+                velocity: level(data.velocity_noise, scale.velocity()),
             },
-            preferred_area: 1.0,
-            position_noise: level(data.position_noise, scale.length),
-            velocity_noise: level(data.velocity_noise, scale.velocity()),
-            max_steps: arguments.max_steps,
+            method: arguments.fit.method()?,
+            seed: arguments.common.seed,
+            ..Request::new(scaling::scaled(constraints, scale))
         },
         if from_flags { NoiseSource::Given } else { NoiseSource::DataSet },
     ))

@@ -3,6 +3,12 @@
 //! Field names are the interface that scripts use; [`INFER_SCHEMA`] describes them. Numbers that
 //! are not finite are written as `null`.
 
+mod constraints;
+mod uncertainty;
+
+pub use constraints::{GivenConstraints, GivenPrior};
+pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
+
 use std::collections::BTreeMap;
 
 use serde::Serialize;
@@ -11,7 +17,7 @@ use crate::error::ReportError;
 use crate::view::Units;
 
 /// JSON Schema (draft 2020-12) of [`InferReport`].
-pub const INFER_SCHEMA: &str = include_str!("../schema/infer.schema.json");
+pub const INFER_SCHEMA: &str = include_str!("../../schema/infer.schema.json");
 
 /// What every command reports about its run.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -55,6 +61,10 @@ pub struct InferReport {
     pub length_scale: Quantity,
     /// Which cells were used.
     pub cells: CellCounts,
+    /// The grid, where velocities were measured on one.
+    pub flow: Option<FlowGrid>,
+    /// What was said of the parameters before the fit.
+    pub constraints: GivenConstraints,
     /// The nudged estimate.
     pub parameters: Parameters,
     /// The estimate at the measured positions.
@@ -65,8 +75,14 @@ pub struct InferReport {
     pub noise: Noise,
     /// The nudges.
     pub nudge: Nudge,
-    /// Eigenvalues and directions of the information matrix, stiffest first.
+    /// Principal axes of the covariance of the coefficients, stiffest first.
     pub identifiability: Vec<EigenDirection>,
+    /// Profile likelihoods, where asked for.
+    pub profiles: Vec<ProfileResult>,
+    /// Slices of the landscape, where asked for.
+    pub landscapes: Vec<LandscapeResult>,
+    /// The parametric bootstrap, where asked for.
+    pub bootstrap: Option<BootstrapResult>,
     /// Course of the fit.
     pub fit: Fit,
 }
@@ -96,10 +112,33 @@ pub struct Quantity {
 pub struct CellCounts {
     /// Indices of the frames used, zero-based.
     pub frames: Vec<usize>,
-    /// Cells used, over all frames.
+    /// Cells (or grid points) used, over all frames.
     pub used: usize,
-    /// Cells left out, over all frames, by reason.
+    /// Cells (or grid points) left out, over all frames, by reason.
     pub left_out: BTreeMap<String, usize>,
+}
+
+/// The grid on which velocities were measured.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FlowGrid {
+    /// Number of grid points along x and y.
+    pub grid_points: [usize; 2],
+    /// Distance between grid points along x and y.
+    pub spacing: [f64; 2],
+    /// The average over cells that a grid point stands for.
+    pub window: FlowWindow,
+    /// Width of a Gaussian window; `null` for others.
+    pub width: Option<f64>,
+}
+
+/// The average over cells that a grid point stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FlowWindow {
+    /// Over the square around it.
+    Square,
+    /// Over the centres of the cells, with Gaussian weights.
+    Gaussian,
 }
 
 /// One parameter.
@@ -114,6 +153,8 @@ pub struct Parameter {
     pub fixed: bool,
     /// Unit; empty if dimensionless.
     pub unit: String,
+    /// How well it is known, in a sentence.
+    pub words: String,
 }
 
 impl Parameter {
@@ -230,24 +271,25 @@ pub struct Nudge {
     pub rms: f64,
     /// Effective number of parameters that the nudges use up.
     pub degrees_of_freedom: f64,
+    /// What nudges contribute to the objective per contribution of velocities.
+    pub contribution_ratio: f64,
+    /// What that ratio is expected to be if the noise levels are right.
+    pub expected_contribution_ratio: f64,
     /// Contacts between neighbours that the nudges changed (lost plus gained).
     pub edges_changed: usize,
-}
-
-/// One direction in the space of parameters and how well the data determine it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
-pub struct EigenDirection {
-    /// Eigenvalue of the information matrix.
-    pub eigenvalue: f64,
-    /// Components of the unit vector by parameter.
-    pub direction: BTreeMap<String, f64>,
 }
 
 /// Course of the fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Fit {
+    /// How the objective was made small.
+    pub method: FitMethod,
     /// How it ended.
     pub status: FitStatus,
+    /// Whether there is no reason not to trust it.
+    pub trustworthy: bool,
+    /// Reasons not to trust it, and what to do.
+    pub doubts: Vec<String>,
     /// Number of iterations.
     pub iterations: usize,
     /// Penalised objective at the end, in units of the noise variance.
@@ -256,6 +298,29 @@ pub struct Fit {
     pub expected_objective: f64,
     /// Objective after each iteration of the last fit, with the springs in force at that iteration.
     pub trace: Vec<f64>,
+    /// Objective at the end of each start.
+    pub starts: Vec<f64>,
+    /// Flips of contacts between neighbours.
+    pub transitions: Transitions,
+}
+
+/// How the objective was made small.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum FitMethod {
+    /// Levenberg–Marquardt by continuation, flips of contacts, further starts.
+    Search,
+    /// First-order descent.
+    Descent,
+}
+
+/// Flips of contacts between neighbours.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct Transitions {
+    /// Those tried.
+    pub tried: usize,
+    /// Those kept.
+    pub made: usize,
 }
 
 /// How a fit ended.

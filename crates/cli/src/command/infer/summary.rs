@@ -1,0 +1,115 @@
+//! The result of `infer` as a summary on stdout.
+
+use super::words;
+use std::fmt::Write as _;
+use std::path::Path;
+use voronudge_infer::Quantity;
+use voronudge_report::InferReport;
+use voronudge_report::numbers::{interval_text, significant};
+
+/// What the terminal shows.
+pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
+    let mut text = String::new();
+    for doubt in &report.fit.doubts {
+        let _ = writeln!(text, "caution: {doubt}");
+    }
+    if !report.fit.doubts.is_empty() {
+        text.push('\n');
+    }
+    let directions: Vec<String> = report.identifiability.iter().map(|d| d.words.clone()).collect();
+    let _ = writeln!(text, "{}\n", words::in_short(&directions));
+    let left_out: usize = report.cells.left_out.values().sum();
+    let frames = report.cells.frames.len();
+    let _ = writeln!(
+        text,
+        "{} velocities in {frames} frame{}, {left_out} {} left out\n",
+        report.cells.used,
+        if frames == 1 { "" } else { "s" },
+        match (report.flow.is_some(), left_out) {
+            (true, 1) => "grid point",
+            (true, _) => "grid points",
+            (false, 1) => "cell",
+            (false, _) => "cells",
+        }
+    );
+    let p = &report.parameters;
+    let n = &report.naive;
+    let _ = writeln!(text, "{:<13} {:>12}  {:<26} {:>12}", "parameter", "nudged", "95 % interval", "naive");
+    for (name, parameter, naive) in [
+        ("K_P alpha", &p.K_P_alpha, n.K_P_alpha),
+        ("P_0 / l_0", &p.shape_index, n.shape_index),
+        ("alpha", &p.alpha, n.alpha),
+        ("K_A", &p.K_A, n.K_A),
+        ("K_P", &p.K_P, n.K_P),
+        ("P_0", &p.P_0, n.P_0),
+    ] {
+        let [value, interval] = match parameter.interval() {
+            Some(ends) if ends.contains(&Some(parameter.value)) => {
+                let [value, interval] = interval_text(parameter.value, ends);
+                [value, format!("{interval}, at a bound")]
+            }
+            Some(ends) => interval_text(parameter.value, ends),
+            None => [significant(parameter.value, 4), "fixed".into()],
+        };
+        let naive = significant(naive, 4);
+        let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
+        let _ = writeln!(text, "{}", row.trim_end());
+    }
+    text.push_str(&answers(report));
+    let e = &report.nmse;
+    let held_out = match (e.cross_validated, e.cross_validated_standard_error) {
+        (Some(error), Some(spread)) => format!("{} ± {}", significant(error, 3), significant(spread, 1)),
+        _ => "–".into(),
+    };
+    let floor = match e.noise_floor.is_finite() {
+        true => format!("; noise alone {}", significant(e.noise_floor, 3)),
+        false => String::new(),
+    };
+    let _ = writeln!(
+        text,
+        "\nerror (NMSE)  naive {}, nudged {}, same parameters un-nudged {}, held out {held_out}{floor}",
+        significant(e.naive, 3),
+        significant(e.nudged, 3),
+        significant(e.un_nudged, 3)
+    );
+    let _ = writeln!(
+        text,
+        "noise         sigma_r {}, sigma_v {}; {} degrees of freedom in the nudges, {} contacts changed",
+        significant(report.noise.sigma_r, 3),
+        significant(report.noise.sigma_v, 3),
+        significant(report.nudge.degrees_of_freedom, 3),
+        report.nudge.edges_changed
+    );
+    let _ = writeln!(text, "\nfigures in {}", folder.join("report.html").display());
+    text
+}
+
+/// Intervals of profiles and of the bootstrap, a line each.
+fn answers(report: &InferReport) -> String {
+    let mut text = String::new();
+    let spoken = |name: &str| Quantity::from_name(name).map_or("", words::spoken);
+    let p = &report.parameters;
+    let best = |name: &str| {
+        let parameters = [("K_A", &p.K_A), ("K_P", &p.K_P), ("P_0", &p.P_0), ("alpha", &p.alpha)];
+        let found = parameters.into_iter().find(|(known, _)| *known == name);
+        found.map_or(p.K_P_alpha.value, |(_, parameter)| parameter.value)
+    };
+    for profile in &report.profiles {
+        let name = &profile.parameter;
+        let [_, interval] = interval_text(best(name), profile.interval);
+        let _ = writeln!(text, "profile       {}: {interval}", spoken(name));
+    }
+    if let Some(bootstrap) = &report.bootstrap {
+        for (name, interval) in &bootstrap.intervals {
+            let told =
+                interval.map_or("–".into(), |ends| interval_text(best(name), ends.map(Some))[1].clone());
+            let _ = writeln!(text, "bootstrap     {}: {told}", spoken(name));
+        }
+        let failed = match bootstrap.failed {
+            0 => String::new(),
+            count => format!(", {count} could not be"),
+        };
+        let _ = writeln!(text, "bootstrap     {} data sets fitted{failed}", bootstrap.replicates);
+    }
+    if text.is_empty() { text } else { format!("\n{text}") }
+}
