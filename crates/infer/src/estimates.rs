@@ -2,7 +2,7 @@
 
 use crate::quadratic::{Functional, Interval, Quadratic, Ratio};
 use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, ParameterEstimates, Quantity};
-use nalgebra::{DMatrix, DVector, Matrix4};
+use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 
 /// A change of −2 log likelihood that one parameter exceeds by chance in 5 % of cases: the 95 % quantile of χ²₁.
 pub const CHI_SQUARED_95: f64 = 3.841_458_820_694_124;
@@ -37,8 +37,10 @@ impl Fitted<'_> {
             constant: self.space.origin()[index],
             gradient: self.space.basis().row(index).transpose(),
         };
+        // Where K_P ends at zero, ratios to it have no value; what their intervals say stays true.
+        let no_scale = c[2].abs() <= ROUNDING * covariance[(2, 2)].max(0.0).sqrt();
         let estimate = |quantity: Quantity| {
-            let value = quantity.of(&c);
+            let value = if no_scale && quantity.is_ratio() { f64::NAN } else { quantity.of(&c) };
             if self.held(quantity) {
                 return Estimate { value, standard_error: 0.0, interval: [Some(value); 2] };
             }
@@ -78,9 +80,14 @@ impl Fitted<'_> {
 
     /// Whether a quantity has one value throughout the space.
     fn held(&self, quantity: Quantity) -> bool {
-        let (normal, _) = quantity.plane(quantity.of(&self.space.coefficients(self.free)));
+        let c = self.space.coefficients(self.free);
+        let mut normal = Vector4::ith(quantity.coefficient(), 1.0);
+        if quantity.is_ratio() {
+            normal *= c[2];
+            normal[2] = -c[quantity.coefficient()];
+        }
         let along = self.space.basis().transpose() * normal;
-        along.amax() <= 1e-12 * self.space.basis().amax()
+        along.amax() <= 1e-12 * self.space.basis().amax() * normal.amax()
     }
 
     /// Principal axes of the covariance of the coefficients, each measured in its usual size: stiffest first.

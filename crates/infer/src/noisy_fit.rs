@@ -13,6 +13,9 @@ const ROUNDS: [usize; 2] = [8, 3];
 /// Steps of the optimiser between two estimates.
 const STEPS_PER_ROUND: u64 = 8;
 
+/// Position noise, in units of ℓ₀, of positions that are almost exact.
+const ALMOST_EXACT: f64 = 2e-3;
+
 /// Change of log σ that counts as none.
 const SETTLED: f64 = 0.01;
 
@@ -40,16 +43,54 @@ pub(crate) fn fit(
     let plain = Effort { max_steps, transitions: false, starts: 1, seed: request.seed };
     let mut found = search(objective, naive, &plain, "fit", watch)?;
     if estimated {
-        found = settle(objective, found, request, &plain, ROUNDS[0], watch)?;
+        let settled = settle(objective, found, request, &plain, ROUNDS[0], watch)?;
+        found = match exact_positions(objective, naive, request, &plain, watch)? {
+            Some((levels, other)) if other.criterion < settled.criterion => {
+                objective.levels = levels;
+                other.found
+            }
+            _ => settled.found,
+        };
         // The levels have moved on from those of the continuation.
         let again = search(objective, naive, &plain, "fit", watch)?;
         found = better(found, again);
     }
     improve(objective, &mut found, &Effort { transitions: true, starts, ..plain }, watch)?;
     if estimated {
-        found = settle(objective, found, request, &plain, ROUNDS[1], watch)?;
+        found = settle(objective, found, request, &plain, ROUNDS[1], watch)?.found;
     }
     Ok(found)
+}
+
+/// A fit whose noise levels have settled.
+struct Settled {
+    found: Found,
+    /// −2 log restricted likelihood of the levels, up to a constant of the data.
+    criterion: f64,
+}
+
+/// The levels and the fit that follow if positions are taken to be almost exact at first; `None` if their noise is known.
+///
+/// The likelihood of the levels can have two maxima: with small nudges, the velocities mostly noise to the model, and with
+/// large ones that explain what the model cannot.
+fn exact_positions(
+    objective: &Objective<'_>,
+    naive: &[f64],
+    request: &Request,
+    effort: &Effort,
+    watch: &mut Watch<'_>,
+) -> Result<Option<(NoiseLevels, Settled)>, Error> {
+    if request.noise.position.is_some() {
+        return Ok(None);
+    }
+    let first = first_levels(objective, naive, &request.noise)?;
+    let mut other = Objective { levels: NoiseLevels { position: ALMOST_EXACT, ..first }, ..*objective };
+    let mut start = naive.to_vec();
+    start.resize(naive.len() + objective.nudge_count(), 0.0);
+    let mut silent = |_, _| ControlFlow::Continue(());
+    let found = optimise(&other, start, STEPS_PER_ROUND, &mut silent)?.found(Vec::new());
+    let settled = settle(&mut other, found, request, effort, ROUNDS[0], watch)?;
+    Ok(Some((other.levels, settled)))
 }
 
 fn better(one: Found, other: Found) -> Found {
@@ -66,7 +107,8 @@ fn settle(
     effort: &Effort,
     rounds: usize,
     watch: &mut Watch<'_>,
-) -> Result<Found, Error> {
+) -> Result<Settled, Error> {
+    let mut criterion = f64::INFINITY;
     for round in 0..rounds {
         watch.tell("noise", (round as u64, rounds as u64), found.value / objective.expected())?;
         let equations = objective.linearise(&found.parameters)?;
@@ -76,6 +118,7 @@ fn settle(
             known: request.noise,
         };
         let next = restricted.most_likely(objective.levels)?;
+        criterion = restricted.criterion(next.spring().ln())?;
         let change = (next.position / objective.levels.position).ln().abs()
             + (next.velocity / objective.levels.velocity).ln().abs();
         objective.levels = next;
@@ -94,7 +137,7 @@ fn settle(
             break;
         }
     }
-    Ok(found)
+    Ok(Settled { found, criterion })
 }
 
 /// Whether an estimate of the position noise is at its limit.

@@ -3,9 +3,13 @@
 use crate::least_squares::{invert, within_bounds};
 use crate::linearisation::Linearisation;
 use crate::objective::Objective;
+use crate::quadratic::HalfSpace;
 use crate::{CoefficientSpace, Error};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
+
+/// Distance from a bound, in standard errors, at which it counts as active.
+const ACTIVE: f64 = 1e-6;
 
 /// The linearised problem of all frames.
 #[derive(Debug)]
@@ -13,6 +17,8 @@ pub(crate) struct NormalEquations {
     pub frames: Vec<Linearisation>,
     priors: Priors,
     spring: f64,
+    /// σ_v
+    velocity: f64,
     free: DVector<f64>,
     space: CoefficientSpace,
 }
@@ -58,6 +64,7 @@ impl NormalEquations {
             frames,
             priors: Priors::new(objective, free),
             spring: objective.spring(),
+            velocity: objective.levels.velocity,
             free: DVector::from_column_slice(free),
             space: objective.space.clone(),
         }
@@ -117,13 +124,30 @@ impl NormalEquations {
         Ok(sum)
     }
 
-    /// The β at which the linearised problem is least, bounds apart.
+    /// The β at which the linearised problem would be least without the bounds that hold it back: where its constrained
+    /// minimum is the present β. Without such bounds it is the present β itself.
     pub fn unbounded(&self) -> Result<DVector<f64>, Error> {
         let mut gradient = self.priors.gradient.clone();
         for frame in &self.frames {
             gradient += frame.eliminate(self.spring, 0.0)?.gradient;
         }
-        Ok(&self.free + invert(self.information()?)? * gradient)
+        let inverse = invert(self.information()?)?;
+        let is_active = |half: &HalfSpace| {
+            let variance = (half.normal.transpose() * &inverse * &half.normal).sum();
+            let distance = half.normal.dot(&self.free) - half.bound;
+            distance.abs() <= ACTIVE * variance.sqrt() * self.velocity
+        };
+        let active: Vec<DVector<f64>> =
+            self.space.half_spaces().into_iter().filter(is_active).map(|half| half.normal).collect();
+        if active.is_empty() {
+            return Ok(self.free.clone());
+        }
+        // How hard the data pull against each bound; what pulls away from one is a residue of the optimiser.
+        let normals = DMatrix::from_columns(&active);
+        let against =
+            invert(normals.transpose() * &inverse * &normals)? * normals.transpose() * &inverse * gradient;
+        let pull = normals * against.map(|pull| pull.min(0.0));
+        Ok(&self.free + inverse * pull)
     }
 
     /// Directions of the nudges that the data determine.

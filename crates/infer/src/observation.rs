@@ -120,8 +120,8 @@ impl Observation {
         self.background.as_ref().map_or(0, |(_, background)| background.dimension())
     }
 
-    /// Removes the background from a field over the targets.
-    pub(crate) fn remove_background(&self, field: &mut [Vector<f64>]) {
+    /// Removes the background, if there is one, from a field over the targets in their order.
+    pub fn remove_background(&self, field: &mut [Vector<f64>]) {
         if let Some((_, background)) = &self.background {
             background.remove(field);
         }

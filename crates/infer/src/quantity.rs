@@ -58,10 +58,14 @@ impl Quantity {
         matches!(self, Self::PreferredPerimeter | Self::Chirality)
     }
 
-    /// The value for given coefficients.
+    /// The value for given coefficients; NaN for ratios to a `K_P` that is zero to rounding.
     pub fn of(self, c: &Vector4<f64>) -> f64 {
         let c_q = c[self.coefficient()];
-        if self.is_ratio() { c_q / c[2] } else { c_q }
+        match self.is_ratio() {
+            false => c_q,
+            true if c[2].abs() <= f64::EPSILON * c.amax() => f64::NAN,
+            true => c_q / c[2],
+        }
     }
 
     /// `∂q/∂c`.

@@ -71,6 +71,9 @@ impl<'a> Point<'a> {
     /// Values around the estimate of a quantity, ascending.
     fn range(&self, quantity: Quantity, points: usize) -> Result<Vec<f64>, Error> {
         let estimate = self.result.parameters.get(quantity);
+        if !estimate.value.is_finite() {
+            return Err(Error::Constraint("a ratio to K_P has no profile where K_P is zero"));
+        }
         if estimate.standard_error == 0.0 || points < 3 {
             return Err(Error::Constraint("a parameter that is held has no profile"));
         }

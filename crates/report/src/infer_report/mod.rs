@@ -223,6 +223,9 @@ pub struct Nmse {
     pub cross_validated_standard_error: Option<f64>,
     /// Whether a mean velocity was removed from the data.
     pub mean_removed: MeanRemoved,
+    /// Degree of the polynomials of the position that are no concern of the model, if a background is allowed. Velocities
+    /// and residuals are then those without it.
+    pub background: Option<u32>,
 }
 
 /// Which mean velocity was removed before the fit.

@@ -179,6 +179,7 @@ pub fn report() -> InferReport {
             cross_validated: Some(0.31),
             cross_validated_standard_error: Some(0.02),
             mean_removed: MeanRemoved::PerFrame,
+            background: None,
         },
         noise: Noise { sigma_r: 0.14, sigma_v: 0.09, source: NoiseSource::Estimated },
         nudge: Nudge {

@@ -46,6 +46,9 @@ pub(crate) struct Arguments {
     /// Which mean velocity to remove first: drift of the stage shows as one.
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     remove_mean: MeanToRemove,
+    /// Let a smooth flow be no concern of the model: polynomials of the position up to this degree, in each frame.
+    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u32).range(0..=6), allow_negative_numbers = true)]
+    background: Option<u32>,
     /// In an open field of view, polygons larger than this multiple of the median area, or reaching farther than a
     /// regular hexagon of that size, are taken for the rim.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]

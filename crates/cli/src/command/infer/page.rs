@@ -122,6 +122,12 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
         }
     };
     let mut paragraphs = vec![format!("{source}; {mean}. {boundary}")];
+    if let Some(degree) = report.nmse.background {
+        paragraphs.push(format!(
+            "A smooth background, polynomials of the position up to degree {degree} in each frame, is no concern of the model: \
+             errors are shares of what is left of the velocities without it."
+        ));
+    }
     paragraphs.extend(beforehand(report));
     if prepared.velocities.derived().is_some() {
         paragraphs.push(

@@ -20,6 +20,8 @@ pub(crate) struct Prepared {
     pub request: Request,
     pub scale: Scale,
     pub mean_removed: MeanRemoved,
+    /// Degree of the background, if one is allowed.
+    pub background: Option<u32>,
     /// Where the noise levels come from if both were stated.
     pub stated_noise: NoiseSource,
     pub velocities: Measured,
@@ -116,11 +118,15 @@ impl Prepared {
 
     /// Measured minus predicted data of one frame; NaN where there is no measurement to be explained.
     pub fn residual_data(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
-        let observation = &self.observations[index];
-        let predicted = result.frames[index].predicted_data.iter().enumerate();
-        predicted
-            .map(|(datum, p)| observation.target(datum).map_or(NOWHERE, |v| (v - p) * self.scale.velocity()))
-            .collect()
+        let (observation, predicted) = (&self.observations[index], &result.frames[index].predicted_data);
+        let mut rests: Vec<Vector<f64>> =
+            observation.targets().map(|(datum, v)| (v - predicted[datum]) * self.scale.velocity()).collect();
+        observation.remove_background(&mut rests);
+        let mut field = vec![NOWHERE; predicted.len()];
+        for ((datum, _), rest) in observation.targets().zip(rests) {
+            field[datum] = rest;
+        }
+        field
     }
 
     /// Says in which file and frame a fault lies, with the cell as the file numbers it.
@@ -209,8 +215,14 @@ pub(super) fn prepare(
     let observations = observations
         .iter()
         .enumerate()
-        .map(|(index, observation)| scaled(index, observation, &scale, arguments.largest_area))
-        .collect::<Result<Vec<_>, _>>()?;
+        .map(|(index, observation)| {
+            let observation = scaled(index, observation, &scale, arguments.largest_area)?;
+            Ok(match arguments.background {
+                Some(degree) => observation.with_background(degree),
+                None => observation,
+            })
+        })
+        .collect::<Result<Vec<_>, Failure>>()?;
     Ok(Prepared {
         frames,
         snapshots,
@@ -218,6 +230,7 @@ pub(super) fn prepare(
         request,
         scale,
         mean_removed,
+        background: arguments.background,
         stated_noise,
         velocities,
         constraints,

@@ -61,6 +61,7 @@ pub(super) fn report(
             cross_validated: result.nmse.cross_validated.map(|c| c[0]),
             cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
             mean_removed: prepared.mean_removed,
+            background: prepared.background,
         },
         noise: Noise {
             sigma_r: result.noise.position * scale.length,
