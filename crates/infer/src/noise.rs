@@ -83,6 +83,7 @@ impl Restricted<'_> {
     pub fn most_likely(&self, present: NoiseLevels) -> Result<NoiseLevels, Error> {
         let centre = present.spring().ln();
         let grid: Vec<(f64, f64)> = (-GRID..=GRID)
+            .into_par_iter()
             .map(|step| centre + SPACING * f64::from(step))
             .map(|log_k| Ok((log_k, self.criterion(log_k)?)))
             .collect::<Result<_, Error>>()?;

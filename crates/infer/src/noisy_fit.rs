@@ -2,13 +2,14 @@
 
 use crate::least_squares::residuals_as_measured;
 use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
+use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
 use crate::search::{Effort, Found, Watch, descend, improve, optimise, search};
 use crate::{Error, KnownNoise, Method, NoiseLevels, Request};
 use std::ops::ControlFlow;
 
 /// Rounds of estimating the noise levels before contacts are flipped, and after.
-const ROUNDS: [usize; 2] = [8, 3];
+const ROUNDS: [usize; 2] = [6, 3];
 
 /// Steps of the optimiser between two estimates.
 const STEPS_PER_ROUND: u64 = 8;
@@ -17,7 +18,7 @@ const STEPS_PER_ROUND: u64 = 8;
 const ALMOST_EXACT: f64 = 2e-3;
 
 /// Change of log σ that counts as none.
-const SETTLED: f64 = 0.01;
+const SETTLED: f64 = 0.02;
 
 /// Finds parameters, nudges and, where they are not known, noise levels. The objective has the levels on return.
 pub(crate) fn fit(
@@ -41,10 +42,12 @@ pub(crate) fn fit(
         }
     };
     let plain = Effort { max_steps, transitions: false, starts: 1, seed: request.seed };
-    let mut found = search(objective, naive, &plain, "fit", watch)?;
+    // Levels that are but guessed are not worth a fit to the end.
+    let first = if estimated { STEPS_PER_ROUND.min(max_steps) } else { max_steps };
+    let mut found = search(objective, naive, &Effort { max_steps: first, ..plain }, "fit", watch)?;
     if estimated {
         let settled = settle(objective, found, request, &plain, ROUNDS[0], watch)?;
-        found = match exact_positions(objective, naive, request, &plain, watch)? {
+        found = match exact_positions(objective, naive, request, &plain, settled.criterion, watch)? {
             Some((levels, other)) if other.criterion < settled.criterion => {
                 objective.levels = levels;
                 other.found
@@ -69,7 +72,8 @@ struct Settled {
     criterion: f64,
 }
 
-/// The levels and the fit that follow if positions are taken to be almost exact at first; `None` if their noise is known.
+/// The levels and the fit that follow if positions are taken to be almost exact at first; `None` if their noise is known or
+/// levels of that kind are less likely than those of the criterion given.
 ///
 /// The likelihood of the levels can have two maxima: with small nudges, the velocities mostly noise to the model, and with
 /// large ones that explain what the model cannot.
@@ -78,6 +82,7 @@ fn exact_positions(
     naive: &[f64],
     request: &Request,
     effort: &Effort,
+    criterion: f64,
     watch: &mut Watch<'_>,
 ) -> Result<Option<(NoiseLevels, Settled)>, Error> {
     if request.noise.position.is_some() {
@@ -87,6 +92,10 @@ fn exact_positions(
     let mut other = Objective { levels: NoiseLevels { position: ALMOST_EXACT, ..first }, ..*objective };
     let mut start = naive.to_vec();
     start.resize(naive.len() + objective.nudge_count(), 0.0);
+    let equations = other.linearise(&start)?;
+    if most_likely(&other, &equations, &request.noise)?.1 >= criterion {
+        return Ok(None);
+    }
     let mut silent = |_, _| ControlFlow::Continue(());
     let found = optimise(&other, start, STEPS_PER_ROUND, &mut silent)?.found(Vec::new());
     let settled = settle(&mut other, found, request, effort, ROUNDS[0], watch)?;
@@ -112,13 +121,8 @@ fn settle(
     for round in 0..rounds {
         watch.tell("noise", (round as u64, rounds as u64), found.value / objective.expected())?;
         let equations = objective.linearise(&found.parameters)?;
-        let restricted = Restricted {
-            equations: &equations,
-            components: objective.components() as f64,
-            known: request.noise,
-        };
-        let next = restricted.most_likely(objective.levels)?;
-        criterion = restricted.criterion(next.spring().ln())?;
+        let (next, likelihood) = most_likely(objective, &equations, &request.noise)?;
+        criterion = likelihood;
         let change = (next.position / objective.levels.position).ln().abs()
             + (next.velocity / objective.levels.velocity).ln().abs();
         objective.levels = next;
@@ -138,6 +142,17 @@ fn settle(
         }
     }
     Ok(Settled { found, criterion })
+}
+
+/// The most likely levels for a linearised problem, and their criterion.
+fn most_likely(
+    objective: &Objective<'_>,
+    equations: &NormalEquations,
+    known: &KnownNoise,
+) -> Result<(NoiseLevels, f64), Error> {
+    let restricted = Restricted { equations, components: objective.components() as f64, known: *known };
+    let levels = restricted.most_likely(objective.levels)?;
+    Ok((levels, restricted.criterion(levels.spring().ln())?))
 }
 
 /// Whether an estimate of the position noise is at its limit.

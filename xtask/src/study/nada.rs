@@ -20,8 +20,8 @@ const CELLS: [usize; 2] = [100, 400];
 /// Where positions have no noise, the fits are told this much: springs need some.
 const LEAST_POSITION_NOISE: f64 = 0.005;
 
-/// Steps of the first-order descent.
-const DESCENT_STEPS: u64 = 1000;
+/// Steps of the first-order descent, times the number of cells.
+const DESCENT_WORK: u64 = 100_000;
 
 /// One method on one tissue.
 #[derive(Clone, Copy)]
@@ -87,8 +87,10 @@ fn row(cells: usize, noise: Noise, seed: u64) -> Result<Row, Box<dyn std::error:
         velocity: Some(noise.velocity),
     };
     let search = Request { cross_validation: CrossValidation::Skipped, ..tissue.request(known) };
-    let descent =
-        Request { method: Method::Descent { max_steps: DESCENT_STEPS, loss: Loss::Norms }, ..search.clone() };
+    let descent = Request {
+        method: Method::Descent { max_steps: DESCENT_WORK / cells as u64, loss: Loss::Norms },
+        ..search.clone()
+    };
     let begun = Instant::now();
     let paper = infer(std::slice::from_ref(&measured), &descent, &mut |_| ControlFlow::Continue(()))?;
     let paper_seconds = begun.elapsed().as_secs_f64();

@@ -154,3 +154,23 @@ fn the_descent_of_the_paper_can_be_compared_with() {
         assert!((found - 3.4).abs() < (naive - 3.4).abs(), "{loss}: {found}, naive {naive}");
     }
 }
+
+/// The drift that the model cannot explain is no concern of it where a background is allowed.
+#[test]
+fn a_background_takes_up_a_drift() {
+    let with = |flags: &str| {
+        let report = report(infer(&fixture("drifting-liquid"), flags).path());
+        assert_valid(&report);
+        report
+    };
+    let removed = with("--fix K_A=0.1 --background 0");
+    assert_eq!(removed["nmse"]["background"], 0);
+    let excess =
+        |report: &Value| number(report, "/fit/objective") / number(report, "/fit/expected_objective");
+    assert!(excess(&removed) < 2.0, "{}", excess(&removed));
+    // A higher degree has more to take up with, and the objective can only fall.
+    let higher = with("--fix K_A=0.1 --background 2");
+    assert!(number(&higher, "/fit/objective") < number(&removed, "/fit/objective"));
+    let (a, b) = (interval(&removed, "K_P_alpha"), interval(&higher, "K_P_alpha"));
+    assert!(a[0] < 1.5 && 1.5 < a[1] && a[0] < b[1] && b[0] < a[1], "{a:?} {b:?}");
+}
