@@ -8,6 +8,10 @@
 //! few constraints allow to visit every set of active constraints: each leaves a flat, on which the point nearest to
 //! the centre and the extremes over a ball have closed forms. Results are thus exact, and independent of scales.
 
+mod functional;
+
+pub use functional::{Functional, Ratio};
+
 use crate::Error;
 use nalgebra::{DMatrix, DVector};
 
@@ -44,44 +48,6 @@ pub struct Hyperplane {
     pub normal: DVector<f64>,
     /// `v`
     pub value: f64,
-}
-
-/// `a₀ + aᵀβ`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Functional {
-    /// `a₀`
-    pub constant: f64,
-    /// `a`
-    pub gradient: DVector<f64>,
-}
-
-impl From<DVector<f64>> for Functional {
-    fn from(gradient: DVector<f64>) -> Self {
-        Self { constant: 0.0, gradient }
-    }
-}
-
-impl Functional {
-    fn negative(&self) -> Self {
-        Self { constant: -self.constant, gradient: -&self.gradient }
-    }
-
-    /// Where it is not negative; `None` where that does not depend on β.
-    fn positive(&self) -> Option<HalfSpace> {
-        let half = HalfSpace { normal: self.gradient.clone(), bound: -self.constant };
-        (self.gradient.amax() > 0.0).then_some(half)
-    }
-}
-
-/// The ratio `(a₀ + aᵀβ) / (b₀ + bᵀβ)`.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Ratio {
-    /// `a₀ + aᵀβ`
-    pub numerator: Functional,
-    /// `b₀ + bᵀβ`, not zero throughout.
-    pub denominator: Functional,
-    /// Whether `b₀ + bᵀβ ≥ 0` is known: a further constraint.
-    pub positive_denominator: bool,
 }
 
 /// Where a quadratic is least.

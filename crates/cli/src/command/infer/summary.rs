@@ -10,12 +10,6 @@ use voronudge_report::numbers::{interval_text, significant};
 /// What the terminal shows.
 pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
     let mut text = String::new();
-    for doubt in &report.fit.doubts {
-        let _ = writeln!(text, "caution: {doubt}");
-    }
-    if !report.fit.doubts.is_empty() {
-        text.push('\n');
-    }
     let directions: Vec<String> = report.identifiability.iter().map(|d| d.words.clone()).collect();
     let _ = writeln!(text, "{}\n", words::in_short(&directions));
     let left_out: usize = report.cells.left_out.values().sum();
