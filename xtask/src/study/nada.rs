@@ -67,8 +67,15 @@ pub fn run(seeds: u64, cells: Option<usize>, figures: Option<&Path>) -> Outcome 
                 let noise = Noise { position, velocity };
                 let begun = Instant::now();
                 let rows = on_one_core_each(seeds, |seed| row(cells, noise, seed))?;
-                eprintln!("N {cells}, noise {noise:?}: {:.0} s", begun.elapsed().as_secs_f64());
-                settings.push(Setting { cells, noise, rows });
+                let setting = Setting { cells, noise, rows };
+                // A study that is stopped leaves what it has done.
+                eprintln!(
+                    "{:.0} s\n{}\n{}",
+                    begun.elapsed().as_secs_f64(),
+                    table::errors(&setting),
+                    table::costs(&setting)
+                );
+                settings.push(setting);
             }
         }
     }

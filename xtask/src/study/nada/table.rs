@@ -10,64 +10,70 @@ pub(super) fn print(settings: &[Setting]) {
          share left | long sides: before | search | position error: before | descent | search |"
     );
     println!("|{}", "---|".repeat(18));
-    for setting in settings {
-        let median = |value: &dyn Fn(&Row) -> f64| quartiles(setting.rows.iter().map(value).collect())[1];
-        let percent = |value: &dyn Fn(&Row) -> f64| format!("{:.1}", 100.0 * median(value));
-        let count = |value: &dyn Fn(&Row) -> f64| format!("{:.0}", median(value));
-        let share = |row: &Row| row.ours.wrong_edges as f64 / row.edges_before as f64;
-        println!(
-            "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-            setting.cells,
-            100.0 * setting.noise.velocity,
-            100.0 * setting.noise.position,
-            percent(&|row| row.naive.chiral),
-            percent(&|row| row.paper.chiral),
-            percent(&|row| row.ours.chiral),
-            percent(&|row| row.naive.perimeter),
-            percent(&|row| row.paper.perimeter),
-            percent(&|row| row.ours.perimeter),
-            count(&|row| row.edges_before as f64),
-            count(&|row| row.paper.wrong_edges as f64),
-            count(&|row| row.ours.wrong_edges as f64),
-            if setting.noise.position > 0.0 { format!("{:.2}", median(&share)) } else { "–".into() },
-            sum(setting, |row| row.sides_before),
-            sum(setting, |row| row.ours.lost_sides),
-            percent(&|row| row.naive.position_error),
-            percent(&|row| row.paper.position_error),
-            percent(&|row| row.ours.position_error),
-        );
-    }
+    settings.iter().for_each(|setting| println!("{}", errors(setting)));
     println!(
         "\n| N | σ_v | σ_r | Φ/expected: descent | search | seconds: descent | search | to the descent's Φ | faster by | at least as low | \
          covers K_P α | covers P_0 | K_P α within 3 % | 12 % | flagged | of these off | not flagged but off |"
     );
     println!("|{}", "---|".repeat(17));
-    for setting in settings {
-        let rows = &setting.rows;
-        let median = |value: &dyn Fn(&Row) -> f64| quartiles(rows.iter().map(value).collect())[1];
-        let count = |test: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| test(row)).count();
-        let covers = |index: usize| count(&|row| row.ours.covered.is_some_and(|covered| covered[index]));
-        println!(
-            "| {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.3} | {:.0} | {} | {} | {} | {} | {} | {} | {} | {} |",
-            setting.cells,
-            100.0 * setting.noise.velocity,
-            100.0 * setting.noise.position,
-            median(&|row| row.paper.objective),
-            median(&|row| row.ours.objective),
-            median(&|row| row.paper.seconds),
-            median(&|row| row.ours.seconds),
-            median(&|row| row.seconds_to_paper),
-            median(&|row| row.paper.seconds / row.seconds_to_paper),
-            count(&|row| row.ours.objective <= row.paper.objective),
-            covers(0),
-            covers(1),
-            count(&|row| row.ours.chiral < 0.03),
-            count(&|row| row.ours.chiral < 0.12),
-            count(&|row| row.ours.flagged),
-            count(&|row| row.ours.flagged && off(&row.ours)),
-            count(&|row| !row.ours.flagged && off(&row.ours)),
-        );
-    }
+    settings.iter().for_each(|setting| println!("{}", costs(setting)));
+}
+
+/// A row of the first table.
+pub(super) fn errors(setting: &Setting) -> String {
+    let median = |value: &dyn Fn(&Row) -> f64| quartiles(setting.rows.iter().map(value).collect())[1];
+    let percent = |value: &dyn Fn(&Row) -> f64| format!("{:.1}", 100.0 * median(value));
+    let count = |value: &dyn Fn(&Row) -> f64| format!("{:.0}", median(value));
+    let share = |row: &Row| row.ours.wrong_edges as f64 / row.edges_before as f64;
+    format!(
+        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        setting.cells,
+        100.0 * setting.noise.velocity,
+        100.0 * setting.noise.position,
+        percent(&|row| row.naive.chiral),
+        percent(&|row| row.paper.chiral),
+        percent(&|row| row.ours.chiral),
+        percent(&|row| row.naive.perimeter),
+        percent(&|row| row.paper.perimeter),
+        percent(&|row| row.ours.perimeter),
+        count(&|row| row.edges_before as f64),
+        count(&|row| row.paper.wrong_edges as f64),
+        count(&|row| row.ours.wrong_edges as f64),
+        if setting.noise.position > 0.0 { format!("{:.2}", median(&share)) } else { "–".into() },
+        sum(setting, |row| row.sides_before),
+        sum(setting, |row| row.ours.lost_sides),
+        percent(&|row| row.naive.position_error),
+        percent(&|row| row.paper.position_error),
+        percent(&|row| row.ours.position_error),
+    )
+}
+
+/// A row of the second table.
+pub(super) fn costs(setting: &Setting) -> String {
+    let rows = &setting.rows;
+    let median = |value: &dyn Fn(&Row) -> f64| quartiles(rows.iter().map(value).collect())[1];
+    let count = |test: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| test(row)).count();
+    let covers = |index: usize| count(&|row| row.ours.covered.is_some_and(|covered| covered[index]));
+    format!(
+        "| {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.3} | {:.0} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        setting.cells,
+        100.0 * setting.noise.velocity,
+        100.0 * setting.noise.position,
+        median(&|row| row.paper.objective),
+        median(&|row| row.ours.objective),
+        median(&|row| row.paper.seconds),
+        median(&|row| row.ours.seconds),
+        median(&|row| row.seconds_to_paper),
+        median(&|row| row.paper.seconds / row.seconds_to_paper),
+        count(&|row| row.ours.objective <= row.paper.objective),
+        covers(0),
+        covers(1),
+        count(&|row| row.ours.chiral < 0.03),
+        count(&|row| row.ours.chiral < 0.12),
+        count(&|row| row.ours.flagged),
+        count(&|row| row.ours.flagged && off(&row.ours)),
+        count(&|row| !row.ours.flagged && off(&row.ours)),
+    )
 }
 
 /// Whether K_P α is further from the truth than three standard errors.
