@@ -2,15 +2,15 @@
 
 use crate::least_squares::{self, residuals_as_measured};
 use crate::objective::Objective;
-use crate::search::{Effort, Watch, search};
+use crate::search::{Watch, follow};
 use crate::{Error, Observation, Progress};
 use std::ops::ControlFlow;
 
 /// Blocks along each axis into which a single frame is cut.
 const BLOCKS: usize = 2;
 
-/// A fold's parameters follow from one continuation: the flip of a contact hardly changes them.
-const EFFORT: Effort = Effort { max_steps: 12, transitions: false, starts: 1, seed: 0 };
+/// Steps at the end of a fold's fit. One continuation is enough: the flip of a contact hardly changes the parameters.
+const STEPS: u64 = 12;
 
 /// Which velocities are held out together.
 enum Folds {
@@ -73,7 +73,7 @@ fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f6
     let naive = least_squares::fit(&training, terms, space)?;
     let objective = Objective { frames: &training, ..*whole };
     let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
-    let found = search(&objective, &naive, &EFFORT, "", &mut Watch { observe: &mut silent })?;
+    let found = follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?;
     let coefficients = space.coefficients(objective.split(&found.parameters).0);
     let (mut error, mut total) = (0.0, 0.0);
     for (frame, out) in frames.iter().zip(held_out) {
@@ -114,8 +114,6 @@ fn without(frame: &Observation, held_out: &[bool]) -> Observation {
             *v = None;
         }
     }
-    match training.background_degree() {
-        Some(degree) => training.with_background(degree),
-        None => training,
-    }
+    let degree = training.background_degree();
+    training.with_background(degree)
 }

@@ -11,7 +11,7 @@ use crate::{
     CoefficientSpace, CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource,
     Observation, Progress, Request, Status,
 };
-use nalgebra::{DVector, Vector4};
+use nalgebra::Vector4;
 use std::ops::ControlFlow;
 use voronudge_model::base_terms;
 
@@ -61,11 +61,9 @@ pub fn infer(
     // Where the model misses more than the noise explains, the misfit counts as noise.
     let excess = (value / expected).max(1.0);
     let equations = objective.linearise(&found.parameters)?;
-    let information = equations.information()? / (variance * excess);
-    let centre = match space.half_spaces().is_empty() {
-        true => DVector::from_column_slice(free),
-        false => equations.unbounded()?,
-    };
+    let reduced = equations.reduced()?;
+    let centre = equations.unbounded(&reduced)?;
+    let information = reduced.information / (variance * excess);
     let fitted =
         Fitted { space: &space, constraints: &request.constraints, free, information: &information, centre };
     let residual_at = |beta: &[f64]| -> f64 {
@@ -73,13 +71,9 @@ pub fn infer(
         let squares = |frame| residuals_as_measured(frame, &terms, coefficients.as_slice());
         frames.iter().flat_map(squares).map(|(_, rest)| rest.norm_squared()).sum()
     };
-    let mut sensitivity = 0.0;
     let mut results = Vec::with_capacity(frames.len());
     for (index, (frame, nudges)) in frames.iter().zip(&nudges).enumerate() {
-        let nudged =
-            objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
-        sensitivity += sensitivity_of(&objective, frame, &nudged, &coefficients);
-        results.push(frame_result(frame, nudged, &coefficients));
+        results.push(frame_result(frame, objective.place(index, nudges)?, &coefficients));
     }
     let cells: usize = frames.iter().map(|frame| frame.positions.len()).sum();
     let estimated = request.noise.position.is_none() || request.noise.velocity.is_none();
@@ -97,7 +91,8 @@ pub fn infer(
             naive: residual_at(&naive) / total,
             nudged: parts.residual / total,
             un_nudged: residual_at(free) / total,
-            noise_floor: (objective.components() as f64 * variance + sensitivity * levels.position.powi(2))
+            noise_floor: (objective.components() as f64 * variance
+                + equations.sensitivity() * levels.position.powi(2))
                 / total,
             cross_validated,
         },
@@ -119,20 +114,6 @@ pub fn infer(
         doubts: doubts.into_iter().flatten().collect(),
         used,
     })
-}
-
-/// `‖∂v/∂r‖²` over the velocities used.
-fn sensitivity_of(
-    objective: &Objective<'_>,
-    frame: &Observation,
-    nudged: &Nudged,
-    coefficients: &Vector4<f64>,
-) -> f64 {
-    let jacobian = nudged.jacobian(objective.terms, coefficients);
-    let squares = |(datum, _)| -> f64 {
-        jacobian.row(datum).map(|(_, block)| block.iter().map(|entry| entry * entry).sum::<f64>()).sum()
-    };
-    frame.targets().map(squares).sum()
 }
 
 /// One frame at its nudged positions.

@@ -34,11 +34,22 @@ pub(crate) fn fit(
     terms: &[Term],
     space: &CoefficientSpace,
 ) -> Result<Vec<f64>, Error> {
+    let of_frame = |frame: &Observation| {
+        let columns = measured_columns(frame, &frame.tessellation, &frame.positions, terms);
+        Ok(normal_equations(frame, &columns, space))
+    };
+    solve(space, frames.iter().map(of_frame))
+}
+
+/// The β within bounds that solves the normal equations of all frames together.
+pub(crate) fn solve(
+    space: &CoefficientSpace,
+    frames: impl Iterator<Item = Result<(DMatrix<f64>, DVector<f64>), Error>>,
+) -> Result<Vec<f64>, Error> {
     let p = space.dimension();
     let (mut normal, mut right) = (DMatrix::zeros(p, p), DVector::zeros(p));
     for frame in frames {
-        let columns = measured_columns(frame, &frame.tessellation, &frame.positions, terms);
-        let (own, part) = normal_equations(frame, &columns, space);
+        let (own, part) = frame?;
         normal += own;
         right += part;
     }

@@ -128,9 +128,9 @@ impl Linearisation {
         self.normal.order()
     }
 
-    /// Mean diagonal entry of JᵀJ.
-    pub fn mean_diagonal(&self) -> f64 {
-        self.normal.diagonal().sum::<f64>() / self.order() as f64
+    /// The trace of JᵀJ.
+    pub fn trace(&self) -> f64 {
+        self.normal.diagonal().sum()
     }
 
     /// XᵀX.

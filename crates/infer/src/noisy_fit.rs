@@ -4,12 +4,14 @@ use crate::least_squares::residuals_as_measured;
 use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
 use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
-use crate::search::{Effort, Found, Watch, descend, improve, optimise, search};
+use crate::search::{Effort, Found, Watch, descend, follow, improve, refine};
 use crate::{Error, KnownNoise, Method, NoiseLevels, Request};
-use std::ops::ControlFlow;
 
 /// Rounds of estimating the noise levels before contacts are flipped, and after.
 const ROUNDS: [usize; 2] = [6, 3];
+
+/// Steps of the optimiser where only noise levels are wanted.
+const NOISE_STEPS: u64 = 60;
 
 /// Steps of the optimiser between two estimates.
 const STEPS_PER_ROUND: u64 = 8;
@@ -34,20 +36,18 @@ pub(crate) fn fit(
         Method::Descent { max_steps, loss } => {
             // The paper's optimiser takes noise levels as they are: those that a search finds, if none are given.
             if estimated {
-                let effort = Effort { max_steps: 60, transitions: false, starts: 1, seed: request.seed };
-                let found = search(objective, naive, &effort, "noise", watch)?;
-                settle(objective, found, request, &effort, ROUNDS[0], watch)?;
+                let found = follow(objective, naive, NOISE_STEPS, "noise", watch)?;
+                settle(objective, found, request, NOISE_STEPS, ROUNDS[0], watch)?;
             }
             return descend(objective, naive, loss, max_steps, watch);
         }
     };
-    let plain = Effort { max_steps, transitions: false, starts: 1, seed: request.seed };
     // Levels that are but guessed are not worth a fit to the end.
     let first = if estimated { STEPS_PER_ROUND.min(max_steps) } else { max_steps };
-    let mut found = search(objective, naive, &Effort { max_steps: first, ..plain }, "fit", watch)?;
+    let mut found = follow(objective, naive, first, "fit", watch)?;
     if estimated {
-        let settled = settle(objective, found, request, &plain, ROUNDS[0], watch)?;
-        found = match exact_positions(objective, naive, request, &plain, settled.criterion, watch)? {
+        let settled = settle(objective, found, request, max_steps, ROUNDS[0], watch)?;
+        found = match exact_positions(objective, naive, request, max_steps, settled.criterion, watch)? {
             Some((levels, other)) if other.criterion < settled.criterion => {
                 objective.levels = levels;
                 other.found
@@ -55,12 +55,12 @@ pub(crate) fn fit(
             _ => settled.found,
         };
         // The levels have moved on from those of the continuation.
-        let again = search(objective, naive, &plain, "fit", watch)?;
+        let again = follow(objective, naive, max_steps, "fit", watch)?;
         found = better(found, again);
     }
-    improve(objective, &mut found, &Effort { transitions: true, starts, ..plain }, watch)?;
+    improve(objective, &mut found, &Effort { max_steps, starts, seed: request.seed }, watch)?;
     if estimated {
-        found = settle(objective, found, request, &plain, ROUNDS[1], watch)?.found;
+        found = settle(objective, found, request, max_steps, ROUNDS[1], watch)?.found;
     }
     Ok(found)
 }
@@ -81,7 +81,7 @@ fn exact_positions(
     objective: &Objective<'_>,
     naive: &[f64],
     request: &Request,
-    effort: &Effort,
+    max_steps: u64,
     criterion: f64,
     watch: &mut Watch<'_>,
 ) -> Result<Option<(NoiseLevels, Settled)>, Error> {
@@ -96,9 +96,8 @@ fn exact_positions(
     if most_likely(&other, &equations, &request.noise)?.1 >= criterion {
         return Ok(None);
     }
-    let mut silent = |_, _| ControlFlow::Continue(());
-    let found = optimise(&other, start, STEPS_PER_ROUND, &mut silent)?.found(Vec::new());
-    let settled = settle(&mut other, found, request, effort, ROUNDS[0], watch)?;
+    let found = refine(&other, start, STEPS_PER_ROUND)?.found(Vec::new());
+    let settled = settle(&mut other, found, request, max_steps, ROUNDS[0], watch)?;
     Ok(Some((other.levels, settled)))
 }
 
@@ -113,7 +112,7 @@ fn settle(
     objective: &mut Objective<'_>,
     mut found: Found,
     request: &Request,
-    effort: &Effort,
+    max_steps: u64,
     rounds: usize,
     watch: &mut Watch<'_>,
 ) -> Result<Settled, Error> {
@@ -126,10 +125,9 @@ fn settle(
         let change = (next.position / objective.levels.position).ln().abs()
             + (next.velocity / objective.levels.velocity).ln().abs();
         objective.levels = next;
-        let mut silent = |_, _| ControlFlow::Continue(());
         let settled = change < SETTLED || round + 1 == rounds;
-        let steps = if settled { effort.max_steps } else { STEPS_PER_ROUND.min(effort.max_steps) };
-        let optimum = optimise(objective, found.parameters, steps, &mut silent)?;
+        let steps = if settled { max_steps } else { STEPS_PER_ROUND.min(max_steps) };
+        let optimum = refine(objective, found.parameters, steps)?;
         found = Found {
             steps: found.steps + optimum.steps,
             parameters: optimum.parameters,

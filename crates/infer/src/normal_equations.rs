@@ -30,6 +30,14 @@ pub(crate) struct Step {
     pub promised: f64,
 }
 
+/// The linearised problem in β alone.
+pub(crate) struct Reduced {
+    /// The information on β, in units of 1/σ_v².
+    pub information: DMatrix<f64>,
+    /// Half the decrease of Φ with β.
+    gradient: DVector<f64>,
+}
+
 /// The penalty of the priors, linearised about the present coefficients.
 #[derive(Debug, Clone)]
 struct Priors {
@@ -79,8 +87,7 @@ impl NormalEquations {
     /// of the diagonal of XᵀX for coefficients.
     pub fn step(&self, damping: f64) -> Result<Step, Error> {
         let count: usize = self.frames.iter().map(Linearisation::order).sum();
-        let weighted = |frame: &Linearisation| frame.mean_diagonal() * frame.order() as f64;
-        let unit = self.frames.iter().map(weighted).sum::<f64>() / count as f64 + self.spring;
+        let unit = self.sensitivity() / count as f64 + self.spring;
         let shift = damping * unit;
         let eliminated: Vec<_> = self
             .frames
@@ -115,23 +122,21 @@ impl NormalEquations {
         Ok(Step { step, promised })
     }
 
-    /// The information on β with the nudges eliminated, priors included, in units of 1/σ_v².
-    pub fn information(&self) -> Result<DMatrix<f64>, Error> {
-        let mut sum = self.priors.normal.clone();
+    /// The problem in β alone, with the nudges eliminated and priors included.
+    pub fn reduced(&self) -> Result<Reduced, Error> {
+        let (mut information, mut gradient) = (self.priors.normal.clone(), self.priors.gradient.clone());
         for frame in &self.frames {
-            sum += frame.eliminate(self.spring, 0.0)?.schur;
+            let part = frame.eliminate(self.spring, 0.0)?;
+            information += part.schur;
+            gradient += part.gradient;
         }
-        Ok(sum)
+        Ok(Reduced { information, gradient })
     }
 
     /// The β at which the linearised problem would be least without the bounds that hold it back: where its constrained
     /// minimum is the present β. Without such bounds it is the present β itself.
-    pub fn unbounded(&self) -> Result<DVector<f64>, Error> {
-        let mut gradient = self.priors.gradient.clone();
-        for frame in &self.frames {
-            gradient += frame.eliminate(self.spring, 0.0)?.gradient;
-        }
-        let inverse = invert(self.information()?)?;
+    pub fn unbounded(&self, reduced: &Reduced) -> Result<DVector<f64>, Error> {
+        let inverse = invert(reduced.information.clone())?;
         let is_active = |half: &HalfSpace| {
             let variance = (half.normal.transpose() * &inverse * &half.normal).sum();
             let distance = half.normal.dot(&self.free) - half.bound;
@@ -144,10 +149,17 @@ impl NormalEquations {
         }
         // How hard the data pull against each bound; what pulls away from one is a residue of the optimiser.
         let normals = DMatrix::from_columns(&active);
-        let against =
-            invert(normals.transpose() * &inverse * &normals)? * normals.transpose() * &inverse * gradient;
+        let against = invert(normals.transpose() * &inverse * &normals)?
+            * normals.transpose()
+            * &inverse
+            * &reduced.gradient;
         let pull = normals * against.map(|pull| pull.min(0.0));
         Ok(&self.free + inverse * pull)
+    }
+
+    /// `‖∂v/∂r‖²` over the velocities used: the trace of JᵀJ.
+    pub fn sensitivity(&self) -> f64 {
+        self.frames.iter().map(Linearisation::trace).sum()
     }
 
     /// Directions of the nudges that the data determine.

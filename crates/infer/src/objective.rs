@@ -120,6 +120,12 @@ impl Objective<'_> {
         Ok(Nudged { positions, tessellation, of_cells, sampling })
     }
 
+    /// The frame of an index, displaced; a fault is that frame's.
+    pub fn place(&self, index: usize, nudges: &[f64]) -> Result<Nudged, Error> {
+        let displaced = self.nudge(&self.frames[index], nudges);
+        displaced.map_err(|source| Error::Geometry { frame: index, source })
+    }
+
     /// `v − F` of a frame for each target, the background removed.
     pub fn residuals(
         &self,
@@ -181,8 +187,7 @@ impl Objective<'_> {
             .zip(&nudges)
             .enumerate()
             .map(|(index, (frame, nudges))| {
-                let nudged =
-                    self.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
+                let nudged = self.place(index, nudges)?;
                 let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = self
                     .residuals(frame, &nudged, &coefficients)
                     .into_iter()

@@ -101,12 +101,14 @@ impl Observation {
         })
     }
 
-    /// Lets a smooth flow, polynomials of the position up to a degree, be no concern of the model. Velocities must not
-    /// change afterwards.
+    /// Lets a smooth flow, polynomials of the position up to a degree, be no concern of the model, or nothing. Velocities
+    /// must not change afterwards.
     #[must_use]
-    pub fn with_background(mut self, degree: u32) -> Self {
-        let places: Vec<Vector<f64>> = self.targets().map(|(datum, _)| self.place(datum)).collect();
-        self.background = Some((degree, Background::new(&places, degree)));
+    pub fn with_background(mut self, degree: Option<u32>) -> Self {
+        self.background = degree.map(|degree| {
+            let places: Vec<Vector<f64>> = self.targets().map(|(datum, _)| self.place(datum)).collect();
+            (degree, Background::new(&places, degree))
+        });
         self
     }
 

@@ -175,12 +175,12 @@ fn a_misfit_is_doubted() {
 #[test]
 fn a_smooth_background_is_no_concern_of_the_model() {
     let frame = observation(0.02, 0.05, 11);
-    let plain = fit(&[frame.clone().with_background(2)], &request(Constraints::default()));
+    let plain = fit(&[frame.clone().with_background(Some(2))], &request(Constraints::default()));
     let mut flowing = frame;
     for (v, r) in flowing.velocities.values_mut().iter_mut().flatten().zip(&flowing.positions) {
         *v += voronudge_geometry::Vector::new(3.0 - r.y + 0.2 * r.x * r.y, 0.7 * r.x - 0.1 * r.y * r.y);
     }
-    let flowing = fit(&[flowing.with_background(2)], &request(Constraints::default()));
+    let flowing = fit(&[flowing.with_background(Some(2))], &request(Constraints::default()));
     for quantity in Quantity::ALL {
         let (a, b) = (plain.parameters.get(quantity), flowing.parameters.get(quantity));
         assert!((a.value - b.value).abs() < 1e-3 * a.standard_error, "{quantity:?}");

@@ -2,7 +2,7 @@
 
 use super::{Found, Watch, optimise};
 use crate::objective::Objective;
-use crate::{Error, NoiseLevels, Status};
+use crate::{Error, NoiseLevels};
 use std::ops::ControlFlow;
 
 /// Factors on σ_v of one stage after another.
@@ -12,7 +12,7 @@ const STAGES: [f64; 5] = [10.0, 5.0, 2.5, 1.5, 1.0];
 const STEPS_PER_STAGE: u64 = 6;
 
 /// A fit by continuation, from zero nudges and the given β.
-pub(super) fn follow(
+pub(crate) fn follow(
     objective: &Objective<'_>,
     free: &[f64],
     max_steps: u64,
@@ -49,6 +49,5 @@ pub(super) fn follow(
         }
     }
     let optimum = found.ok_or_else(|| Error::Optimiser("no stage".into()))?;
-    let status: Status = optimum.status;
-    Ok(Found { steps, status, ..optimum.found(trace) })
+    Ok(Found { steps, ..optimum.found(trace) })
 }

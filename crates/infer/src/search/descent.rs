@@ -9,14 +9,14 @@
 //! their columns. At the end the coefficients are those that fit best at the nudged positions.
 
 use super::{Found, Optimum, Watch, own_error};
-use crate::least_squares::{free_rows, invert, normal_equations, within_bounds};
+use crate::least_squares::{free_rows, normal_equations, solve};
 use crate::objective::Objective;
 use crate::{Error, Loss, Status};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, Gradient};
 use argmin::solver::gradientdescent::SteepestDescent;
 use argmin::solver::linesearch::BacktrackingLineSearch;
 use argmin::solver::linesearch::condition::ArmijoCondition;
-use nalgebra::{DMatrix, DVector, Vector4};
+use nalgebra::Vector4;
 use voronudge_geometry::Vector;
 
 /// Rounds in which κ is adapted; each has its share of the steps.
@@ -87,17 +87,13 @@ pub(crate) fn descend(
 /// The best coefficients at the nudged positions.
 fn refit(objective: &Objective<'_>, parameters: &mut [f64]) -> Result<(), Error> {
     let (_, nudges) = objective.split(parameters);
-    let p = objective.space.dimension();
-    let (mut normal, mut right) = (DMatrix::zeros(p, p), DVector::zeros(p));
-    for (index, (frame, nudges)) in objective.frames.iter().zip(nudges).enumerate() {
-        let nudged =
-            objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
-        let (own, part) = normal_equations(frame, nudged.columns(), objective.space);
-        normal += own;
-        right += part;
-    }
-    let free = within_bounds(objective.space, invert(normal.clone())? * right, normal)?;
-    parameters[..p].copy_from_slice(free.as_slice());
+    let of_frame = |(index, nudges): (usize, &[f64])| {
+        let nudged = objective.place(index, nudges)?;
+        Ok(normal_equations(&objective.frames[index], nudged.columns(), objective.space))
+    };
+    let free = solve(objective.space, nudges.into_iter().enumerate().map(of_frame))?;
+    let p = free.len();
+    parameters[..p].copy_from_slice(&free);
     Ok(())
 }
 
@@ -106,8 +102,7 @@ fn scales(objective: &Objective<'_>) -> Result<Vec<f64>, Error> {
     let mut squares = vec![0.0; objective.space.dimension()];
     for (index, frame) in objective.frames.iter().enumerate() {
         let zero = vec![0.0; 2 * frame.positions.len()];
-        let nudged =
-            objective.nudge(frame, &zero).map_err(|source| Error::Geometry { frame: index, source })?;
+        let nudged = objective.place(index, &zero)?;
         for x in free_rows(frame, nudged.columns(), objective.space) {
             squares.iter_mut().zip(x.column_iter()).for_each(|(sum, column)| *sum += column.norm_squared());
         }
@@ -157,8 +152,7 @@ impl Problem<'_> {
         let (mut of_residual, mut residual, mut squares) = (vec![0.0; parameters.len()], 0.0, 0.0);
         let mut offset = p;
         for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
-            let nudged =
-                objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
+            let nudged = objective.place(index, nudges)?;
             let jacobian = nudged.jacobian(objective.terms, &coefficients);
             let rows = free_rows(frame, nudged.columns(), objective.space);
             for ((datum, rest), x) in objective.residuals(frame, &nudged, &coefficients).into_iter().zip(rows)

@@ -10,6 +10,7 @@ mod patch;
 mod starts;
 mod transitions;
 
+pub(crate) use continuation::follow;
 pub(crate) use descent::descend;
 
 use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
@@ -30,8 +31,6 @@ const TOLERANCE: f64 = 1e-5;
 pub(crate) struct Effort {
     /// Steps of one optimisation at the final noise levels.
     pub max_steps: u64,
-    /// Whether to try other contacts.
-    pub transitions: bool,
     /// Starts in all.
     pub starts: usize,
     pub seed: u64,
@@ -82,19 +81,6 @@ impl Watch<'_> {
     }
 }
 
-/// The best point that the effort finds, from zero nudges and the given β.
-pub(crate) fn search(
-    objective: &Objective<'_>,
-    free: &[f64],
-    effort: &Effort,
-    stage: &str,
-    watch: &mut Watch<'_>,
-) -> Result<Found, Error> {
-    let mut found = continuation::follow(objective, free, effort.max_steps, stage, watch)?;
-    improve(objective, &mut found, effort, watch)?;
-    Ok(found)
-}
-
 /// Goes on from a point: transitions, and further starts.
 pub(crate) fn improve(
     objective: &Objective<'_>,
@@ -102,9 +88,7 @@ pub(crate) fn improve(
     effort: &Effort,
     watch: &mut Watch<'_>,
 ) -> Result<(), Error> {
-    if effort.transitions {
-        transitions::flip(objective, found, effort.max_steps, watch)?;
-    }
+    transitions::flip(objective, found, effort.max_steps, watch)?;
     found.starts = vec![found.value];
     for start in 1..effort.starts {
         starts::try_another(objective, found, effort, start, watch)?;
@@ -137,7 +121,7 @@ impl Optimum {
 }
 
 /// Levenberg–Marquardt from a point.
-pub(crate) fn optimise(
+fn optimise(
     objective: &Objective<'_>,
     start: Vec<f64>,
     max_steps: u64,
@@ -157,6 +141,11 @@ pub(crate) fn optimise(
     let value = state.best_cost;
     let parameters = state.take_best_param().ok_or_else(|| Error::Optimiser("no best point".into()))?;
     Ok(Optimum { parameters, value, status, steps: state.iter })
+}
+
+/// The same without telling of progress.
+pub(crate) fn refine(objective: &Objective<'_>, start: Vec<f64>, max_steps: u64) -> Result<Optimum, Error> {
+    optimise(objective, start, max_steps, &mut |_, _| ControlFlow::Continue(()))
 }
 
 /// The error within argmin's.

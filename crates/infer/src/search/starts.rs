@@ -34,9 +34,7 @@ pub(super) fn try_another(
     };
     let optimum = optimise(objective, at, effort.max_steps, &mut observer)?;
     let mut other = optimum.found(trace);
-    if effort.transitions {
-        transitions::flip(objective, &mut other, effort.max_steps, watch)?;
-    }
+    transitions::flip(objective, &mut other, effort.max_steps, watch)?;
     found.steps += other.steps;
     found.transitions_tried += other.transitions_tried;
     found.starts.push(other.value);

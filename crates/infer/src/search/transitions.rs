@@ -12,7 +12,7 @@
 //! descends again.
 
 use super::patch::{Patch, Whole};
-use super::{Found, Watch, optimise};
+use super::{Found, Watch, optimise, refine};
 use crate::objective::Objective;
 use crate::{CoefficientSpace, Error, Observation};
 use rayon::prelude::*;
@@ -115,8 +115,7 @@ fn adopt(
                 start[at..at + 2].copy_from_slice(nudge);
             }
         }
-        let mut silent = |_, _| ControlFlow::Continue(());
-        let optimum = optimise(objective, start, max_steps, &mut silent)?;
+        let optimum = refine(objective, start, max_steps)?;
         found.steps += optimum.steps;
         if optimum.value < found.value {
             found.parameters = optimum.parameters;
@@ -154,8 +153,7 @@ fn trials(
     let pinned = CoefficientSpace::pinned(&objective.space.coefficients(free));
     let mut all = Vec::new();
     for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
-        let nudged =
-            objective.nudge(frame, nudges).map_err(|source| Error::Geometry { frame: index, source })?;
+        let nudged = objective.place(index, nudges)?;
         let coefficients = objective.space.coefficients(free);
         let predicted = nudged.predictions(&coefficients);
         let mut targets = vec![None; predicted.len()];

@@ -94,10 +94,7 @@ fn replicate(
         };
         let domain = frame.tessellation.domain();
         let refitted = Observation::new(index, positions, velocities, domain, frame.largest_area)?;
-        synthetic.push(match frame.background_degree() {
-            Some(degree) => refitted.with_background(degree),
-            None => refitted,
-        });
+        synthetic.push(refitted.with_background(frame.background_degree()));
     }
     let mut request = Request { cross_validation: CrossValidation::Skipped, seed: number, ..request.clone() };
     // A prior is a measurement too.

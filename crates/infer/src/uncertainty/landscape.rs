@@ -75,9 +75,7 @@ impl<'a> Slice<'a> {
         for (index, frame) in point.frames.iter().enumerate() {
             let (own, after) = rest.split_at(2 * frame.positions.len());
             rest = after;
-            nudged.push(
-                objective.nudge(frame, own).map_err(|source| Error::Geometry { frame: index, source })?,
-            );
+            nudged.push(objective.place(index, own)?);
         }
         let springs = objective.spring() * point.nudges.iter().map(|e| e * e).sum::<f64>();
         Ok(Self { objective, nudged, springs, unit: point.unit })

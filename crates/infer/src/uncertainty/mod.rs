@@ -9,10 +9,9 @@ pub use landscape::{Landscape, landscape};
 pub use profile::{Profile, profile};
 
 use crate::objective::Objective;
-use crate::search::optimise;
+use crate::search::refine;
 use crate::{CoefficientSpace, Error, Inference, Observation, Quantity, Request};
 use nalgebra::Vector4;
-use std::ops::ControlFlow;
 use voronudge_model::{Term, base_terms};
 
 /// Steps of a refit from a neighbouring solution.
@@ -64,8 +63,7 @@ impl<'a> Point<'a> {
         }
         let mut start = space.nearest(&self.result.coefficients);
         start.extend(&self.nudges);
-        let mut silent = |_, _| ControlFlow::Continue(());
-        Ok(optimise(&self.objective(&space), start, STEPS, &mut silent)?.value * self.unit)
+        Ok(refine(&self.objective(&space), start, STEPS)?.value * self.unit)
     }
 
     /// Values around the estimate of a quantity, ascending.

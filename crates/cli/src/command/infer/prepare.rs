@@ -216,11 +216,7 @@ pub(super) fn prepare(
         .iter()
         .enumerate()
         .map(|(index, observation)| {
-            let observation = scaled(index, observation, &scale, arguments.largest_area)?;
-            Ok(match arguments.background {
-                Some(degree) => observation.with_background(degree),
-                None => observation,
-            })
+            Ok(scaled(index, observation, &scale)?.with_background(arguments.background))
         })
         .collect::<Result<Vec<_>, Failure>>()?;
     Ok(Prepared {
@@ -306,12 +302,7 @@ fn scale_of(observations: &[Observation]) -> Result<Scale, Error> {
     Ok(Scale { length, time: length / (squares / used as f64).sqrt() })
 }
 
-fn scaled(
-    index: usize,
-    observation: &Observation,
-    scale: &Scale,
-    largest_area: f64,
-) -> Result<Observation, Failure> {
+fn scaled(index: usize, observation: &Observation, scale: &Scale) -> Result<Observation, Failure> {
     let domain = match observation.tessellation.domain() {
         Domain::Periodic(cell_box) => {
             let lengths = cell_box.lengths().map(|l| l / scale.length);
@@ -326,7 +317,7 @@ fn scaled(
         }
         Velocities::OnGrid(flow) => Velocities::OnGrid(flow::scaled(flow, scale)?),
     };
-    Ok(Observation::new(index, positions, velocities, domain, largest_area)?)
+    Ok(Observation::new(index, positions, velocities, domain, observation.largest_area)?)
 }
 
 fn request(
