@@ -16,7 +16,7 @@ pub(crate) fn measured_columns(
     positions: &[Vector<f64>],
     terms: &[Term],
 ) -> Columns {
-    let of_cells = columns(tessellation, positions, terms);
+    let of_cells = columns(tessellation, positions, terms, &std::sync::Arc::default());
     match frame.sampling(tessellation, positions) {
         None => of_cells,
         Some(sampling) => of_cells.iter().map(|column| sampling.average(column)).collect(),

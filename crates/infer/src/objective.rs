@@ -7,6 +7,7 @@ use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Prior, Quantity};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use nalgebra::{DMatrix, Vector4};
 use rayon::prelude::*;
+use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::{BlockMatrix, Model, Term, columns, jacobian};
 
@@ -112,7 +113,7 @@ impl Objective<'_> {
         let nudges = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1]));
         let positions: Vec<Vector<f64>> = frame.positions.iter().zip(nudges).map(|(r, e)| r + e).collect();
         let tessellation = Tessellation::new(&positions, frame.tessellation.domain())?;
-        let of_cells = columns(&tessellation, &positions, self.terms);
+        let of_cells = columns(&tessellation, &positions, self.terms, &Arc::default());
         let sampling = frame.sampling(&tessellation, &positions).map(|sampling| Sampled {
             columns: of_cells.iter().map(|column| sampling.average(column)).collect(),
             sampling,

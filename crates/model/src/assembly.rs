@@ -3,9 +3,10 @@
 //! Each element writes the forces on its ring into its own half-edges; each cell then gathers what its neighbours wrote
 //! about it, in the order of its ring. No two threads write to one place and no sum depends on their number.
 
-use crate::{Model, Term, VertexForces, WeightedTerm};
+use crate::{Environment, Model, Term, VertexForces, WeightedTerm};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::sync::Arc;
 use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
 
 /// Cells per task.
@@ -127,6 +128,10 @@ pub fn columns(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
     terms: &[Term],
+    environment: &Arc<Environment>,
 ) -> Vec<Vec<Vector<f64>>> {
-    terms.iter().map(|&term| velocities(tessellation, positions, &Model::single(term))).collect()
+    terms
+        .iter()
+        .map(|&term| velocities(tessellation, positions, &Model::single(term).within(environment)))
+        .collect()
 }

@@ -29,15 +29,19 @@
 mod assembly;
 mod element;
 mod element_jacobian;
+mod environment;
 pub mod gradient_check;
 mod jacobian;
 mod parameters;
 mod stress;
+mod structure;
 mod term;
 
 pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use element::VertexForces;
+pub use environment::Environment;
 pub use jacobian::{BlockMatrix, JacobianBuilder, jacobian};
-pub use parameters::{Model, PARAMETER_NAMES, Parameters, WeightedTerm, base_terms, parameter_derivatives};
+pub use parameters::{PARAMETER_NAMES, Parameters, parameter_derivatives};
 pub use stress::stress;
+pub use structure::{Evaluation, Model, Structure, WeightedTerm, base_terms};
 pub use term::{Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, Term};

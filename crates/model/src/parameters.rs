@@ -1,8 +1,8 @@
 //! The parameters of the chiral Voronoi model and the coefficients of its terms.
 
-use crate::{Adhesion, AreaElasticity, Contractility, CorticalChirality, Term, columns};
+use crate::{Model, Term, columns};
 use num_dual::DualSVec64;
-use voronudge_geometry::{Scalar, Tessellation, Vector};
+use voronudge_geometry::{Tessellation, Vector};
 
 /// Names of the parameters that change velocities, in the order of [`parameter_derivatives`].
 pub const PARAMETER_NAMES: [&str; 4] = ["K_A", "K_P", "P_0", "alpha"];
@@ -34,71 +34,6 @@ impl Default for Parameters<f64> {
     }
 }
 
-/// A term and its coefficient.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct WeightedTerm<S> {
-    /// The term.
-    pub term: Term,
-    /// Its coefficient.
-    pub coefficient: S,
-}
-
-/// A model of the tissue: a sum of terms.
-#[derive(Debug, Clone, PartialEq)]
-pub struct Model<S> {
-    /// The terms and their coefficients; velocities are linear in the latter.
-    pub terms: Vec<WeightedTerm<S>>,
-}
-
-impl<S: Scalar> Model<S> {
-    /// The base model: area elasticity `K_A`, adhesion `K_P P_0`, contractility `K_P`, cortical chirality `K_P α`.
-    pub fn chiral_voronoi(parameters: &Parameters<S>) -> Self {
-        let k_p = parameters.perimeter_elasticity;
-        let coefficients = [
-            parameters.area_elasticity,
-            k_p * parameters.preferred_perimeter,
-            k_p,
-            k_p * parameters.chirality,
-        ];
-        Self::with_coefficients(&base_terms(parameters.preferred_area), &coefficients)
-    }
-
-    /// Terms with coefficients, in the same order.
-    pub fn with_coefficients(terms: &[Term], coefficients: &[S]) -> Self {
-        let terms = terms
-            .iter()
-            .zip(coefficients)
-            .map(|(&term, &coefficient)| WeightedTerm { term, coefficient })
-            .collect();
-        Self { terms }
-    }
-
-    /// A single term with a coefficient of one.
-    pub fn single(term: Term) -> Self {
-        Self::with_coefficients(&[term], &[S::constant(1.0)])
-    }
-
-    /// The same model with coefficients of another scalar, without derivatives.
-    pub fn lift<D: Scalar>(&self) -> Model<D> {
-        let terms = self
-            .terms
-            .iter()
-            .map(|w| WeightedTerm { term: w.term, coefficient: D::constant(w.coefficient.real()) })
-            .collect();
-        Model { terms }
-    }
-}
-
-/// The terms of the base model in the order of its coefficients `K_A`, `K_P P_0`, `K_P`, `K_P α`.
-pub fn base_terms(preferred_area: f64) -> [Term; 4] {
-    [
-        AreaElasticity { preferred_area }.into(),
-        Adhesion.into(),
-        Contractility.into(),
-        CorticalChirality.into(),
-    ]
-}
-
 /// Derivatives `∂v/∂θ` of all velocities with respect to `K_A`, `K_P`, `P_0` and `α`: four fields of N vectors.
 pub fn parameter_derivatives(
     tessellation: &Tessellation,
@@ -115,7 +50,7 @@ pub fn parameter_derivatives(
         chirality: seed(parameters.chirality, 3),
     });
     let terms: Vec<Term> = model.terms.iter().map(|w| w.term).collect();
-    let columns = columns(tessellation, positions, &terms);
+    let columns = columns(tessellation, positions, &terms, &model.environment);
     std::array::from_fn(|parameter| {
         let mut field = vec![Vector::zeros(); positions.len()];
         for (weighted, column) in model.terms.iter().zip(&columns) {

@@ -140,7 +140,7 @@ impl<'a> Subject<'a> {
         let shape = voronudge_geometry::Shape { area: 1.0, perimeter: 4.0 };
         let has_energy = |w: &&WeightedTerm<f64>| w.term.energy(shape).is_some();
         let terms: Vec<_> = self.model.terms.iter().filter(has_energy).copied().collect();
-        (!terms.is_empty()).then(|| Self::new(self.name, Model { terms }, self.sample))
+        (!terms.is_empty()).then(|| Self::new(self.name, Model { terms, ..self.model.clone() }, self.sample))
     }
 
     fn momentum(&self) -> Comparison {

@@ -57,7 +57,10 @@ impl Images {
 
     /// Velocities of the image against the image of the velocities.
     pub fn compare(&self, subject: &Subject) -> Vec<(Quantity, Comparison)> {
-        let reflected = Model { terms: subject.model.terms.iter().map(|&w| reflect(w)).collect() };
+        let reflected = Model {
+            terms: subject.model.terms.iter().map(|&w| reflect(w)).collect(),
+            ..subject.model.clone()
+        };
         let compare = |image: &Image| {
             let model = match image.quantity {
                 Quantity::Mirror => &reflected,

@@ -1,6 +1,7 @@
 //! Linearity, the gauge, momentum, the mirror.
 
 use crate::samples::{difference, jittered, largest, parameters, periodic, random};
+use std::sync::Arc;
 use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector};
 use voronudge_model::{Model, Parameters, base_terms, columns, parameter_derivatives, stress, velocities};
 
@@ -35,7 +36,7 @@ fn velocities_are_linear_in_the_coefficients() -> Result<(), Error> {
     let p = parameters();
     let k_p = p.perimeter_elasticity;
     let coefficients = [p.area_elasticity, k_p * p.preferred_perimeter, k_p, k_p * p.chirality];
-    let fields = columns(&tessellation, &positions, &base_terms(p.preferred_area));
+    let fields = columns(&tessellation, &positions, &base_terms(p.preferred_area), &Arc::default());
     let mut sum = vec![Vector::zeros(); positions.len()];
     for (column, coefficient) in fields.iter().zip(coefficients) {
         for (total, x) in sum.iter_mut().zip(column) {
@@ -90,7 +91,7 @@ fn a_mirror_reverses_chirality() -> Result<(), Error> {
 fn the_chiral_turn_acts_on_vertices_and_not_on_centres() -> Result<(), Error> {
     let positions = random(100, [10.0, 10.0], 7);
     let tessellation = Tessellation::new(&positions, periodic([10.0, 10.0])?)?;
-    let fields = columns(&tessellation, &positions, &base_terms(1.0));
+    let fields = columns(&tessellation, &positions, &base_terms(1.0), &Arc::default());
     // Contractility is −P ∂P/∂r_v; turning the velocity of the centre instead would give ẑ × (−column).
     let turned: Vec<_> = fields[2].iter().map(|v| -Vector::new(-v.y, v.x)).collect();
     assert!(difference(&fields[3], &turned) > 0.1 * largest(&turned));
