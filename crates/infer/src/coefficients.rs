@@ -4,33 +4,38 @@
 //! space `c = c₀ + B β`, in which β is fitted; bounds confine β to half-spaces.
 
 use crate::quadratic::HalfSpace;
+use crate::quantity::BASE;
 use crate::{Constraints, Error, Prior, Quantity};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use voronudge_model::Parameters;
 
+/// Preferred area of the base model: a gauge.
+pub(crate) const PREFERRED_AREA: f64 = 1.0;
+
 /// Components of a direction that count as zero, relative to the largest.
 const ZERO: f64 = 1e-12;
 
-/// The affine space `c = c₀ + B β` of coefficients, with bounds and priors.
+/// The affine space `c = c₀ + B β` of coefficients, with bounds and priors. The first four coefficients are those of the
+/// base model; effects follow, each free.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CoefficientSpace {
-    origin: Vector4<f64>,
+    origin: DVector<f64>,
     basis: DMatrix<f64>,
-    /// `aᵀc ≥ b`.
+    /// `aᵀc ≥ b`, in the coefficients of the base model.
     at_least: Vec<(Vector4<f64>, f64)>,
     priors: Vec<(Quantity, Prior)>,
 }
 
 impl CoefficientSpace {
-    /// The space that constraints leave.
+    /// The space that constraints leave of the base model.
     ///
     /// # Errors
     /// [`Error::Constraint`], [`Error::NothingToFit`].
     pub fn new(constraints: &Constraints) -> Result<Self, Error> {
         constraints.check()?;
         let mut space = Self {
-            origin: Vector4::zeros(),
-            basis: DMatrix::identity(4, 4),
+            origin: DVector::zeros(BASE),
+            basis: DMatrix::identity(BASE, BASE),
             at_least: Vec::new(),
             priors: constraints.priors.iter().map(|(quantity, prior)| (*quantity, *prior)).collect(),
         };
@@ -54,17 +59,33 @@ impl CoefficientSpace {
         Ok(space)
     }
 
+    /// The same space with the free coefficients of effects added, up to so many coefficients in all; or without those
+    /// beyond so many.
+    #[must_use]
+    pub(crate) fn with_coefficients(&self, coefficients: usize) -> Self {
+        let rows = coefficients.max(BASE);
+        let (own, columns) = (self.origin.len(), self.base_dimension() + rows - BASE);
+        let mut basis = DMatrix::zeros(rows, columns);
+        basis.view_mut((0, 0), (BASE, self.base_dimension())).copy_from(&self.base_basis());
+        for effect in 0..rows - BASE {
+            basis[(BASE + effect, self.base_dimension() + effect)] = 1.0;
+        }
+        let origin = DVector::from_fn(rows, |k, _| if k < own { self.origin[k] } else { 0.0 });
+        Self { origin, basis, ..self.clone() }
+    }
+
     /// The part of the space in which a quantity has a value.
     ///
     /// # Errors
     /// [`Error::Constraint`] if it has another value throughout.
     pub fn hold(&self, quantity: Quantity, value: f64) -> Result<Self, Error> {
         let (normal, bound) = quantity.plane(value);
-        let rest = bound - normal.dot(&self.origin);
-        let along = self.basis.transpose() * normal;
+        let own = self.origin.fixed_rows::<BASE>(0);
+        let rest = bound - normal.dot(&own);
+        let along = self.in_free(&normal);
         let size = along.amax();
         if size <= ZERO * self.basis.amax().max(1.0) {
-            let scale = bound.abs().max(normal.component_mul(&self.origin).amax());
+            let scale = bound.abs().max(normal.component_mul(&own).amax());
             return if rest.abs() <= 1e-9 * scale {
                 Ok(self.clone())
             } else {
@@ -77,19 +98,24 @@ impl CoefficientSpace {
         };
         let pivot = (0..self.dimension()).find(moves).unwrap_or_else(|| along.iamax());
         let direction = self.basis.column(pivot) / along[pivot];
-        let others: Vec<Vector4<f64>> = (0..self.dimension())
+        let others: Vec<DVector<f64>> = (0..self.dimension())
             .filter(|k| *k != pivot)
-            .map(|k| Vector4::from_iterator((self.basis.column(k) - &direction * along[k]).iter().copied()))
+            .map(|k| self.basis.column(k) - &direction * along[k])
             .collect();
         let mut held = self.clone();
         held.origin += &direction * rest;
-        held.basis = DMatrix::from_fn(4, others.len(), |row, column| others[column][row]);
+        held.basis = DMatrix::from_fn(self.origin.len(), others.len(), |row, column| others[column][row]);
         Ok(held)
     }
 
     /// The space of these coefficients alone.
-    pub(crate) fn pinned(c: &Vector4<f64>) -> Self {
-        Self { origin: *c, basis: DMatrix::zeros(4, 0), at_least: Vec::new(), priors: Vec::new() }
+    pub(crate) fn pinned(c: &[f64]) -> Self {
+        Self {
+            origin: DVector::from_column_slice(c),
+            basis: DMatrix::zeros(c.len(), 0),
+            at_least: Vec::new(),
+            priors: Vec::new(),
+        }
     }
 
     /// Number of free directions.
@@ -97,20 +123,25 @@ impl CoefficientSpace {
         self.basis.ncols()
     }
 
+    /// Number of free directions of the base model: they come first.
+    pub(crate) fn base_dimension(&self) -> usize {
+        self.dimension() - (self.origin.len() - BASE).min(self.dimension())
+    }
+
     /// `c = c₀ + B β`.
-    pub fn coefficients(&self, free: &[f64]) -> Vector4<f64> {
-        self.origin + &self.basis * DVector::from_column_slice(free)
+    pub fn coefficients(&self, free: &[f64]) -> DVector<f64> {
+        &self.origin + &self.basis * DVector::from_column_slice(free)
     }
 
     /// The β whose coefficients are nearest to c.
-    pub(crate) fn nearest(&self, c: &Vector4<f64>) -> Vec<f64> {
+    pub(crate) fn nearest(&self, c: &[f64]) -> Vec<f64> {
         let normal = self.basis.transpose() * &self.basis;
-        let right = self.basis.transpose() * (c - self.origin);
+        let right = self.basis.transpose() * (DVector::from_column_slice(c) - &self.origin);
         normal.cholesky().map(|factor| factor.solve(&right).as_slice().to_vec()).unwrap_or_default()
     }
 
     /// `c₀`.
-    pub(crate) fn origin(&self) -> &Vector4<f64> {
+    pub(crate) fn origin(&self) -> &DVector<f64> {
         &self.origin
     }
 
@@ -119,11 +150,21 @@ impl CoefficientSpace {
         &self.basis
     }
 
+    fn base_basis(&self) -> DMatrix<f64> {
+        self.basis.view((0, 0), (BASE, self.base_dimension())).into_owned()
+    }
+
+    /// `Bᵀa` for a function of the coefficients of the base model.
+    pub(crate) fn in_free(&self, gradient: &Vector4<f64>) -> DVector<f64> {
+        self.basis.rows(0, BASE).transpose() * gradient
+    }
+
     /// The bounds as half-spaces of β, those without effect on it left out.
     pub(crate) fn half_spaces(&self) -> Vec<HalfSpace> {
+        let own = self.origin.fixed_rows::<BASE>(0);
         let in_free = |(normal, bound): &(Vector4<f64>, f64)| HalfSpace {
-            normal: self.basis.transpose() * normal,
-            bound: bound - normal.dot(&self.origin),
+            normal: self.in_free(normal),
+            bound: bound - normal.dot(&own),
         };
         self.at_least.iter().map(in_free).filter(|half| half.normal.amax() > ZERO).collect()
     }
@@ -133,21 +174,22 @@ impl CoefficientSpace {
         &self.priors
     }
 
-    /// Covariance of the coefficients from that of β.
+    /// Covariance of the coefficients of the base model from that of β.
     pub fn covariance(&self, free: &DMatrix<f64>) -> Matrix4<f64> {
-        let full = &self.basis * free * self.basis.transpose();
+        let base = self.basis.rows(0, BASE);
+        let full = base * free * base.transpose();
         Matrix4::from_fn(|row, column| full[(row, column)])
     }
 }
 
 /// Parameters of the model from the coefficients of its terms; `P_0` and `α` are ratios to `K_P`.
-pub(crate) fn parameters(coefficients: &Vector4<f64>, preferred_area: f64) -> Parameters<f64> {
-    let value = |quantity: Quantity| quantity.of(coefficients);
+pub(crate) fn parameters(coefficients: &DVector<f64>) -> Parameters<f64> {
+    let value = |quantity: Quantity| quantity.of(coefficients.as_slice());
     Parameters {
         area_elasticity: value(Quantity::AreaElasticity),
         perimeter_elasticity: value(Quantity::PerimeterElasticity),
         preferred_perimeter: value(Quantity::PreferredPerimeter),
-        preferred_area,
+        preferred_area: PREFERRED_AREA,
         chirality: value(Quantity::Chirality),
     }
 }
@@ -162,7 +204,11 @@ mod tests {
         let fixed = Constraints::fixed([(PreferredPerimeter, 4.0), (Chirality, -2.0)]);
         let space = CoefficientSpace::new(&fixed).unwrap();
         assert_eq!(space.dimension(), 2);
-        assert_eq!(space.coefficients(&[0.1, 3.0]), Vector4::new(0.1, 12.0, 3.0, -6.0));
+        assert_eq!(space.coefficients(&[0.1, 3.0]).as_slice(), [0.1, 12.0, 3.0, -6.0]);
+        let wide = space.with_coefficients(6);
+        assert_eq!(wide.coefficients(&[0.1, 3.0, 7.0, 8.0]).as_slice(), [0.1, 12.0, 3.0, -6.0, 7.0, 8.0]);
+        assert_eq!((wide.dimension(), wide.base_dimension()), (4, 2));
+        assert_eq!(wide.with_coefficients(4), space);
     }
 
     #[test]
@@ -173,9 +219,13 @@ mod tests {
             assert_eq!(space.dimension(), 2);
             let c = space.coefficients(&[0.7, 1.3]);
             for (quantity, value) in pair {
-                assert!((quantity.of(&c) - value).abs() < 1e-12, "{quantity:?} {}", quantity.of(&c));
+                assert!(
+                    (quantity.of(c.as_slice()) - value).abs() < 1e-12,
+                    "{quantity:?} {}",
+                    quantity.of(c.as_slice())
+                );
             }
-            let back = space.nearest(&c);
+            let back = space.nearest(c.as_slice());
             assert!((back[0] - 0.7).abs() < 1e-12 && (back[1] - 1.3).abs() < 1e-12);
         }
     }

@@ -59,7 +59,7 @@ pub(crate) fn cross_validate(
 
 /// Fits without some velocities: the squared error on them and their sum of squares. `None` if too few are left.
 fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f64)>, Error> {
-    let Objective { frames, terms, space, .. } = *whole;
+    let Objective { frames, structure, space, .. } = *whole;
     let training: Vec<Observation> = frames
         .iter()
         .zip(held_out)
@@ -70,14 +70,14 @@ fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f6
     if used < 2 * space.dimension() + 2 {
         return Ok(None);
     }
-    let naive = least_squares::fit(&training, terms, space)?;
+    let naive = least_squares::fit(&training, structure, space)?;
     let objective = Objective { frames: &training, ..*whole };
     let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
     let found = follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?;
     let coefficients = space.coefficients(objective.split(&found.parameters).0);
     let (mut error, mut total) = (0.0, 0.0);
     for (frame, out) in frames.iter().zip(held_out) {
-        let rests = residuals_as_measured(frame, terms, coefficients.as_slice());
+        let rests = residuals_as_measured(frame, structure, coefficients.as_slice());
         for (v, (_, rest)) in frame.explainable().iter().zip(rests).filter(|(_, (datum, _))| out[*datum]) {
             error += rest.norm_squared();
             total += v.norm_squared();

@@ -40,11 +40,11 @@ impl Fitted<'_> {
         // Where K_P ends at zero, ratios to it have no value; what their intervals say stays true.
         let no_scale = c[2].abs() <= ROUNDING * covariance[(2, 2)].max(0.0).sqrt();
         let estimate = |quantity: Quantity| {
-            let value = if no_scale && quantity.is_ratio() { f64::NAN } else { quantity.of(&c) };
+            let value = if no_scale && quantity.is_ratio() { f64::NAN } else { quantity.of(c.as_slice()) };
             if self.held(quantity) {
                 return Estimate { value, standard_error: 0.0, interval: [Some(value); 2] };
             }
-            let gradient = quantity.gradient(&c);
+            let gradient = quantity.gradient(c.as_slice());
             let variance = (gradient.transpose() * covariance * gradient).sum();
             let interval = if quantity.is_ratio() {
                 let ratio = Ratio {
@@ -86,7 +86,7 @@ impl Fitted<'_> {
             normal *= c[2];
             normal[2] = -c[quantity.coefficient()];
         }
-        let along = self.space.basis().transpose() * normal;
+        let along = self.space.in_free(&normal);
         along.amax() <= 1e-12 * self.space.basis().amax() * normal.amax()
     }
 
@@ -98,7 +98,7 @@ impl Fitted<'_> {
         let mut order: Vec<usize> = (0..4).collect();
         order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));
         // What is held has no variance.
-        let free = order.split_off(4 - self.information.nrows());
+        let free = order.split_off(4 - self.space.base_dimension());
         let directions = free.into_iter().map(|k| {
             let along = eigen.eigenvectors.column(k);
             // The sign of an eigenvector is arbitrary: the largest component is positive.

@@ -8,12 +8,11 @@ use crate::noisy_fit::{at_limit, fit};
 use crate::objective::{Nudged, Objective};
 use crate::search::Watch;
 use crate::{
-    CoefficientSpace, CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource,
-    Observation, Progress, Request, Status,
+    CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource, Observation,
+    Progress, Request, Status,
 };
-use nalgebra::Vector4;
+use nalgebra::DVector;
 use std::ops::ControlFlow;
-use voronudge_model::base_terms;
 
 /// Standard deviations by which an objective may exceed its expected value.
 const ACCEPTED_EXCESS: f64 = 3.0;
@@ -30,7 +29,7 @@ pub fn infer(
     request: &Request,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Inference, Error> {
-    let space = CoefficientSpace::new(&request.constraints)?;
+    let space = request.space()?;
     let used: usize = frames.iter().map(|frame| frame.targets().count()).sum();
     let required =
         2 * space.dimension() + 2 + frames.iter().map(Observation::background_dimension).sum::<usize>() / 2;
@@ -41,11 +40,11 @@ pub fn infer(
     if total <= 0.0 {
         return Err(Error::NothingMoves);
     }
-    let terms = base_terms(request.preferred_area);
-    let naive = least_squares::fit(frames, &terms, &space)?;
+    let structure = &request.structure;
+    let naive = least_squares::fit(frames, structure, &space)?;
     let mut watch = Watch { observe };
     let unset = NoiseLevels { position: 1.0, velocity: 1.0 };
-    let mut objective = Objective { frames, terms: &terms, space: &space, levels: unset };
+    let mut objective = Objective { frames, structure, space: &space, levels: unset };
     let found = fit(&mut objective, &naive, request, &mut watch)?;
     let objective = objective;
     let levels = objective.levels;
@@ -68,7 +67,7 @@ pub fn infer(
         Fitted { space: &space, constraints: &request.constraints, free, information: &information, centre };
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
-        let squares = |frame| residuals_as_measured(frame, &terms, coefficients.as_slice());
+        let squares = |frame| residuals_as_measured(frame, structure, coefficients.as_slice());
         frames.iter().flat_map(squares).map(|(_, rest)| rest.norm_squared()).sum()
     };
     let mut results = Vec::with_capacity(frames.len());
@@ -85,8 +84,8 @@ pub fn infer(
     ];
     Ok(Inference {
         parameters: fitted.estimates()?,
-        model_parameters: parameters(&coefficients, request.preferred_area),
-        naive: parameters(&space.coefficients(&naive), request.preferred_area),
+        model_parameters: parameters(&coefficients),
+        naive: parameters(&space.coefficients(&naive)),
         nmse: Nmse {
             naive: residual_at(&naive) / total,
             nudged: parts.residual / total,
@@ -117,7 +116,8 @@ pub fn infer(
 }
 
 /// One frame at its nudged positions.
-fn frame_result(frame: &Observation, nudged: Nudged, coefficients: &Vector4<f64>) -> FrameResult {
+fn frame_result(frame: &Observation, nudged: Nudged<'_>, coefficients: &DVector<f64>) -> FrameResult {
+    let evaluated = nudged.evaluate(coefficients.as_slice());
     let (before, after) = (frame.tessellation.edges(), nudged.tessellation.edges());
     let missing_from = |edges: &[(u32, u32, [i16; 2])], others: &[(u32, u32, [i16; 2])]| {
         edges
@@ -129,8 +129,8 @@ fn frame_result(frame: &Observation, nudged: Nudged, coefficients: &Vector4<f64>
     FrameResult {
         edges_lost: missing_from(&before, &after),
         edges_gained: missing_from(&after, &before),
-        predicted: nudged.velocities(coefficients),
-        predicted_data: nudged.predictions(coefficients),
+        predicted: evaluated.of_cells,
+        predicted_data: evaluated.predicted,
         nudged_positions: nudged.positions,
         tessellation: nudged.tessellation,
     }

@@ -170,9 +170,10 @@ impl CostFunction for &Restricted<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::least_squares::residuals;
     use crate::objective::Objective;
     use crate::{CoefficientSpace, Constraints};
-    use voronudge_model::base_terms;
+    use voronudge_model::Structure;
 
     /// −2 log L with dense matrices, from the definition: the likelihood of the data projected on what no coefficient
     /// can explain.
@@ -180,19 +181,19 @@ mod tests {
     fn the_criterion_is_that_of_the_dense_form() {
         let frames = [crate::sample::observation(0.03, 0.05, 1)];
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
-        let terms = base_terms(1.0);
+        let structure = Structure::base(1.0);
         let levels = NoiseLevels { position: 0.03, velocity: 0.05 };
-        let objective = Objective { frames: &frames, terms: &terms, space: &space, levels };
+        let objective = Objective { frames: &frames, structure: &structure, space: &space, levels };
         let mut at = vec![0.1, 3.9, 1.0, 1.6];
         at.extend((0..72).map(|k| 0.01 * f64::from(k).sin()));
         let equations = objective.linearise(&at).unwrap();
         let (free, nudges) = objective.split(&at);
-        let nudged = objective.nudge(&frames[0], nudges[0]).unwrap();
+        let nudged = objective.place(0, nudges[0]).unwrap();
         let c = space.coefficients(free);
-        let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(&terms, &c).to_dense());
-        let x = DMatrix::from_fn(72, 4, |row, term| nudged.columns()[term][row / 2][row % 2]);
-        let residual: Vec<f64> = objective
-            .residuals(&frames[0], &nudged, &c)
+        let evaluated = nudged.evaluate(c.as_slice());
+        let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated).to_dense());
+        let x = DMatrix::from_fn(72, 4, |row, term| evaluated.by_coefficient[term][row / 2][row % 2]);
+        let residual: Vec<f64> = residuals(&frames[0], &evaluated.predicted)
             .into_iter()
             .flat_map(|(_, rest)| [rest.x, rest.y])
             .collect();

@@ -169,7 +169,7 @@ fn first_levels(objective: &Objective<'_>, naive: &[f64], known: &KnownNoise) ->
     let mut sizes: Vec<f64> = objective
         .frames
         .iter()
-        .flat_map(|frame| residuals_as_measured(frame, objective.terms, coefficients.as_slice()))
+        .flat_map(|frame| residuals_as_measured(frame, objective.structure, coefficients.as_slice()))
         .flat_map(|(_, rest)| [rest.x.abs(), rest.y.abs()])
         .collect();
     sizes.sort_unstable_by(f64::total_cmp);

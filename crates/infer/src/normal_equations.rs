@@ -57,8 +57,8 @@ impl Priors {
         let c = objective.space.coefficients(free);
         for (quantity, prior) in objective.space.priors() {
             let scale = objective.levels.velocity / prior.standard_deviation;
-            let rest = (prior.mean - quantity.of(&c)) * scale;
-            let gradient = objective.space.basis().transpose() * quantity.gradient(&c) * scale;
+            let rest = (prior.mean - quantity.of(c.as_slice())) * scale;
+            let gradient = objective.space.in_free(&quantity.gradient(c.as_slice())) * scale;
             sum.normal += &gradient * gradient.transpose();
             sum.gradient += gradient * rest;
         }

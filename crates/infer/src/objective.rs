@@ -1,15 +1,16 @@
 //! The penalised objective of nudged inference as a problem for argmin.
 
-use crate::least_squares::{Columns, free_rows, predict, residuals};
+use crate::flow::Sampling;
+use crate::least_squares::{Columns, free_rows, residuals};
 use crate::linearisation::{Linearisation, Local};
 use crate::normal_equations::NormalEquations;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Prior, Quantity};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
-use nalgebra::{DMatrix, Vector4};
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::{BlockMatrix, Model, Term, columns, jacobian};
+use voronudge_model::{BlockMatrix, Environment, Structure, jacobian};
 
 /// `Φ(β, ε) = Σ ‖v − F_β(r + ε)‖² + k Σ ‖ε‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors. The parameter vector
 /// is β, then ε frame by frame as x₀, y₀, x₁, …
@@ -18,58 +19,80 @@ use voronudge_model::{BlockMatrix, Model, Term, columns, jacobian};
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Objective<'a> {
     pub frames: &'a [Observation],
-    pub terms: &'a [Term],
+    pub structure: &'a Structure,
     pub space: &'a CoefficientSpace,
     pub levels: NoiseLevels,
 }
 
-/// One frame at nudged positions.
-pub(crate) struct Nudged {
+/// One frame at some positions.
+pub(crate) struct Nudged<'a> {
     pub positions: Vec<Vector<f64>>,
     pub tessellation: Tessellation,
+    structure: &'a Structure,
+    environment: Arc<Environment>,
     /// The columns of the terms for each cell.
-    pub of_cells: Columns,
-    sampling: Option<Sampled>,
-}
-
-struct Sampled {
-    sampling: crate::flow::Sampling,
     columns: Columns,
+    sampling: Option<Sampling>,
 }
 
-impl Nudged {
-    /// The columns as they are measured.
-    pub fn columns(&self) -> &Columns {
-        self.sampling.as_ref().map_or(&self.of_cells, |sampled| &sampled.columns)
+/// What the model says of a frame with some coefficients.
+pub(crate) struct Evaluated {
+    /// Velocities of the cells.
+    pub of_cells: Vec<Vector<f64>>,
+    /// Velocities as they are measured: of the cells, or at the grid points.
+    pub predicted: Vec<Vector<f64>>,
+    /// Their derivatives by the coefficients.
+    pub by_coefficient: Columns,
+}
+
+impl<'a> Nudged<'a> {
+    /// A frame at its measured positions.
+    pub fn as_measured(frame: &Observation, structure: &'a Structure) -> Self {
+        Self::new(frame, structure, frame.positions.clone(), frame.tessellation.clone())
     }
 
-    /// The derivative of what is measured with respect to the positions.
-    pub fn jacobian(&self, terms: &[Term], coefficients: &Vector4<f64>) -> BlockMatrix {
-        let model = Model::with_coefficients(terms, coefficients.as_slice());
-        let of_cells = jacobian(&self.tessellation, &self.positions, &model);
+    fn new(
+        frame: &Observation,
+        structure: &'a Structure,
+        positions: Vec<Vector<f64>>,
+        tessellation: Tessellation,
+    ) -> Self {
+        let environment = frame.environment().clone();
+        let columns = structure.columns(&tessellation, &positions, &environment);
+        let sampling = frame.sampling(&tessellation, &positions);
+        Self { positions, tessellation, structure, environment, columns, sampling }
+    }
+
+    /// Velocities and their derivatives for given coefficients.
+    pub fn evaluate(&self, coefficients: &[f64]) -> Evaluated {
+        let Self { structure, tessellation, positions, columns, environment, .. } = self;
+        let of_cells = structure.evaluate(tessellation, positions, columns, coefficients, environment);
         match &self.sampling {
-            None => of_cells,
-            Some(sampled) => sampled.sampling.jacobian(&self.velocities(coefficients), &of_cells),
+            None => Evaluated {
+                predicted: of_cells.velocities.clone(),
+                of_cells: of_cells.velocities,
+                by_coefficient: of_cells.by_coefficient,
+            },
+            Some(sampling) => Evaluated {
+                predicted: sampling.average(&of_cells.velocities),
+                by_coefficient: of_cells.by_coefficient.iter().map(|x| sampling.average(x)).collect(),
+                of_cells: of_cells.velocities,
+            },
         }
     }
 
-    /// The model's velocity of each cell.
-    pub fn velocities(&self, coefficients: &Vector4<f64>) -> Vec<Vector<f64>> {
-        predictions(&self.of_cells, coefficients)
-    }
-
-    /// The model's velocities as they are measured.
-    pub fn predictions(&self, coefficients: &Vector4<f64>) -> Vec<Vector<f64>> {
-        predictions(self.columns(), coefficients)
+    /// The derivative of what is measured with respect to the positions.
+    pub fn jacobian(&self, coefficients: &[f64], evaluated: &Evaluated) -> BlockMatrix {
+        let model = self.structure.model(coefficients, &self.environment);
+        let of_cells = jacobian(&self.tessellation, &self.positions, &model);
+        match &self.sampling {
+            None => of_cells,
+            Some(sampling) => sampling.jacobian(&evaluated.of_cells, &of_cells),
+        }
     }
 }
 
-fn predictions(columns: &Columns, coefficients: &Vector4<f64>) -> Vec<Vector<f64>> {
-    let count = columns.first().map_or(0, Vec::len);
-    (0..count).map(|datum| predict(columns, coefficients.as_slice(), datum)).collect()
-}
-
-impl Objective<'_> {
+impl<'a> Objective<'a> {
     /// k = σ_v² / σ_r².
     pub fn spring(&self) -> f64 {
         self.levels.spring()
@@ -108,33 +131,14 @@ impl Objective<'_> {
         self.levels.velocity.powi(2) * left.saturating_sub(self.space.dimension()).max(1) as f64
     }
 
-    /// A frame displaced by its nudges, with a new tessellation.
-    pub fn nudge(&self, frame: &Observation, nudges: &[f64]) -> Result<Nudged, voronudge_geometry::Error> {
+    /// The frame of an index displaced by its nudges, with a new tessellation; a fault is that frame's.
+    pub fn place(&self, index: usize, nudges: &[f64]) -> Result<Nudged<'a>, Error> {
+        let frame = &self.frames[index];
         let nudges = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1]));
         let positions: Vec<Vector<f64>> = frame.positions.iter().zip(nudges).map(|(r, e)| r + e).collect();
-        let tessellation = Tessellation::new(&positions, frame.tessellation.domain())?;
-        let of_cells = columns(&tessellation, &positions, self.terms, &Arc::default());
-        let sampling = frame.sampling(&tessellation, &positions).map(|sampling| Sampled {
-            columns: of_cells.iter().map(|column| sampling.average(column)).collect(),
-            sampling,
-        });
-        Ok(Nudged { positions, tessellation, of_cells, sampling })
-    }
-
-    /// The frame of an index, displaced; a fault is that frame's.
-    pub fn place(&self, index: usize, nudges: &[f64]) -> Result<Nudged, Error> {
-        let displaced = self.nudge(&self.frames[index], nudges);
-        displaced.map_err(|source| Error::Geometry { frame: index, source })
-    }
-
-    /// `v − F` of a frame for each target, the background removed.
-    pub fn residuals(
-        &self,
-        frame: &Observation,
-        nudged: &Nudged,
-        coefficients: &Vector4<f64>,
-    ) -> Vec<(usize, Vector<f64>)> {
-        residuals(frame, nudged.columns(), coefficients.as_slice())
+        let tessellation = Tessellation::new(&positions, frame.tessellation.domain())
+            .map_err(|source| Error::Geometry { frame: index, source })?;
+        Ok(Nudged::new(frame, self.structure, positions, tessellation))
     }
 
     /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
@@ -145,16 +149,14 @@ impl Objective<'_> {
             .frames
             .par_iter()
             .zip(&nudges)
-            .map(|(frame, nudges)| {
+            .enumerate()
+            .map(|(index, (frame, nudges))| {
                 // A trial that moves cells onto each other, or opens the polygon of a cell that counts, is no solution.
-                let Ok(nudged) = self.nudge(frame, nudges) else {
+                let Ok(nudged) = self.place(index, nudges) else {
                     return (f64::INFINITY, 0.0);
                 };
-                let residual = self
-                    .residuals(frame, &nudged, &coefficients)
-                    .iter()
-                    .map(|(_, rest)| rest.norm_squared())
-                    .sum();
+                let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
+                let residual = residuals(frame, &predicted).iter().map(|(_, rest)| rest.norm_squared()).sum();
                 (residual, nudges.iter().map(|e| e * e).sum())
             })
             .collect();
@@ -164,9 +166,10 @@ impl Objective<'_> {
     }
 
     /// The penalty of the priors for given coefficients.
-    pub fn prior_penalty(&self, coefficients: &Vector4<f64>) -> f64 {
+    pub fn prior_penalty(&self, coefficients: &DVector<f64>) -> f64 {
         let scaled = |(quantity, prior): &(Quantity, Prior)| {
-            (quantity.of(coefficients) - prior.mean) * self.levels.velocity / prior.standard_deviation
+            (quantity.of(coefficients.as_slice()) - prior.mean) * self.levels.velocity
+                / prior.standard_deviation
         };
         self.space.priors().iter().map(scaled).map(|rest| rest * rest).sum()
     }
@@ -189,13 +192,13 @@ impl Objective<'_> {
             .enumerate()
             .map(|(index, (frame, nudges))| {
                 let nudged = self.place(index, nudges)?;
-                let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = self
-                    .residuals(frame, &nudged, &coefficients)
+                let evaluated = nudged.evaluate(coefficients.as_slice());
+                let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = residuals(frame, &evaluated.predicted)
                     .into_iter()
-                    .zip(free_rows(frame, nudged.columns(), self.space))
+                    .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
                     .map(|((datum, rest), x)| (datum, rest, x))
                     .collect();
-                let mut jacobian = nudged.jacobian(self.terms, &coefficients);
+                let mut jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
                 if !frame.is_free() {
                     jacobian = jacobian.only(|cell| !frame.is_held(cell));
                 }

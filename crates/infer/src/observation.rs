@@ -3,7 +3,9 @@
 use crate::Error;
 use crate::background::Background;
 use crate::flow::{Flow, Sampling};
+use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, Visibility};
+use voronudge_model::Environment;
 
 /// Cells of one frame with their tessellation as measured. Cells are those present in the frame, in any order.
 #[derive(Debug, Clone)]
@@ -24,6 +26,7 @@ pub struct Observation {
     held: Vec<bool>,
     /// Degree of the polynomials that are no concern of the model, and what they are here.
     background: Option<(u32, Background)>,
+    environment: Arc<Environment>,
 }
 
 /// How velocities were measured.
@@ -98,6 +101,7 @@ impl Observation {
             used,
             held: Vec::new(),
             background: None,
+            environment: Arc::default(),
         })
     }
 
@@ -110,6 +114,17 @@ impl Observation {
             (degree, Background::new(&places, degree))
         });
         self
+    }
+
+    /// The same observation of cells in an environment.
+    #[must_use]
+    pub fn within(self, environment: Arc<Environment>) -> Self {
+        Self { environment, ..self }
+    }
+
+    /// What surrounds and preceded the cells.
+    pub fn environment(&self) -> &Arc<Environment> {
+        &self.environment
     }
 
     /// Degree of the background, if there is one.

@@ -2,7 +2,10 @@
 
 use nalgebra::Vector4;
 
-/// A parameter, as a function of the coefficients `c = (K_A, K_P P_0, K_P, K_P α)`.
+/// Number of coefficients of the base model.
+pub(crate) const BASE: usize = 4;
+
+/// A parameter, as a function of the coefficients `c = (K_A, K_P P_0, K_P, K_P α, …)`; what follows are effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Quantity {
     /// `K_A`
@@ -59,17 +62,18 @@ impl Quantity {
     }
 
     /// The value for given coefficients; NaN for ratios to a `K_P` that is zero to rounding.
-    pub fn of(self, c: &Vector4<f64>) -> f64 {
+    pub fn of(self, c: &[f64]) -> f64 {
         let c_q = c[self.coefficient()];
+        let largest = c[..BASE].iter().fold(0.0, |most: f64, c| most.max(c.abs()));
         match self.is_ratio() {
             false => c_q,
-            true if c[2].abs() <= f64::EPSILON * c.amax() => f64::NAN,
+            true if c[2].abs() <= f64::EPSILON * largest => f64::NAN,
             true => c_q / c[2],
         }
     }
 
     /// `∂q/∂c`.
-    pub(crate) fn gradient(self, c: &Vector4<f64>) -> Vector4<f64> {
+    pub(crate) fn gradient(self, c: &[f64]) -> Vector4<f64> {
         let mut gradient = Vector4::zeros();
         if self.is_ratio() {
             gradient[self.coefficient()] = 1.0 / c[2];
@@ -100,14 +104,16 @@ mod tests {
 
     #[test]
     fn planes_and_gradients_belong_to_the_values() {
-        let c = Vector4::new(0.3, 7.0, 2.0, -5.0);
+        let c = [0.3, 7.0, 2.0, -5.0];
+        let base = Vector4::from(c);
         for quantity in Quantity::ALL {
             assert_eq!(Quantity::from_name(quantity.name()), Some(quantity));
             let (normal, bound) = quantity.plane(quantity.of(&c));
-            assert!((normal.dot(&c) - bound).abs() < 1e-14, "{quantity:?}");
+            assert!((normal.dot(&base) - bound).abs() < 1e-14, "{quantity:?}");
             for k in 0..4 {
                 let step = Vector4::ith(k, 1e-6);
-                let difference = (quantity.of(&(c + step)) - quantity.of(&(c - step))) / 2e-6;
+                let difference =
+                    (quantity.of((base + step).as_slice()) - quantity.of((base - step).as_slice())) / 2e-6;
                 assert!((difference - quantity.gradient(&c)[k]).abs() < 1e-8, "{quantity:?} {k}");
             }
         }

@@ -1,14 +1,16 @@
 //! What a fit is asked.
 
-use crate::{Constraints, KnownNoise};
+use crate::coefficients::PREFERRED_AREA;
+use crate::{CoefficientSpace, Constraints, Error, KnownNoise};
+use voronudge_model::Structure;
 
 /// What to fit, and how.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Request {
     /// What is known of the parameters.
     pub constraints: Constraints,
-    /// Preferred area, a gauge.
-    pub preferred_area: f64,
+    /// The model: the terms of the base model, then effects.
+    pub structure: Structure,
     /// Noise levels if known; otherwise they are estimated.
     pub noise: KnownNoise,
     /// How the objective is made small.
@@ -57,16 +59,21 @@ pub enum CrossValidation {
 }
 
 impl Request {
-    /// A fit of all parameters with estimated noise. Lengths in units of ℓ₀.
+    /// A fit of all parameters of the base model with estimated noise. Lengths in units of ℓ₀.
     pub fn new(constraints: Constraints) -> Self {
         Self {
             constraints,
-            preferred_area: 1.0,
+            structure: Structure::base(PREFERRED_AREA),
             noise: KnownNoise::default(),
             method: Method::default(),
             cross_validation: CrossValidation::Done,
             seed: 0,
         }
+    }
+
+    /// The coefficients that are free.
+    pub(crate) fn space(&self) -> Result<CoefficientSpace, Error> {
+        Ok(CoefficientSpace::new(&self.constraints)?.with_coefficients(self.structure.dimension()))
     }
 }
 

@@ -1,7 +1,7 @@
 //! What a fit answers.
 
 use crate::{NoiseLevels, NoiseSource, Quantity};
-use nalgebra::Vector4;
+use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Parameters;
 
@@ -116,8 +116,8 @@ pub struct Inference {
     pub naive: Parameters<f64>,
     /// Errors.
     pub nmse: Nmse,
-    /// Coefficients of the terms, `(K_A, K_P P_0, K_P, K_P α)`.
-    pub coefficients: Vector4<f64>,
+    /// Coefficients: `K_A, K_P P_0, K_P, K_P α`, then those of effects.
+    pub coefficients: DVector<f64>,
     /// Noise levels used in the last fit.
     pub noise: NoiseLevels,
     /// Where they come from.

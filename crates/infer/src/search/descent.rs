@@ -9,14 +9,13 @@
 //! their columns. At the end the coefficients are those that fit best at the nudged positions.
 
 use super::{Found, Optimum, Watch, own_error};
-use crate::least_squares::{free_rows, normal_equations, solve};
-use crate::objective::Objective;
+use crate::least_squares::{fit_at, free_rows, residuals};
+use crate::objective::{Nudged, Objective};
 use crate::{Error, Loss, Status};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, Gradient};
 use argmin::solver::gradientdescent::SteepestDescent;
 use argmin::solver::linesearch::BacktrackingLineSearch;
 use argmin::solver::linesearch::condition::ArmijoCondition;
-use nalgebra::Vector4;
 use voronudge_geometry::Vector;
 
 /// Rounds in which κ is adapted; each has its share of the steps.
@@ -46,7 +45,7 @@ pub(crate) fn descend(
     max_steps: u64,
     watch: &mut Watch<'_>,
 ) -> Result<Found, Error> {
-    let mut loss = Problem { objective, kind, spring: objective.spring(), scale: scales(objective)? };
+    let mut loss = Problem { objective, kind, spring: objective.spring(), scale: scales(objective, free) };
     if kind == Loss::Norms {
         // What the noise levels lead to expect of the two norms.
         loss.spring = loss.spring.sqrt();
@@ -87,27 +86,27 @@ pub(crate) fn descend(
 /// The best coefficients at the nudged positions.
 fn refit(objective: &Objective<'_>, parameters: &mut [f64]) -> Result<(), Error> {
     let (_, nudges) = objective.split(parameters);
-    let of_frame = |(index, nudges): (usize, &[f64])| {
-        let nudged = objective.place(index, nudges)?;
-        Ok(normal_equations(&objective.frames[index], nudged.columns(), objective.space))
-    };
-    let free = solve(objective.space, nudges.into_iter().enumerate().map(of_frame))?;
-    let p = free.len();
-    parameters[..p].copy_from_slice(&free);
+    let placed = nudges
+        .into_iter()
+        .enumerate()
+        .map(|(index, nudges)| objective.place(index, nudges))
+        .collect::<Result<Vec<_>, _>>()?;
+    let free = fit_at(objective.frames, &placed, objective.structure, objective.space)?;
+    parameters[..free.len()].copy_from_slice(&free);
     Ok(())
 }
 
 /// One over the norm of each free column at the measured positions.
-fn scales(objective: &Objective<'_>) -> Result<Vec<f64>, Error> {
-    let mut squares = vec![0.0; objective.space.dimension()];
-    for (index, frame) in objective.frames.iter().enumerate() {
-        let zero = vec![0.0; 2 * frame.positions.len()];
-        let nudged = objective.place(index, &zero)?;
-        for x in free_rows(frame, nudged.columns(), objective.space) {
+fn scales(objective: &Objective<'_>, free: &[f64]) -> Vec<f64> {
+    let coefficients = objective.space.coefficients(free);
+    let mut squares = vec![0.0; free.len()];
+    for frame in objective.frames {
+        let evaluated = Nudged::as_measured(frame, objective.structure).evaluate(coefficients.as_slice());
+        for x in free_rows(frame, &evaluated.by_coefficient, objective.space) {
             squares.iter_mut().zip(x.column_iter()).for_each(|(sum, column)| *sum += column.norm_squared());
         }
     }
-    Ok(squares.into_iter().map(|square: f64| 1.0 / square.sqrt()).collect())
+    squares.into_iter().map(|square: f64| 1.0 / square.sqrt()).collect()
 }
 
 impl Problem<'_> {
@@ -146,17 +145,17 @@ impl Problem<'_> {
         let parameters = self.unscaled(scaled);
         let objective = self.objective;
         let (free, nudges) = objective.split(&parameters);
-        let coefficients: Vector4<f64> = objective.space.coefficients(free);
+        let coefficients = objective.space.coefficients(free);
         let p = free.len();
         // Half the derivatives of the sums of squares.
         let (mut of_residual, mut residual, mut squares) = (vec![0.0; parameters.len()], 0.0, 0.0);
         let mut offset = p;
         for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
             let nudged = objective.place(index, nudges)?;
-            let jacobian = nudged.jacobian(objective.terms, &coefficients);
-            let rows = free_rows(frame, nudged.columns(), objective.space);
-            for ((datum, rest), x) in objective.residuals(frame, &nudged, &coefficients).into_iter().zip(rows)
-            {
+            let evaluated = nudged.evaluate(coefficients.as_slice());
+            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
+            let rows = free_rows(frame, &evaluated.by_coefficient, objective.space);
+            for ((datum, rest), x) in residuals(frame, &evaluated.predicted).into_iter().zip(rows) {
                 for k in 0..p {
                     of_residual[k] -= Vector::new(x[(0, k)], x[(1, k)]).dot(&rest);
                 }

@@ -4,7 +4,7 @@ use crate::objective::{Nudged, Objective};
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Velocities};
 use std::collections::HashMap;
 use voronudge_geometry::Vector;
-use voronudge_model::Term;
+use voronudge_model::Structure;
 
 /// Rings around the given cells whose nudges are free.
 const FREE: usize = 3;
@@ -29,7 +29,7 @@ pub(super) struct Patch {
 pub(super) struct Whole<'a> {
     pub frame: &'a Observation,
     pub nudges: &'a [f64],
-    pub nudged: &'a Nudged,
+    pub nudged: &'a Nudged<'a>,
     /// The velocities to be explained, the present background removed.
     pub targets: &'a [Option<Vector<f64>>],
 }
@@ -74,11 +74,11 @@ impl Patch {
     /// The objective of the patch alone, coefficients held.
     pub fn objective<'s>(
         &'s self,
-        terms: &'s [Term],
+        structure: &'s Structure,
         pinned: &'s CoefficientSpace,
         levels: NoiseLevels,
     ) -> Objective<'s> {
-        Objective { frames: &self.frame, terms, space: pinned, levels }
+        Objective { frames: &self.frame, structure, space: pinned, levels }
     }
 
     /// Index in the patch of a cell of the frame.

@@ -13,6 +13,7 @@
 
 use super::patch::{Patch, Whole};
 use super::{Found, Watch, optimise, refine};
+use crate::least_squares::residuals;
 use crate::objective::Objective;
 use crate::{CoefficientSpace, Error, Observation};
 use rayon::prelude::*;
@@ -150,14 +151,14 @@ fn trials(
     watch: &mut Watch<'_>,
 ) -> Result<Vec<Trial>, Error> {
     let (free, nudges) = objective.split(&found.parameters);
-    let pinned = CoefficientSpace::pinned(&objective.space.coefficients(free));
+    let coefficients = objective.space.coefficients(free);
+    let pinned = CoefficientSpace::pinned(coefficients.as_slice());
     let mut all = Vec::new();
     for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
         let nudged = objective.place(index, nudges)?;
-        let coefficients = objective.space.coefficients(free);
-        let predicted = nudged.predictions(&coefficients);
+        let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
         let mut targets = vec![None; predicted.len()];
-        for (datum, rest) in objective.residuals(frame, &nudged, &coefficients) {
+        for (datum, rest) in residuals(frame, &predicted) {
             targets[datum] = Some(predicted[datum] + rest);
         }
         let whole = Whole { frame, nudges, nudged: &nudged, targets: &targets };
@@ -208,7 +209,7 @@ fn trial(
     side: &Side,
 ) -> Result<Option<Trial>, Error> {
     let patch = Patch::new(whole, &side.cells)?;
-    let local = patch.objective(objective.terms, pinned, objective.levels);
+    let local = patch.objective(objective.structure, pinned, objective.levels);
     let factor = local.linearise(&patch.nudges)?.frames[0].factor(local.spring())?;
     let mut gradient = vec![0.0; patch.nudges.len()];
     for (cell, g) in side.cells.iter().zip(side.gradient) {

@@ -94,13 +94,15 @@ fn replicate(
         };
         let domain = frame.tessellation.domain();
         let refitted = Observation::new(index, positions, velocities, domain, frame.largest_area)?;
-        synthetic.push(refitted.with_background(frame.background_degree()));
+        synthetic
+            .push(refitted.with_background(frame.background_degree()).within(frame.environment().clone()));
     }
     let mut request = Request { cross_validation: CrossValidation::Skipped, seed: number, ..request.clone() };
     // A prior is a measurement too.
     for (quantity, prior) in &mut request.constraints.priors {
         let normal = level(prior.standard_deviation)?;
-        *prior = Prior { mean: quantity.of(&result.coefficients) + normal.sample(&mut rng), ..*prior };
+        *prior =
+            Prior { mean: quantity.of(result.coefficients.as_slice()) + normal.sample(&mut rng), ..*prior };
     }
     let refit = infer(&synthetic, &request, &mut |_| ControlFlow::Continue(()))?;
     Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))

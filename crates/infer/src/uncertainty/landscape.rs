@@ -1,10 +1,11 @@
 //! Slices of the loss landscape over two parameters.
 
 use super::{Point, with};
+use crate::least_squares::residuals;
 use crate::objective::{Nudged, Objective};
 use crate::search::Watch;
 use crate::{Error, Inference, Observation, Progress, Quantity, Request};
-use nalgebra::Vector4;
+use nalgebra::DVector;
 use std::ops::ControlFlow;
 
 /// The rise of −2 log likelihood over two parameters, with the nudges as they are and with everything fitted again.
@@ -47,7 +48,7 @@ pub fn landscape(
     let order = if y == Quantity::PerimeterElasticity { [1, 0] } else { [0, 1] };
     let fixed: Vec<f64> = places
         .iter()
-        .map(|at| order.iter().fold(result.coefficients, |c, k| with(&c, quantities[*k], at[*k])))
+        .map(|at| order.iter().fold(result.coefficients.clone(), |c, k| with(&c, quantities[*k], at[*k])))
         .map(|c| slice.height(&c))
         .collect();
     let best = result.objective / result.excess();
@@ -61,7 +62,7 @@ pub fn landscape(
 /// The frames at their nudged positions, where the velocities are linear in the coefficients.
 struct Slice<'a> {
     objective: Objective<'a>,
-    nudged: Vec<Nudged>,
+    nudged: Vec<Nudged<'a>>,
     /// k Σ‖ε‖²
     springs: f64,
     unit: f64,
@@ -81,10 +82,10 @@ impl<'a> Slice<'a> {
         Ok(Self { objective, nudged, springs, unit: point.unit })
     }
 
-    fn height(&self, c: &Vector4<f64>) -> f64 {
+    fn height(&self, c: &DVector<f64>) -> f64 {
         let frames = self.objective.frames.iter().zip(&self.nudged);
         let residual: f64 = frames
-            .flat_map(|(frame, nudged)| self.objective.residuals(frame, nudged, c))
+            .flat_map(|(frame, nudged)| residuals(frame, &nudged.evaluate(c.as_slice()).predicted))
             .map(|(_, rest)| rest.norm_squared())
             .sum();
         (residual + self.springs + self.objective.prior_penalty(c)) * self.unit

@@ -11,8 +11,8 @@ pub use profile::{Profile, profile};
 use crate::objective::Objective;
 use crate::search::refine;
 use crate::{CoefficientSpace, Error, Inference, Observation, Quantity, Request};
-use nalgebra::Vector4;
-use voronudge_model::{Term, base_terms};
+use nalgebra::DVector;
+use voronudge_model::Structure;
 
 /// Steps of a refit from a neighbouring solution.
 const STEPS: u64 = 30;
@@ -23,7 +23,7 @@ const REACH: f64 = 3.0;
 /// A finished fit, to ask further questions of.
 struct Point<'a> {
     frames: &'a [Observation],
-    terms: Vec<Term>,
+    structure: &'a Structure,
     space: CoefficientSpace,
     result: &'a Inference,
     /// ε of all frames.
@@ -33,7 +33,7 @@ struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    fn new(frames: &'a [Observation], request: &Request, result: &'a Inference) -> Result<Self, Error> {
+    fn new(frames: &'a [Observation], request: &'a Request, result: &'a Inference) -> Result<Self, Error> {
         let nudges = frames
             .iter()
             .zip(&result.frames)
@@ -42,8 +42,8 @@ impl<'a> Point<'a> {
             .collect();
         Ok(Self {
             frames,
-            terms: base_terms(request.preferred_area).to_vec(),
-            space: CoefficientSpace::new(&request.constraints)?,
+            structure: &request.structure,
+            space: request.space()?,
             result,
             nudges,
             // Where the model misses more than the noise explains, the misfit counts as noise.
@@ -52,7 +52,7 @@ impl<'a> Point<'a> {
     }
 
     fn objective<'s>(&'s self, space: &'s CoefficientSpace) -> Objective<'s> {
-        Objective { frames: self.frames, terms: &self.terms, space, levels: self.result.noise }
+        Objective { frames: self.frames, structure: self.structure, space, levels: self.result.noise }
     }
 
     /// −2 log likelihood with quantities held, everything else refitted.
@@ -61,7 +61,7 @@ impl<'a> Point<'a> {
         for (quantity, value) in held {
             space = space.hold(*quantity, *value)?;
         }
-        let mut start = space.nearest(&self.result.coefficients);
+        let mut start = space.nearest(self.result.coefficients.as_slice());
         start.extend(&self.nudges);
         Ok(refine(&self.objective(&space), start, STEPS)?.value * self.unit)
     }
@@ -101,8 +101,8 @@ impl<'a> Point<'a> {
 }
 
 /// Coefficients with one quantity changed and the other parameters kept.
-fn with(c: &Vector4<f64>, quantity: Quantity, value: f64) -> Vector4<f64> {
-    let mut changed = *c;
+fn with(c: &DVector<f64>, quantity: Quantity, value: f64) -> DVector<f64> {
+    let mut changed = c.clone();
     match quantity {
         Quantity::PerimeterElasticity => changed.rows_mut(1, 3).copy_from(&(c.rows(1, 3) * (value / c[2]))),
         ratio if ratio.is_ratio() => changed[ratio.coefficient()] = value * c[2],
@@ -117,14 +117,17 @@ mod tests {
 
     #[test]
     fn changing_a_quantity_keeps_the_other_parameters() {
-        let c = Vector4::new(0.1, 8.0, 2.0, 6.0);
+        let c = DVector::from_column_slice(&[0.1, 8.0, 2.0, 6.0]);
         for quantity in Quantity::ALL {
             let changed = with(&c, quantity, 5.0);
-            assert!((quantity.of(&changed) - 5.0).abs() < 1e-12);
+            assert!((quantity.of(changed.as_slice()) - 5.0).abs() < 1e-12);
             for other in [Quantity::AreaElasticity, Quantity::PreferredPerimeter, Quantity::Chirality] {
                 let coupled = other == Quantity::Chirality && quantity == Quantity::ChiralCoefficient;
                 if other != quantity && !coupled {
-                    assert!((other.of(&changed) - other.of(&c)).abs() < 1e-12, "{quantity:?} {other:?}");
+                    assert!(
+                        (other.of(changed.as_slice()) - other.of(c.as_slice())).abs() < 1e-12,
+                        "{quantity:?} {other:?}"
+                    );
                 }
             }
         }
