@@ -15,6 +15,7 @@ mod background;
 mod coefficients;
 mod constraints;
 mod cross_validation;
+pub mod diagnostics;
 mod error;
 mod estimates;
 mod flow;

@@ -12,10 +12,12 @@
 //!
 //! Positions must be generic: no two vertices of a polygon at one place.
 
+mod pieces;
 mod polygon;
 
 use nalgebra::{Matrix2, Vector2};
 use num_dual::{Dual64, DualNumCopy};
+pub use pieces::Corner;
 use polygon::Side;
 
 /// A real or dual number.
