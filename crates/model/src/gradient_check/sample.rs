@@ -1,8 +1,11 @@
 //! The positions under check: which cells are displaced, how far, and where the topology is ambiguous.
 
 use super::CELL_LIMIT;
-use crate::{Model, VertexForces};
-use voronudge_geometry::{CellPolygon, Domain, Error, Shape, Tessellation, Vector, cross};
+use crate::assembly::ring_terms;
+use crate::jacobian::has_velocity;
+use crate::{CellElement, Environment, Model, RingForces, VectorMap, VertexForces};
+use std::sync::Arc;
+use voronudge_geometry::{CellPolygon, Domain, Error, Grid, Shape, Tessellation, Vector, cross};
 
 /// Positions, and what the checks need to know about them.
 pub(super) struct Sample {
@@ -23,6 +26,8 @@ pub(super) struct Sample {
     pub widest: f64,
     /// Largest magnitude of a coordinate, or of one that a lattice vector may add.
     pub reach: f64,
+    /// Labels, earlier velocities and, in an open field, an edge and a map, made up for the effects that need them.
+    pub environment: Arc<Environment>,
 }
 
 /// Step of central differences relative to the distance of a singularity.
@@ -51,6 +56,7 @@ impl Sample {
             step: steps(&tessellation, positions, &acting, spacing),
             widest: widest(&tessellation, positions, &acting),
             acting,
+            environment: Arc::new(environment(&tessellation, positions, spacing)),
             unambiguous: unambiguous(&tessellation, positions, spacing),
             positions: positions.to_vec(),
             tessellation,
@@ -72,7 +78,18 @@ impl Sample {
             for size in [1.0, 2.0] {
                 let shape = Shape { area: size * area, perimeter: size * perimeter };
                 VertexForces::of(&model.terms, shape).on_ring(&polygon, &mut forces);
-                largest = forces.iter().map(|f| f.amax()).fold(largest, f64::max);
+                let element = CellElement {
+                    cell,
+                    neighbours: self.tessellation.neighbours(cell),
+                    polygon: &polygon,
+                    position: self.positions[cell],
+                    domain: self.tessellation.domain(),
+                    environment: &model.environment,
+                };
+                let mut on_cell = Vector::zeros();
+                let on_ring = forces.as_mut_slice();
+                ring_terms(model, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
+                largest = forces.iter().chain([&on_cell]).map(|f| f.amax()).fold(largest, f64::max);
             }
             let neighbours = self.tessellation.neighbours(cell).iter();
             let step = neighbours.map(|&k| self.step[k as usize]).fold(self.step[cell], f64::min);
@@ -81,15 +98,16 @@ impl Sample {
         [force, slope]
     }
 
-    /// The cells to displace that are not so close to a singular position that the step is lost in rounding.
-    pub fn resolved(&self) -> impl Iterator<Item = usize> {
-        self.displaced.iter().copied().filter(|&cell| self.step[cell] > SMALLEST_STEP * self.spacing)
+    /// Those of some cells that are not so close to a singular position that the step is lost in rounding.
+    pub fn resolved(&self, cells: &[usize]) -> impl Iterator<Item = usize> {
+        cells.iter().copied().filter(|&cell| self.step[cell] > SMALLEST_STEP * self.spacing)
     }
 
-    /// Batches of cells to displace together, no two of which act on one cell, with the cell that acts on each.
-    pub fn batches(&self) -> Vec<Batch> {
+    /// Batches of cells to displace together, no two of which act on one cell through terms, with the cell that acts on
+    /// each.
+    pub fn batches(&self, cells: &[usize]) -> Vec<Batch> {
         let mut batches: Vec<Batch> = Vec::new();
-        for cell in self.resolved() {
+        for cell in self.resolved(cells) {
             let reached = self.reached_from(cell);
             let free = |batch: &Batch| reached.iter().all(|&i| batch.moved_by[i].is_none());
             let at = batches.iter().position(free).unwrap_or_else(|| {
@@ -102,6 +120,12 @@ impl Sample {
             }
         }
         batches
+    }
+
+    /// Each cell on its own, acting on all.
+    pub fn single(&self, cells: &[usize]) -> Vec<Batch> {
+        let batch = |cell| Batch { cells: vec![cell], moved_by: vec![Some(cell); self.positions.len()] };
+        self.resolved(cells).map(batch).collect()
     }
 
     /// The cell, its neighbours and their neighbours.
@@ -124,6 +148,38 @@ pub(super) struct Batch {
     pub cells: Vec<usize>,
     /// For each cell, the one of the batch that its velocity depends on.
     pub moved_by: Vec<Option<usize>>,
+}
+
+/// Data that effects refer to.
+fn environment(tessellation: &Tessellation, positions: &[Vector<f64>], spacing: f64) -> Environment {
+    let cells = positions.len();
+    let origin = positions.iter().sum::<Vector<f64>>() / cells.max(1) as f64;
+    let labels = (0..cells).map(|cell| [Some(1), Some(2), None, Some(1)].get(cell % 4).copied().flatten());
+    let earlier = |cell: usize| {
+        let phase = cell as f64;
+        (cell % 5 != 0).then(|| Vector::new(phase.sin(), (2.0 * phase).cos()))
+    };
+    let given = |environment: Environment| {
+        let environment = environment
+            .about(origin)
+            .with_cell_size(spacing)?
+            .with_labels(labels.collect())?
+            .with_earlier((0..cells).map(earlier).collect())?;
+        let Domain::Open = tessellation.domain() else {
+            return Ok(environment);
+        };
+        let beyond = (0..cells).map(|cell| !has_velocity(tessellation, cell)).collect();
+        let environment = environment.with_beyond_edge(beyond)?;
+        // One square that holds everything: between squares the field has kinks.
+        let far = positions.iter().map(|r| (r - origin).amax()).fold(spacing, f64::max) * 1.1;
+        let corner = origin - Vector::repeat(far);
+        let values = [[1.0, 0.5], [-0.5, 0.2], [0.3, -1.0], [0.8, 0.9]].map(Vector::from).to_vec();
+        match Grid::new([corner.x, corner.y], [2.0 * far; 2], [2, 2]) {
+            Ok(grid) => VectorMap::new(grid, values).map(|map| environment.with_map(map)),
+            Err(_) => Ok(environment),
+        }
+    };
+    given(Environment::default()).unwrap_or_default()
 }
 
 /// Area of the rectangle around all positions.
