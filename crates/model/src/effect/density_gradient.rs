@@ -5,7 +5,7 @@ use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
 use voronudge_geometry::{Scalar, Vector, dot};
 
 /// The gradient of a smoothed density, `Σ_j (ℓ_ij/ℓ_0) w(d_ij) d̂_ij` over the neighbours of a cell,
-/// with `ℓ_ij` the length of the common side and the compact kernel `w(d) = (1 − d²/R²)²` for `d < R = 2 ℓ_0`.
+/// with `ℓ_ij` the length of the common side and the compact kernel `w(d) = (1 − d²/R²)⁴` for `d < R = 2 ℓ_0`.
 ///
 /// Each neighbour pulls along the line to it, the more the nearer it is and the longer the common side. In a uniform
 /// surrounding the pulls cancel, because the sides of a polygon close. A side that shrinks to nothing takes its pull
@@ -46,7 +46,7 @@ pub(super) fn contact_pull<S: Scalar>(cell: &CellElement<'_, S>, m: usize) -> Ve
     if inside.real() <= 0.0 {
         return Vector::new(S::constant(0.0), S::constant(0.0));
     }
-    d * (square.sqrt().recip() * inside * inside * length * unit)
+    d * (square.sqrt().recip() * inside.powi(4) * length * unit)
 }
 
 /// The catalogue's entry.

@@ -5,7 +5,7 @@ use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
 use voronudge_geometry::Scalar;
 
 /// A push from each neighbour along the line between the centres, with
-/// `w(d) = (1 − d²/R²)³` for `d < R = 1.5 ℓ_0`: half of it is gone at 0.68 ℓ_0, and it vanishes where neighbours come and go.
+/// `w(d) = (1 − d²/R²)⁴` for `d < R = 1.6 ℓ_0`: half of it is gone at 0.64 ℓ_0, and it vanishes where neighbours come and go.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct ShortRangeRepulsion;
 
@@ -34,9 +34,9 @@ impl RingTerm for ShortRangeRepulsion {
 
 /// The weight `w(d)` of a pair at a distance, for cells of size `ℓ_0`.
 pub(super) fn range_weight<S: Scalar>(distance: S, cell_size: f64) -> S {
-    let ratio = distance * (1.0 / (1.5 * cell_size));
+    let ratio = distance * (1.0 / (1.6 * cell_size));
     let inside = -ratio * ratio + 1.0;
-    if inside.real() > 0.0 { inside * inside * inside } else { S::constant(0.0) }
+    if inside.real() > 0.0 { inside.powi(4) } else { S::constant(0.0) }
 }
 
 /// The catalogue's entry.

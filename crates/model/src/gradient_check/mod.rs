@@ -186,6 +186,12 @@ impl<'a> Subject<'a> {
         rows
     }
 
+    /// At the rim of an open field, where polygons can be needles, effects are not compared.
+    fn is_effect(&self) -> bool {
+        let base = base_terms(0.0).map(|term| term.name());
+        !self.model.responses.is_empty() || self.model.terms.iter().any(|w| !base.contains(&w.term.name()))
+    }
+
     fn parities(&self) -> impl Iterator<Item = Parity> {
         let of_terms = self.model.terms.iter().map(|w| w.term.parity());
         of_terms.chain(self.model.responses.iter().map(|w| w.response.parity()))
@@ -228,7 +234,9 @@ impl<'a> Subject<'a> {
 
     /// The magnitude to add to that of a cell's velocity.
     fn rounding(&self, cell: usize, length: f64) -> f64 {
-        floor(self.force + length * self.row_sums[cell])
+        // The formulas of effects take more steps, each of which rounds.
+        let steps = if self.is_effect() { 4.0 } else { 1.0 };
+        steps * floor(self.force + length * self.row_sums[cell])
     }
 
     /// A comparison of entries of the Jacobian.
@@ -237,7 +245,8 @@ impl<'a> Subject<'a> {
     }
 
     fn moves(&self, cell: usize) -> bool {
-        self.velocities[cell].iter().all(|v| v.is_finite())
+        let known = self.velocities[cell].iter().all(|v| v.is_finite());
+        known && (self.sample.trusted[cell] || !self.is_effect())
     }
 }
 

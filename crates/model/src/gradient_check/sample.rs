@@ -2,10 +2,9 @@
 
 use super::CELL_LIMIT;
 use crate::assembly::ring_terms;
-use crate::jacobian::has_velocity;
 use crate::{CellElement, Environment, Model, RingForces, VectorMap, VertexForces};
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Domain, Error, Grid, Shape, Tessellation, Vector, cross};
+use voronudge_geometry::{CellPolygon, Domain, Error, FieldOfView, Grid, Shape, Tessellation, Vector, cross};
 
 /// Positions, and what the checks need to know about them.
 pub(super) struct Sample {
@@ -18,6 +17,8 @@ pub(super) struct Sample {
     pub step: Vec<f64>,
     /// Cells whose velocity does not depend on how cells on a common circle were triangulated.
     pub unambiguous: Vec<bool>,
+    /// Cells that count: in an open field, those away from its rim.
+    pub trusted: Vec<bool>,
     /// Closed cells that act on any with a velocity, in an open field.
     acting: Vec<bool>,
     /// √(area per cell)
@@ -50,13 +51,16 @@ impl Sample {
         };
         let spacing = (area / cells as f64).sqrt();
         let acting = acting(&tessellation);
+        let view = FieldOfView::new(&tessellation, positions, 3.0);
+        let trusted: Vec<bool> = (0..cells).map(|cell| view.counts(cell)).collect();
         let count = cells.min((CELL_LIMIT * CELL_LIMIT / cells).max(1));
         Ok(Self {
             displaced: (0..count).map(|k| k * cells / count).collect(),
             step: steps(&tessellation, positions, &acting, spacing),
             widest: widest(&tessellation, positions, &acting),
             acting,
-            environment: Arc::new(environment(&tessellation, positions, spacing)),
+            environment: Arc::new(environment(&tessellation, positions, spacing, &trusted)),
+            trusted,
             unambiguous: unambiguous(&tessellation, positions, spacing),
             positions: positions.to_vec(),
             tessellation,
@@ -67,7 +71,8 @@ impl Sample {
 
     /// The largest force of one cell on another, and the largest ratio of one to the step of a cell it depends on.
     pub fn magnitudes(&self, model: &Model<f64>) -> [f64; 2] {
-        let (mut polygon, mut forces) = (CellPolygon::default(), Vec::new());
+        let (mut polygon, mut scaled) = (CellPolygon::default(), CellPolygon::default());
+        let mut forces = Vec::new();
         let (mut force, mut slope) = (0.0, 0.0);
         for &cell in self.displaced.iter().filter(|&&cell| self.acting[cell]) {
             polygon.fill(&self.tessellation, &self.positions, cell);
@@ -78,10 +83,13 @@ impl Sample {
             for size in [1.0, 2.0] {
                 let shape = Shape { area: size * area, perimeter: size * perimeter };
                 VertexForces::of(&model.terms, shape).on_ring(&polygon, &mut forces);
+                let ring = self.tessellation.ring(cell);
+                let displacement = |h| self.tessellation.displacement(&self.positions, cell, h) * size.sqrt();
+                scaled.fill_ring(ring.map(displacement));
                 let element = CellElement {
                     cell,
                     neighbours: self.tessellation.neighbours(cell),
-                    polygon: &polygon,
+                    polygon: &scaled,
                     position: self.positions[cell],
                     domain: self.tessellation.domain(),
                     environment: &model.environment,
@@ -151,7 +159,12 @@ pub(super) struct Batch {
 }
 
 /// Data that effects refer to.
-fn environment(tessellation: &Tessellation, positions: &[Vector<f64>], spacing: f64) -> Environment {
+fn environment(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    spacing: f64,
+    trusted: &[bool],
+) -> Environment {
     let cells = positions.len();
     let origin = positions.iter().sum::<Vector<f64>>() / cells.max(1) as f64;
     let labels = (0..cells).map(|cell| [Some(1), Some(2), None, Some(1)].get(cell % 4).copied().flatten());
@@ -168,7 +181,7 @@ fn environment(tessellation: &Tessellation, positions: &[Vector<f64>], spacing: 
         let Domain::Open = tessellation.domain() else {
             return Ok(environment);
         };
-        let beyond = (0..cells).map(|cell| !has_velocity(tessellation, cell)).collect();
+        let beyond = trusted.iter().map(|trusted| !trusted).collect();
         let environment = environment.with_beyond_edge(beyond)?;
         // One square that holds everything: between squares the field has kinks.
         let far = positions.iter().map(|r| (r - origin).amax()).fold(spacing, f64::max) * 1.1;
