@@ -50,8 +50,8 @@ pub use crate::Axis;
 pub use report::{GradientReport, GradientRow, Place, Quantity};
 
 use crate::{
-    BlockMatrix, Column, Effect, Exactness, FlowResponse, ForceTerm, Model, Parameters, Parity, base_terms,
-    jacobian, velocities,
+    BlockMatrix, Column, Effect, Environment, Exactness, FlowResponse, ForceTerm, Model, Parameters, Parity,
+    base_terms, jacobian, velocities,
 };
 use comparison::Comparison;
 use sample::Sample;
@@ -60,6 +60,9 @@ use voronudge_geometry::{Domain, Error, Scalar, Vector};
 
 /// Name of the rows of the whole base model.
 pub const MODEL: &str = "chiral Voronoi model";
+
+/// Name of the rows of a model given to [`check_model`].
+pub const MODEL_WITH_EFFECTS: &str = "model with effects";
 
 /// Name of the rows that concern no force.
 pub const GEOMETRY: &str = "geometry";
@@ -97,6 +100,31 @@ pub fn check(
         }
     }
     Ok(GradientReport { cells: positions.len(), displaced: sample.displaced.len(), rows })
+}
+
+/// Checks one model at `positions` (N), in the environment that is made up for effects.
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn check_model(
+    positions: &[Vector<f64>],
+    domain: Domain,
+    model: &Model<f64>,
+) -> Result<GradientReport, Error> {
+    let sample = Sample::new(positions, domain)?;
+    let images = Images::of(&sample)?;
+    let subject =
+        Subject::new(MODEL_WITH_EFFECTS, model.clone().within(&sample.environment), &sample, EFFECT_CELLS);
+    let displaced = subject.displaced.len();
+    Ok(GradientReport { cells: positions.len(), displaced, rows: subject.rows(&images) })
+}
+
+/// The labels, earlier velocities, map and edge that are made up for effects that need them.
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn made_up_environment(positions: &[Vector<f64>], domain: Domain) -> Result<Environment, Error> {
+    Ok(Sample::new(positions, domain)?.environment.as_ref().clone())
 }
 
 /// The columns of an effect with different coefficients; responses on top of the base model.
