@@ -3,7 +3,8 @@
 //! Each element writes the forces on its ring into its own half-edges; each cell then gathers what its neighbours wrote
 //! about it, in the order of its ring. No two threads write to one place and no sum depends on their number.
 
-use crate::{Environment, Model, Term, VertexForces, WeightedTerm};
+use crate::response::respond;
+use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
@@ -42,9 +43,23 @@ impl<S: Scalar> Default for HalfEdgeForces<S> {
 }
 
 impl<S: Scalar> HalfEdgeForces<S> {
-    /// Evaluates all elements and sums them into velocities (N). The forces of a cell whose polygon is not closed are
-    /// NaN.
+    /// Evaluates all elements, sums them into velocities (N) and lets the responses act on these. The forces of a cell
+    /// whose polygon is not closed are NaN. Responses add no forces.
     pub fn evaluate(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<S>],
+        model: &Model<S>,
+        velocities: &mut Vec<Vector<S>>,
+    ) {
+        self.evaluate_terms(tessellation, positions, model, velocities);
+        if !model.responses.is_empty() {
+            respond(tessellation, positions, model, velocities);
+        }
+    }
+
+    /// The velocities of the terms alone.
+    pub(crate) fn evaluate_terms(
         &mut self,
         tessellation: &Tessellation,
         positions: &[Vector<S>],
@@ -56,13 +71,13 @@ impl<S: Scalar> HalfEdgeForces<S> {
         self.forces.resize(tessellation.half_edges(), nan);
         velocities.resize(cells, nan);
         if cells <= CHUNK {
-            elements(tessellation, positions, &model.terms, 0..cells, &mut self.forces, velocities);
+            elements(tessellation, positions, model, 0..cells, &mut self.forces, velocities);
         } else {
             split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
                 .into_par_iter()
                 .zip(velocities.par_chunks_mut(CHUNK))
                 .for_each(|((range, forces), velocities)| {
-                    elements(tessellation, positions, &model.terms, range, forces, velocities);
+                    elements(tessellation, positions, model, range, forces, velocities);
                 });
         }
         let gather = |(cell, v): (usize, &mut Vector<S>)| {
@@ -88,24 +103,47 @@ impl<S: Scalar> HalfEdgeForces<S> {
 fn elements<S: Scalar>(
     tessellation: &Tessellation,
     positions: &[Vector<S>],
-    terms: &[WeightedTerm<S>],
+    model: &Model<S>,
     cells: Range<usize>,
     forces: &mut [Vector<S>],
     on_cells: &mut [Vector<S>],
 ) {
     let mut polygon = CellPolygon::default();
+    let has_ring_terms = model.has_ring_terms();
     let offset = tessellation.ring(cells.start).start;
     for (cell, on_cell) in cells.zip(on_cells) {
         let ring = tessellation.ring(cell);
         let own = &mut forces[ring.start - offset..ring.end - offset];
         if tessellation.is_closed(cell) {
             polygon.fill(tessellation, positions, cell);
-            *on_cell = VertexForces::of(terms, polygon.shape()).on_ring(&polygon, own);
+            *on_cell = VertexForces::of(&model.terms, polygon.shape()).on_ring(&polygon, own);
+            if has_ring_terms {
+                let element = CellElement {
+                    cell,
+                    neighbours: tessellation.neighbours(cell),
+                    polygon: &polygon,
+                    position: positions[cell],
+                    domain: tessellation.domain(),
+                    environment: &model.environment,
+                };
+                ring_terms(model, &element, &mut RingForces { on_ring: own, on_cell });
+            }
         } else {
             let nan = S::constant(f64::NAN);
             *on_cell = Vector::new(nan, nan);
             own.fill(*on_cell);
         }
+    }
+}
+
+/// Adds the forces of the ring terms of a model for one cell.
+pub(crate) fn ring_terms<S: Scalar>(
+    model: &Model<S>,
+    element: &CellElement<'_, S>,
+    forces: &mut RingForces<'_, S>,
+) {
+    for weighted in &model.terms {
+        weighted.term.act_on_ring(element, weighted.coefficient, forces);
     }
 }
 

@@ -1,6 +1,6 @@
 //! One cell's element: forces on its vertices, handed on to the centres of its neighbours.
 
-use crate::{ForceTerm, WeightedTerm};
+use crate::WeightedTerm;
 use voronudge_geometry::{CellPolygon, Scalar, Shape, Vector, quarter_turn};
 
 /// The forces that a cell exerts on its vertices, as multiples of the gradients of its area and perimeter.
@@ -21,7 +21,7 @@ impl<S: Scalar> VertexForces<S> {
         let zero = S::constant(0.0);
         let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
         for weighted in terms {
-            weighted.term.act(shape, weighted.coefficient, &mut forces);
+            weighted.term.act_on_shape(shape, weighted.coefficient, &mut forces);
         }
         forces
     }

@@ -180,7 +180,7 @@ fn turned_columns(m: &Block, weight: f64) -> Block {
     product(m, &[x.x, y.x, x.y, y.y]).map(|entry| weight * entry)
 }
 
-fn product(a: &Block, b: &Block) -> Block {
+pub(crate) fn product(a: &Block, b: &Block) -> Block {
     [
         a[0] * b[0] + a[1] * b[2],
         a[0] * b[1] + a[1] * b[3],

@@ -3,6 +3,8 @@
 use crate::Model;
 use crate::assembly::{CHUNK, split_by_cells};
 use crate::element_jacobian::{Block, ElementJacobian};
+use crate::response::respond_jacobian;
+use crate::ring_jacobian::RingJacobian;
 use rayon::prelude::*;
 use voronudge_geometry::{Tessellation, Vector};
 
@@ -71,9 +73,14 @@ impl BlockMatrix {
 
 /// `J_{ij} = ∂v_i/∂r_j` at frozen topology, exact to rounding.
 ///
-/// Each element is differentiated on its own, in coordinates relative to its cell; the row and column of the cell itself
-/// follow from the balance of forces and from translation. In an open field of view the rows of cells without a velocity
-/// are empty. For one Jacobian after another see [`JacobianBuilder`].
+/// Each element is differentiated on its own, in coordinates relative to its cell; for shape terms the row and column of
+/// the cell itself follow from the balance of forces and from translation. In an open field of view the rows of cells
+/// without a velocity are empty. For one Jacobian after another see [`JacobianBuilder`].
+///
+/// Terms reach two rings. Responses reach further, and some of them leave something out, as their
+/// [`exactness`](crate::FlowResponse::exactness) tells: of `time_lag` and `centroid_bias` the part with the second
+/// derivative of the terms, of `internal_drag` the entries of the inverse below 1e-7 of the largest in a row. Everything
+/// else is exact.
 pub fn jacobian(tessellation: &Tessellation, positions: &[Vector<f64>], model: &Model<f64>) -> BlockMatrix {
     let mut matrix = BlockMatrix::default();
     JacobianBuilder::default().build(tessellation, positions, model, &mut matrix);
@@ -86,6 +93,9 @@ pub struct JacobianBuilder {
     /// First block of each cell's element, whose derivative is a matrix of blocks (force on a, by position of b).
     start: Vec<usize>,
     elements: Vec<Block>,
+    /// The same for ring terms, with the cell itself and its position in the last row and column; empty without any.
+    ring_start: Vec<usize>,
+    ring_elements: Vec<Block>,
 }
 
 impl JacobianBuilder {
@@ -98,6 +108,7 @@ impl JacobianBuilder {
         matrix: &mut BlockMatrix,
     ) {
         self.evaluate_elements(tessellation, positions, model);
+        self.evaluate_ring_elements(tessellation, positions, model);
         find_pattern(tessellation, matrix);
         let BlockMatrix { row_start, column, block } = matrix;
         let (row_start, column) = (&*row_start, &*column);
@@ -117,6 +128,41 @@ impl JacobianBuilder {
                 }
             },
         );
+        if !model.responses.is_empty() {
+            *matrix = respond_jacobian(tessellation, positions, model, std::mem::take(matrix));
+        }
+    }
+
+    fn evaluate_ring_elements(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        model: &Model<f64>,
+    ) {
+        let Self { ring_start: start, ring_elements: elements, .. } = self;
+        start.clear();
+        elements.clear();
+        if !model.has_ring_terms() {
+            return;
+        }
+        start.push(0);
+        let mut total = 0;
+        start.extend((0..tessellation.len()).map(|cell| {
+            total += (tessellation.ring(cell).len() + 1).pow(2);
+            total
+        }));
+        let start = &*start;
+        elements.resize(total, [0.0; 4]);
+        split_by_cells(elements, tessellation.len(), |cell| start[cell]).into_par_iter().for_each_init(
+            || RingJacobian::new(model),
+            |jacobian, (cells, own)| {
+                let offset = start[cells.start];
+                for cell in cells.filter(|&cell| tessellation.is_closed(cell)) {
+                    let blocks = &mut own[start[cell] - offset..start[cell + 1] - offset];
+                    jacobian.fill(tessellation, positions, cell, blocks);
+                }
+            },
+        );
     }
 
     fn evaluate_elements(
@@ -125,7 +171,7 @@ impl JacobianBuilder {
         positions: &[Vector<f64>],
         model: &Model<f64>,
     ) {
-        let Self { start, elements } = self;
+        let Self { start, elements, .. } = self;
         start.clear();
         start.push(0);
         let mut total = 0;
@@ -159,6 +205,39 @@ impl JacobianBuilder {
             let owner = tessellation.neighbour(h);
             let slot = tessellation.twin(h) - tessellation.ring(owner).start;
             self.add_slot(tessellation, owner, slot, 1.0, places, row);
+        }
+        if !self.ring_start.is_empty() {
+            self.add_ring_slot(tessellation, cell, tessellation.ring(cell).len(), places, row);
+            for h in tessellation.ring(cell) {
+                let owner = tessellation.neighbour(h);
+                let slot = tessellation.twin(h) - tessellation.ring(owner).start;
+                self.add_ring_slot(tessellation, owner, slot, places, row);
+            }
+        }
+    }
+
+    /// Adds the derivatives of the ring terms of `owner`: of the force on a slot of its ring, or on itself behind these.
+    fn add_ring_slot(
+        &self,
+        tessellation: &Tessellation,
+        owner: usize,
+        slot: usize,
+        places: &Places,
+        row: &mut [Block],
+    ) {
+        let neighbours = tessellation.neighbours(owner);
+        let points = neighbours.len() + 1;
+        let blocks = &self.ring_elements[self.ring_start[owner] + slot * points..][..points];
+        let own = places.of(owner as u32);
+        for (k, block) in blocks.iter().enumerate() {
+            // A displacement of the ring moves with its neighbour and against the cell.
+            let at = neighbours.get(k).map_or(own, |&column| places.of(column));
+            for (axis, derivative) in block.iter().enumerate() {
+                row[at][axis] += derivative;
+                if k + 1 < points {
+                    row[own][axis] -= derivative;
+                }
+            }
         }
     }
 
@@ -256,7 +335,7 @@ fn find_pattern(tessellation: &Tessellation, matrix: &mut BlockMatrix) {
     }
 }
 
-fn has_velocity(tessellation: &Tessellation, cell: usize) -> bool {
+pub(crate) fn has_velocity(tessellation: &Tessellation, cell: usize) -> bool {
     tessellation.is_closed(cell)
         && tessellation.neighbours(cell).iter().all(|&k| tessellation.is_closed(k as usize))
 }

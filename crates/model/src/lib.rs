@@ -27,21 +27,34 @@
 //! ```
 
 mod assembly;
+mod axis;
+mod cell_element;
+pub mod effect;
 mod element;
 mod element_jacobian;
 mod environment;
 pub mod gradient_check;
 mod jacobian;
 mod parameters;
+mod response;
+mod ring_jacobian;
+mod row_assembly;
 mod stress;
 mod structure;
 mod term;
 
 pub use assembly::{HalfEdgeForces, columns, velocities};
+pub use axis::Axis;
+pub use cell_element::{CellElement, RingForces};
+pub use effect::{Column, Effect};
 pub use element::VertexForces;
-pub use environment::Environment;
+pub use environment::{Environment, EnvironmentError, VectorMap};
 pub use jacobian::{BlockMatrix, JacobianBuilder, jacobian};
 pub use parameters::{PARAMETER_NAMES, Parameters, parameter_derivatives};
+pub use response::{Exactness, Flow, FlowResponse, Linearisation, Response, Stage};
+pub use row_assembly::{RowAssembly, assemble};
 pub use stress::stress;
-pub use structure::{Evaluation, Model, Structure, WeightedTerm, base_terms};
-pub use term::{Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, Term};
+pub use structure::{Evaluation, Model, Structure, WeightedResponse, WeightedTerm, base_terms};
+pub use term::{
+    Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, RingTerm, ShapeTerm, Term,
+};

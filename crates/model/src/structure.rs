@@ -1,10 +1,12 @@
 //! Models: sums of terms with coefficients, and what is left if the coefficients are left open.
 
 use crate::{
-    Adhesion, AreaElasticity, Contractility, CorticalChirality, Environment, Parameters, Term, columns,
+    Adhesion, AreaElasticity, Column, Contractility, CorticalChirality, Environment, Parameters, Response,
+    Term, columns, response::respond,
 };
+use num_dual::DualSVec64;
 use std::sync::Arc;
-use voronudge_geometry::{Scalar, Tessellation, Vector};
+use voronudge_geometry::{Scalar, Tessellation, Vector, lift};
 
 /// A term and its coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,11 +17,22 @@ pub struct WeightedTerm<S> {
     pub coefficient: S,
 }
 
-/// A model of the tissue: a sum of terms.
+/// A response and its coefficient.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct WeightedResponse<S> {
+    /// The response.
+    pub response: Response,
+    /// Its coefficient.
+    pub coefficient: S,
+}
+
+/// A model of the tissue: a sum of terms, and responses that act on the velocities of the terms.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Model<S> {
-    /// The terms and their coefficients; velocities are linear in the latter.
+    /// The terms and their coefficients; velocities are linear in the latter as long as there is no response.
     pub terms: Vec<WeightedTerm<S>>,
+    /// The responses and their coefficients.
+    pub responses: Vec<WeightedResponse<S>>,
     /// What surrounds and preceded the cells.
     pub environment: Arc<Environment>,
 }
@@ -44,7 +57,7 @@ impl<S: Scalar> Model<S> {
             .zip(coefficients)
             .map(|(&term, &coefficient)| WeightedTerm { term, coefficient })
             .collect();
-        Self { terms, environment: Arc::default() }
+        Self { terms, responses: Vec::new(), environment: Arc::default() }
     }
 
     /// A single term with a coefficient of one.
@@ -52,20 +65,52 @@ impl<S: Scalar> Model<S> {
         Self::with_coefficients(&[term], &[S::constant(1.0)])
     }
 
+    /// The same model with one column more.
+    #[must_use]
+    pub fn with(mut self, column: Column, coefficient: S) -> Self {
+        match column {
+            Column::Term(term) => self.terms.push(WeightedTerm { term, coefficient }),
+            Column::Response(response) => self.responses.push(WeightedResponse { response, coefficient }),
+        }
+        self
+    }
+
     /// The same model with coefficients of another scalar, without derivatives.
     pub fn lift<D: Scalar>(&self) -> Model<D> {
-        let terms = self
-            .terms
-            .iter()
-            .map(|w| WeightedTerm { term: w.term, coefficient: D::constant(w.coefficient.real()) })
-            .collect();
-        Model { terms, environment: self.environment.clone() }
+        self.map(|coefficient| D::constant(coefficient.real()))
+    }
+
+    /// The same model with every coefficient mapped.
+    pub(crate) fn map<D: Scalar>(&self, map: impl Fn(S) -> D) -> Model<D> {
+        let term = |w: &WeightedTerm<S>| WeightedTerm { term: w.term, coefficient: map(w.coefficient) };
+        let response = |w: &WeightedResponse<S>| WeightedResponse {
+            response: w.response,
+            coefficient: map(w.coefficient),
+        };
+        Model {
+            terms: self.terms.iter().map(term).collect(),
+            responses: self.responses.iter().map(response).collect(),
+            environment: self.environment.clone(),
+        }
     }
 
     /// The same model in an environment.
     #[must_use]
     pub fn within(self, environment: &Arc<Environment>) -> Self {
         Self { environment: environment.clone(), ..self }
+    }
+
+    /// The terms that descend an energy.
+    pub(crate) fn passive(&self) -> Self {
+        Self {
+            terms: self.terms.iter().filter(|w| w.term.has_energy()).copied().collect(),
+            responses: Vec::new(),
+            environment: self.environment.clone(),
+        }
+    }
+
+    pub(crate) fn has_ring_terms(&self) -> bool {
+        self.terms.iter().any(|w| w.term.is_ring_term())
     }
 }
 
@@ -79,11 +124,13 @@ pub fn base_terms(preferred_area: f64) -> [Term; 4] {
     ]
 }
 
-/// What a model consists of, its coefficients left open.
+/// What a model consists of, its coefficients left open: first those of the terms, then those of the responses.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Structure {
     /// The terms; the first four are those of the base model.
     pub terms: Vec<Term>,
+    /// The responses.
+    pub responses: Vec<Response>,
 }
 
 /// Velocities and their derivatives by the coefficients.
@@ -95,20 +142,42 @@ pub struct Evaluation {
     pub by_coefficient: Vec<Vec<Vector<f64>>>,
 }
 
+/// Coefficients by which velocities are differentiated at once.
+const DIRECTIONS: usize = 8;
+type Dual = DualSVec64<DIRECTIONS>;
+
 impl Structure {
     /// The base model.
     pub fn base(preferred_area: f64) -> Self {
-        Self { terms: base_terms(preferred_area).to_vec() }
+        Self { terms: base_terms(preferred_area).to_vec(), responses: Vec::new() }
+    }
+
+    /// The same with further columns.
+    #[must_use]
+    pub fn with(&self, columns: &[Column]) -> Self {
+        let mut structure = self.clone();
+        for column in columns {
+            match *column {
+                Column::Term(term) => structure.terms.push(term),
+                Column::Response(response) => structure.responses.push(response),
+            }
+        }
+        structure
     }
 
     /// Number of coefficients.
     pub fn dimension(&self) -> usize {
-        self.terms.len()
+        self.terms.len() + self.responses.len()
     }
 
-    /// The model with coefficients (one for each term) in an environment.
+    /// The model with coefficients (one for each term, then one for each response) in an environment.
     pub fn model<S: Scalar>(&self, coefficients: &[S], environment: &Arc<Environment>) -> Model<S> {
-        Model::with_coefficients(&self.terms, coefficients).within(environment)
+        let mut model = Model::with_coefficients(&self.terms, coefficients).within(environment);
+        let of_responses = coefficients.iter().skip(self.terms.len());
+        model.responses = (self.responses.iter().zip(of_responses))
+            .map(|(&response, &coefficient)| WeightedResponse { response, coefficient })
+            .collect();
+        model
     }
 
     /// The velocity field of each term for a coefficient of one.
@@ -121,20 +190,51 @@ impl Structure {
         columns(tessellation, positions, &self.terms, environment)
     }
 
-    /// Velocities and their derivatives by the coefficients, from the columns at these positions.
+    /// Velocities and their derivatives by all coefficients, from the columns of the terms at these positions. Both are
+    /// exact to rounding, whatever the responses.
     pub fn evaluate(
         &self,
-        _tessellation: &Tessellation,
+        tessellation: &Tessellation,
         positions: &[Vector<f64>],
         columns: &[Vec<Vector<f64>>],
         coefficients: &[f64],
-        _environment: &Arc<Environment>,
+        environment: &Arc<Environment>,
     ) -> Evaluation {
-        let velocities = (0..positions.len())
-            .map(|cell| {
-                columns.iter().zip(coefficients).fold(Vector::zeros(), |sum, (x, c)| sum + x[cell] * *c)
-            })
-            .collect();
-        Evaluation { velocities, by_coefficient: columns.to_vec() }
+        if self.responses.is_empty() {
+            let velocities = (0..positions.len())
+                .map(|cell| {
+                    columns.iter().zip(coefficients).fold(Vector::zeros(), |sum, (x, c)| sum + x[cell] * *c)
+                })
+                .collect();
+            return Evaluation { velocities, by_coefficient: columns.to_vec() };
+        }
+        let lifted: Vec<Vector<Dual>> = lift(positions);
+        let mut evaluation = Evaluation { velocities: Vec::new(), by_coefficient: Vec::new() };
+        for first in (0..self.dimension()).step_by(DIRECTIONS) {
+            let last = (first + DIRECTIONS).min(self.dimension());
+            let seeded: Vec<Dual> = (coefficients.iter().enumerate())
+                .map(|(k, &c)| match (first..last).contains(&k) {
+                    true => Dual::from_re(c).derivative(k - first),
+                    false => Dual::from_re(c),
+                })
+                .collect();
+            let model = self.model(&seeded, environment);
+            let zero = Dual::from_re(0.0);
+            let mut v = vec![Vector::new(zero, zero); positions.len()];
+            for (column, coefficient) in columns.iter().zip(&seeded) {
+                for (sum, x) in v.iter_mut().zip(column) {
+                    *sum += Vector::new(*coefficient * x.x, *coefficient * x.y);
+                }
+            }
+            respond(tessellation, &lifted, &model, &mut v);
+            let slope = |x: &Dual, k: usize| x.eps.0.map_or(0.0, |eps| eps[k]);
+            evaluation.by_coefficient.extend(
+                (0..last - first).map(|k| {
+                    v.iter().map(|v| Vector::new(slope(&v.x, k), slope(&v.y, k))).collect::<Vec<_>>()
+                }),
+            );
+            evaluation.velocities = v.iter().map(|v| Vector::new(v.x.re, v.y.re)).collect();
+        }
+        evaluation
     }
 }

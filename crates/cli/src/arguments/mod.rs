@@ -1,9 +1,11 @@
 //! Arguments that several commands share.
 
 mod dataset;
+mod effects;
 mod parameters;
 
 pub(crate) use dataset::DataSetArguments;
+pub(crate) use effects::{ChosenEffects, EffectArguments, environment};
 pub(crate) use parameters::ParameterArguments;
 
 use crate::failure::Failure;

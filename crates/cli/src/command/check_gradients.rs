@@ -1,7 +1,7 @@
 //! `voronudge check-gradients`: every derivative against independent ways to get it.
 
 use crate::Answer;
-use crate::arguments::{CommonArguments, DataSetArguments, ParameterArguments};
+use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
 use crate::failure::Failure;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain};
@@ -10,11 +10,12 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_io::{FrameSelection, OutputDirectory};
-use voronudge_model::gradient_check::{GradientReport, Place, check};
+use voronudge_model::Model;
+use voronudge_model::gradient_check::{GradientReport, Place, check, check_model, made_up_environment};
 use voronudge_report::infer_report::RunRecord;
 use voronudge_simulate::{RandomPlacement, generator};
 
-/// Checks derivatives and symmetries of every force term on given or built-in positions.
+/// Checks derivatives and symmetries of every force term and effect on given or built-in positions.
 ///
 /// Prints a table: term, quantity, worst error relative to the largest magnitude, where, tolerance. Exits 1 if one fails.
 #[derive(Debug, Args)]
@@ -26,6 +27,8 @@ pub(crate) struct Arguments {
     frames: Option<FrameSelection>,
     #[command(flatten)]
     parameters: ParameterArguments,
+    #[command(flatten)]
+    effects: EffectArguments,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -55,6 +58,7 @@ struct Check {
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let run = Run::begin("check-gradients", &arguments.common)?;
     let parameters = arguments.parameters.resolve()?;
+    let effects = arguments.effects.resolve()?;
     let mut out = arguments.common.out.as_ref().map(OutputDirectory::create).transpose()?;
     let given = arguments.data.dataset.is_some() || arguments.data.positions.is_some();
     let data = given.then(|| arguments.data.load()).transpose()?;
@@ -89,6 +93,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     for (name, snapshot, domain) in subjects {
         let mut report = check(&snapshot.positions, domain, &parameters)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(&name))?;
+        if !effects.is_empty() {
+            let environment = made_up_environment(&snapshot.positions, domain)?;
+            let model = effects.add_to(Model::chiral_voronoi(&parameters), environment, domain)?;
+            report.rows.extend(check_model(&snapshot.positions, domain, &model)?.rows);
+        }
         for row in &mut report.rows {
             renumber(&mut row.place, &snapshot.cells);
         }

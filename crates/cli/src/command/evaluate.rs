@@ -1,7 +1,9 @@
 //! `voronudge evaluate`: the model's fields at given positions.
 
 use crate::Answer;
-use crate::arguments::{CommonArguments, DataSetArguments, ParameterArguments};
+use crate::arguments::{
+    ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ParameterArguments, environment,
+};
 use crate::failure::Failure;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain, to_array, to_scalars};
@@ -31,6 +33,8 @@ pub(crate) struct Arguments {
     frames: Option<FrameSelection>,
     #[command(flatten)]
     parameters: ParameterArguments,
+    #[command(flatten)]
+    effects: EffectArguments,
     /// Also write the Jacobian of velocities with respect to positions.
     #[arg(long)]
     jacobian: bool,
@@ -50,6 +54,8 @@ struct Report {
     run: RunRecord,
     cells: Cells,
     parameters: ModelParameters,
+    #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
+    effects: ChosenEffects,
     stress: Vec<[[f64; 2]; 2]>,
     mean_square_velocity: Vec<f64>,
 }
@@ -98,6 +104,7 @@ struct Fields {
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("evaluate", &arguments.common)?;
+    let effects = arguments.effects.resolve()?;
     let data = arguments.data.load()?;
     let parameters = arguments.parameters.resolve()?;
     let frames = match &arguments.frames {
@@ -108,7 +115,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
-    let model = Model::chiral_voronoi(&parameters);
+    let base = Model::chiral_voronoi(&parameters);
     let domain = domain(&data)?;
     let mut fields = Vec::new();
     for (index, &frame) in frames.iter().enumerate() {
@@ -117,6 +124,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         let tessellation = Tessellation::new(&snapshot.positions, domain)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
         let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
+        let mut surroundings = environment(&tessellation, &snapshot.positions, &view)?;
+        if let Some(labels) = &data.labels {
+            let of_cells = snapshot.cells.iter().map(|&cell| labels.get((frame, cell)).copied()).collect();
+            surroundings = surroundings
+                .with_labels(of_cells)
+                .map_err(|error| Failure::new(error.to_string()).at(place()))?;
+        }
+        let model = effects.add_to(base.clone(), surroundings, domain)?;
         if index == 0 && arguments.jacobian {
             let matrix = jacobian(&tessellation, &snapshot.positions, &model);
             if frames.len() > 1 {
@@ -147,6 +162,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             frames,
         },
         parameters: (&parameters).into(),
+        effects,
         stress: fields.iter().map(|f| f.stress).collect(),
         mean_square_velocity: fields
             .iter()

@@ -1,7 +1,7 @@
 //! `voronudge simulate`: trajectories of the model in a periodic box.
 
 use crate::Answer;
-use crate::arguments::{CommonArguments, ParameterArguments};
+use crate::arguments::{ChosenEffects, CommonArguments, EffectArguments, ParameterArguments, environment};
 use crate::command::evaluate::ModelParameters;
 use crate::failure::Failure;
 use crate::progress::Progress;
@@ -11,7 +11,7 @@ use ndarray::Array3;
 use serde::Serialize;
 use std::ops::ControlFlow;
 use std::time::Instant;
-use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
 use voronudge_io::{Boundary, DataSet, OutputDirectory, YAxis};
 use voronudge_model::Model;
 use voronudge_report::infer_report::RunRecord;
@@ -42,6 +42,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     parameters: ParameterArguments,
     #[command(flatten)]
+    effects: EffectArguments,
+    #[command(flatten)]
     common: CommonArguments,
 }
 
@@ -59,6 +61,8 @@ struct Report {
     dt: f64,
     frames: usize,
     parameters: ModelParameters,
+    #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
+    effects: ChosenEffects,
     mean_square_velocity: Option<f64>,
     hexatic_order: f64,
     steps: usize,
@@ -68,6 +72,7 @@ struct Report {
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("simulate", &arguments.common)?;
     let parameters = arguments.parameters.resolve()?;
+    let effects = arguments.effects.resolve()?;
     let lengths = match arguments.box_lengths.as_deref() {
         Some(&[x, y]) => [x, y],
         _ => [(arguments.cells as f64).sqrt(); 2],
@@ -87,8 +92,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let positions =
         RandomPlacement::new(arguments.cells, cell_box).draw(&mut generator(arguments.common.seed))?;
-    let mut simulation =
-        Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(&parameters))?;
+    let domain = Domain::Periodic(cell_box);
+    let tessellation = Tessellation::new(&positions, domain)?;
+    let view = FieldOfView::new(&tessellation, &positions, f64::INFINITY);
+    let surroundings = environment(&tessellation, &positions, &view)?;
+    let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
+    let mut simulation = Simulation::new(positions, domain, model)?;
     let schedule = Schedule { time: arguments.time, time_step: arguments.dt, frames: arguments.frames };
     let advised = recommended_time_step(&parameters, (cell_box.area() / arguments.cells as f64).sqrt());
     if arguments.dt > advised {
@@ -145,6 +154,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         dt: arguments.dt,
         frames: arguments.frames,
         parameters: (&parameters).into(),
+        effects,
         mean_square_velocity: summary.mean_square_velocity,
         hexatic_order: hexatic_order(simulation.tessellation(), simulation.positions()),
         steps: summary.steps,

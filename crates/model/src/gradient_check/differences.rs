@@ -11,7 +11,10 @@ const WEIGHTS: [(f64, f64); 3] = [(1.0, 0.75), (2.0, -0.15), (3.0, 1.0 / 60.0)];
 
 /// The sparse Jacobian against differences of the velocities, at frozen topology.
 pub(super) fn jacobian(subject: &Subject) -> Comparison {
-    let batches = subject.sample.batches();
+    let batches = match subject.model.responses.is_empty() {
+        true => subject.sample.batches(&subject.displaced),
+        false => subject.sample.single(&subject.displaced),
+    };
     let tasks: Vec<(&Batch, Axis)> = batches.iter().flat_map(|b| Axis::BOTH.map(|axis| (b, axis))).collect();
     let compared: Vec<Comparison> =
         tasks.into_par_iter().map(|(batch, along)| displaced(subject, batch, along)).collect();
@@ -54,7 +57,7 @@ fn displaced(subject: &Subject, batch: &Batch, along: Axis) -> Comparison {
 /// Velocities against differences of the energies of a cell and its neighbours.
 pub(super) fn energy(subject: &Subject) -> Comparison {
     let sample = subject.sample;
-    let cells: Vec<usize> = sample.resolved().filter(|&cell| subject.moves(cell)).collect();
+    let cells: Vec<usize> = sample.resolved(&subject.displaced).filter(|&cell| subject.moves(cell)).collect();
     let gradients: Vec<Vector<f64>> = cells
         .par_iter()
         .map(|&cell| Vector::from(Axis::BOTH.map(|axis| slope(subject, cell, axis))))

@@ -31,7 +31,7 @@ fn derivative(dual: &Dual, k: usize, axis: Axis) -> f64 {
 pub(super) fn jacobian(subject: &Subject) -> Comparison {
     let sample = subject.sample;
     let model: Model<Dual> = subject.model.lift();
-    let batches: Vec<&[usize]> = sample.displaced.chunks(CELLS).collect();
+    let batches: Vec<&[usize]> = subject.displaced.chunks(CELLS).collect();
     let compared: Vec<Comparison> = batches
         .into_par_iter()
         .map(|batch| {
@@ -62,7 +62,7 @@ pub(super) fn jacobian(subject: &Subject) -> Comparison {
 pub(super) fn energy(subject: &Subject) -> Comparison {
     let sample = subject.sample;
     let model: Model<Dual> = subject.model.lift();
-    let cells: Vec<usize> = sample.displaced.iter().copied().filter(|&cell| subject.moves(cell)).collect();
+    let cells: Vec<usize> = subject.displaced.iter().copied().filter(|&cell| subject.moves(cell)).collect();
     let batches: Vec<&[usize]> = cells.chunks(CELLS).collect();
     let gradients: Vec<Dual> = (batches.par_iter())
         .map(|batch| total_energy(&sample.tessellation, &seeded(&sample.positions, batch), &model))

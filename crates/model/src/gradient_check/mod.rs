@@ -3,7 +3,13 @@
 //! The sparse Jacobian is assembled from derivatives of single elements. Here it meets what takes nothing for granted:
 //! central differences of the velocities, and dual numbers through the whole system. Velocities meet the gradient of the
 //! energy they descend, and the tissue as it was moved, wrapped, turned and mirrored. The list of terms is
-//! [`Term::all`](crate::Term::all), so a new term is checked from the moment it exists.
+//! [`base_terms`](crate::base_terms) and the catalogue of effects, so a new effect is checked from the moment it exists.
+//! Data that effects refer to (labels, earlier velocities, a map, an edge) are made up. The columns of an effect are
+//! checked together, with different coefficients; responses on top of the base model.
+//!
+//! Some rows are missing: an effect that refers to directions of the frame has no rotation and no mirror, one that does
+//! not conserve momentum no sum, and one whose Jacobian leaves something out
+//! ([`Exactness`](crate::Exactness)) is not compared or to that accuracy only.
 //!
 //! Each row of the report states its largest error *relative to the largest magnitude of the quantity compared*. Where
 //! symmetry makes a quantity vanish, as on the honeycomb, only rounding is left to compare. The magnitude therefore
@@ -40,9 +46,13 @@ mod symmetry;
 #[cfg(test)]
 mod tests;
 
-pub use report::{Axis, GradientReport, GradientRow, Place, Quantity};
+pub use crate::Axis;
+pub use report::{GradientReport, GradientRow, Place, Quantity};
 
-use crate::{BlockMatrix, ForceTerm, Model, Parameters, Term, WeightedTerm, jacobian, velocities};
+use crate::{
+    BlockMatrix, Column, Effect, Environment, Exactness, FlowResponse, ForceTerm, Model, Parameters, Parity,
+    base_terms, jacobian, velocities,
+};
 use comparison::Comparison;
 use sample::Sample;
 use symmetry::Images;
@@ -51,6 +61,9 @@ use voronudge_geometry::{Domain, Error, Scalar, Vector};
 /// Name of the rows of the whole base model.
 pub const MODEL: &str = "chiral Voronoi model";
 
+/// Name of the rows of a model given to [`check_model`].
+pub const MODEL_WITH_EFFECTS: &str = "model with effects";
+
 /// Name of the rows that concern no force.
 pub const GEOMETRY: &str = "geometry";
 
@@ -58,7 +71,11 @@ pub const GEOMETRY: &str = "geometry";
 /// the time does not grow with the square of their number.
 pub const CELL_LIMIT: usize = 600;
 
-/// Checks all terms (for a coefficient of one), the base model with `parameters`, and the geometry, at `positions` (N).
+/// Number of cells that are displaced to check an effect of the catalogue.
+pub const EFFECT_CELLS: usize = 24;
+
+/// Checks the base terms (for a coefficient of one), the base model with `parameters`, every effect that applies, and the
+/// geometry, at `positions` (N).
 ///
 /// # Errors
 /// [`Error`] if the positions cannot be tessellated.
@@ -70,13 +87,58 @@ pub fn check(
     let sample = Sample::new(positions, domain)?;
     let images = Images::of(&sample)?;
     let mut rows = polygons::rows(&sample);
-    for term in Term::all() {
-        rows.extend(Subject::new(term.name(), Model::single(term), &sample).rows(&images));
+    for term in base_terms(parameters.preferred_area) {
+        let model = Model::single(term);
+        rows.extend(Subject::new(term.name(), model, &sample, CELL_LIMIT).rows(&images));
     }
-    let base = Subject::new(MODEL, Model::chiral_voronoi(parameters), &sample);
+    let base = Subject::new(MODEL, Model::chiral_voronoi(parameters), &sample, CELL_LIMIT);
     rows.extend(base.rows(&images));
     rows.extend(differences::parameters(&base, parameters));
+    for effect in Effect::all() {
+        if let Some(model) = effect_model(effect, parameters, &sample) {
+            rows.extend(Subject::new(effect.id, model, &sample, EFFECT_CELLS).rows(&images));
+        }
+    }
     Ok(GradientReport { cells: positions.len(), displaced: sample.displaced.len(), rows })
+}
+
+/// Checks one model at `positions` (N), in the environment that is made up for effects.
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn check_model(
+    positions: &[Vector<f64>],
+    domain: Domain,
+    model: &Model<f64>,
+) -> Result<GradientReport, Error> {
+    let sample = Sample::new(positions, domain)?;
+    let images = Images::of(&sample)?;
+    let subject =
+        Subject::new(MODEL_WITH_EFFECTS, model.clone().within(&sample.environment), &sample, EFFECT_CELLS);
+    let displaced = subject.displaced.len();
+    Ok(GradientReport { cells: positions.len(), displaced, rows: subject.rows(&images) })
+}
+
+/// The labels, earlier velocities, map and edge that are made up for effects that need them.
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn made_up_environment(positions: &[Vector<f64>], domain: Domain) -> Result<Environment, Error> {
+    Ok(Sample::new(positions, domain)?.environment.as_ref().clone())
+}
+
+/// The columns of an effect with different coefficients; responses on top of the base model.
+fn effect_model(effect: &Effect, parameters: &Parameters<f64>, sample: &Sample) -> Option<Model<f64>> {
+    let columns = effect.columns(&sample.environment, sample.tessellation.domain()).ok()?;
+    let responds = columns.iter().any(|column| matches!(column, Column::Response(_)));
+    let start = match responds {
+        true => Model::chiral_voronoi(parameters),
+        false => Model::with_coefficients(&[], &[]),
+    };
+    let model = columns.iter().enumerate().fold(start, |model, (k, &column)| {
+        model.with(column, if responds { 0.05 } else { 1.0 } * 0.8f64.powi(k as i32))
+    });
+    Some(model.within(&sample.environment))
 }
 
 /// The tolerance where the reference is exact to rounding.
@@ -103,6 +165,8 @@ struct Subject<'a> {
     jacobian: BlockMatrix,
     /// `Σ_j |J_ij|` of every cell.
     row_sums: Vec<f64>,
+    /// The cells that are displaced.
+    displaced: Vec<usize>,
     /// The largest force of one cell on another.
     force: f64,
     /// The largest ratio of such a force to a step.
@@ -110,37 +174,67 @@ struct Subject<'a> {
 }
 
 impl<'a> Subject<'a> {
-    fn new(name: &'static str, model: Model<f64>, sample: &'a Sample) -> Self {
+    fn new(name: &'static str, model: Model<f64>, sample: &'a Sample, most: usize) -> Self {
         let velocities = velocities(&sample.tessellation, &sample.positions, &model);
         let jacobian = jacobian(&sample.tessellation, &sample.positions, &model);
         let row_sum = |row| jacobian.row(row).flat_map(|(_, b)| b).map(|entry| entry.abs()).sum();
         let row_sums = (0..jacobian.rows()).map(row_sum).collect();
         let [force, slope] = sample.magnitudes(&model);
-        Self { name, model, sample, velocities, jacobian, row_sums, force, slope }
+        let (all, count) = (&sample.displaced, sample.displaced.len().min(most));
+        let displaced = (0..count).map(|k| all[k * all.len() / count]).collect();
+        Self { name, model, sample, velocities, jacobian, row_sums, displaced, force, slope }
     }
 
     fn rows(&self, images: &Images) -> Vec<GradientRow> {
-        let mut comparisons = vec![
-            (Quantity::JacobianByDifferences, differences::jacobian(self)),
-            (Quantity::JacobianByDuals, duals::jacobian(self)),
-        ];
+        let mut comparisons = Vec::new();
+        let exactness = self.model.responses.iter().map(|w| w.response.exactness());
+        if exactness.clone().all(|exactness| exactness != Exactness::FirstOrder) {
+            comparisons.push((Quantity::JacobianByDifferences, differences::jacobian(self)));
+            comparisons.push((Quantity::JacobianByDuals, duals::jacobian(self)));
+        }
         if let Some(descent) = self.descent() {
             comparisons.push((Quantity::EnergyByDuals, duals::energy(&descent)));
             comparisons.push((Quantity::EnergyByDifferences, differences::energy(&descent)));
         }
-        if let Domain::Periodic(_) = self.sample.tessellation.domain() {
+        let periodic = matches!(self.sample.tessellation.domain(), Domain::Periodic(_));
+        if periodic && self.conserves_momentum() {
             comparisons.push((Quantity::Momentum, self.momentum()));
         }
         comparisons.extend(images.compare(self));
-        comparisons.into_iter().filter_map(|(quantity, c)| c.row(self.name, quantity)).collect()
+        let mut rows: Vec<GradientRow> =
+            comparisons.into_iter().filter_map(|(quantity, c)| c.row(self.name, quantity)).collect();
+        for exactness in exactness {
+            if let Exactness::Truncated(part) = exactness {
+                // What is left out of an entry is a sum of several parts.
+                for row in rows.iter_mut().filter(|row| row.quantity == Quantity::JacobianByDuals) {
+                    row.tolerance = row.tolerance.max(10.0 * part);
+                }
+            }
+        }
+        rows
+    }
+
+    /// At the rim of an open field, where polygons can be needles, effects are not compared.
+    fn is_effect(&self) -> bool {
+        let base = base_terms(0.0).map(|term| term.name());
+        !self.model.responses.is_empty() || self.model.terms.iter().any(|w| !base.contains(&w.term.name()))
+    }
+
+    fn parities(&self) -> impl Iterator<Item = Parity> {
+        let of_terms = self.model.terms.iter().map(|w| w.term.parity());
+        of_terms.chain(self.model.responses.iter().map(|w| w.response.parity()))
+    }
+
+    fn conserves_momentum(&self) -> bool {
+        self.model.terms.iter().all(|w| w.term.conserves_momentum())
+            && self.model.responses.iter().all(|w| w.response.conserves_momentum())
     }
 
     /// The part of the model that descends an energy, if there is one.
     fn descent(&self) -> Option<Subject<'a>> {
-        let shape = voronudge_geometry::Shape { area: 1.0, perimeter: 4.0 };
-        let has_energy = |w: &&WeightedTerm<f64>| w.term.energy(shape).is_some();
-        let terms: Vec<_> = self.model.terms.iter().filter(has_energy).copied().collect();
-        (!terms.is_empty()).then(|| Self::new(self.name, Model { terms, ..self.model.clone() }, self.sample))
+        let model = self.model.passive();
+        let descends = self.model.responses.is_empty() && !model.terms.is_empty();
+        descends.then(|| Self::new(self.name, model, self.sample, self.displaced.len()))
     }
 
     fn momentum(&self) -> Comparison {
@@ -168,7 +262,9 @@ impl<'a> Subject<'a> {
 
     /// The magnitude to add to that of a cell's velocity.
     fn rounding(&self, cell: usize, length: f64) -> f64 {
-        floor(self.force + length * self.row_sums[cell])
+        // The formulas of effects take more steps, each of which rounds.
+        let steps = if self.is_effect() { 4.0 } else { 1.0 };
+        steps * floor(self.force + length * self.row_sums[cell])
     }
 
     /// A comparison of entries of the Jacobian.
@@ -177,7 +273,8 @@ impl<'a> Subject<'a> {
     }
 
     fn moves(&self, cell: usize) -> bool {
-        self.velocities[cell].iter().all(|v| v.is_finite())
+        let known = self.velocities[cell].iter().all(|v| v.is_finite());
+        known && (self.sample.trusted[cell] || !self.is_effect())
     }
 }
 

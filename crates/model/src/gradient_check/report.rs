@@ -1,6 +1,7 @@
 //! What a gradient check found.
 
 use super::ROUNDING_TOLERANCE;
+use crate::Axis;
 use std::fmt;
 
 /// The outcome of a gradient check.
@@ -106,37 +107,6 @@ impl fmt::Display for Quantity {
             Self::ParameterDerivative(name) => return f.pad(&format!("∂v/∂{name} = central differences")),
         };
         f.pad(text)
-    }
-}
-
-/// One of the two coordinates.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Axis {
-    /// To the right.
-    X,
-    /// Up.
-    Y,
-}
-
-impl Axis {
-    /// Both axes in order.
-    pub const BOTH: [Self; 2] = [Self::X, Self::Y];
-
-    /// 0 for x, 1 for y.
-    pub fn index(self) -> usize {
-        match self {
-            Self::X => 0,
-            Self::Y => 1,
-        }
-    }
-}
-
-impl fmt::Display for Axis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.pad(match self {
-            Self::X => "x",
-            Self::Y => "y",
-        })
     }
 }
 

@@ -1,8 +1,10 @@
 //! The positions under check: which cells are displaced, how far, and where the topology is ambiguous.
 
 use super::CELL_LIMIT;
-use crate::{Model, VertexForces};
-use voronudge_geometry::{CellPolygon, Domain, Error, Shape, Tessellation, Vector, cross};
+use crate::assembly::ring_terms;
+use crate::{CellElement, Environment, Model, RingForces, VectorMap, VertexForces};
+use std::sync::Arc;
+use voronudge_geometry::{CellPolygon, Domain, Error, FieldOfView, Grid, Shape, Tessellation, Vector, cross};
 
 /// Positions, and what the checks need to know about them.
 pub(super) struct Sample {
@@ -15,6 +17,8 @@ pub(super) struct Sample {
     pub step: Vec<f64>,
     /// Cells whose velocity does not depend on how cells on a common circle were triangulated.
     pub unambiguous: Vec<bool>,
+    /// Cells that count: in an open field, those away from its rim.
+    pub trusted: Vec<bool>,
     /// Closed cells that act on any with a velocity, in an open field.
     acting: Vec<bool>,
     /// √(area per cell)
@@ -23,6 +27,8 @@ pub(super) struct Sample {
     pub widest: f64,
     /// Largest magnitude of a coordinate, or of one that a lattice vector may add.
     pub reach: f64,
+    /// Labels, earlier velocities and, in an open field, an edge and a map, made up for the effects that need them.
+    pub environment: Arc<Environment>,
 }
 
 /// Step of central differences relative to the distance of a singularity.
@@ -45,12 +51,16 @@ impl Sample {
         };
         let spacing = (area / cells as f64).sqrt();
         let acting = acting(&tessellation);
+        let view = FieldOfView::new(&tessellation, positions, 3.0);
+        let trusted: Vec<bool> = (0..cells).map(|cell| view.counts(cell)).collect();
         let count = cells.min((CELL_LIMIT * CELL_LIMIT / cells).max(1));
         Ok(Self {
             displaced: (0..count).map(|k| k * cells / count).collect(),
             step: steps(&tessellation, positions, &acting, spacing),
             widest: widest(&tessellation, positions, &acting),
             acting,
+            environment: Arc::new(environment(&tessellation, positions, spacing, &trusted)),
+            trusted,
             unambiguous: unambiguous(&tessellation, positions, spacing),
             positions: positions.to_vec(),
             tessellation,
@@ -61,7 +71,8 @@ impl Sample {
 
     /// The largest force of one cell on another, and the largest ratio of one to the step of a cell it depends on.
     pub fn magnitudes(&self, model: &Model<f64>) -> [f64; 2] {
-        let (mut polygon, mut forces) = (CellPolygon::default(), Vec::new());
+        let (mut polygon, mut scaled) = (CellPolygon::default(), CellPolygon::default());
+        let mut forces = Vec::new();
         let (mut force, mut slope) = (0.0, 0.0);
         for &cell in self.displaced.iter().filter(|&&cell| self.acting[cell]) {
             polygon.fill(&self.tessellation, &self.positions, cell);
@@ -72,7 +83,21 @@ impl Sample {
             for size in [1.0, 2.0] {
                 let shape = Shape { area: size * area, perimeter: size * perimeter };
                 VertexForces::of(&model.terms, shape).on_ring(&polygon, &mut forces);
-                largest = forces.iter().map(|f| f.amax()).fold(largest, f64::max);
+                let ring = self.tessellation.ring(cell);
+                let displacement = |h| self.tessellation.displacement(&self.positions, cell, h) * size.sqrt();
+                scaled.fill_ring(ring.map(displacement));
+                let element = CellElement {
+                    cell,
+                    neighbours: self.tessellation.neighbours(cell),
+                    polygon: &scaled,
+                    position: self.positions[cell],
+                    domain: self.tessellation.domain(),
+                    environment: &model.environment,
+                };
+                let mut on_cell = Vector::zeros();
+                let on_ring = forces.as_mut_slice();
+                ring_terms(model, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
+                largest = forces.iter().chain([&on_cell]).map(|f| f.amax()).fold(largest, f64::max);
             }
             let neighbours = self.tessellation.neighbours(cell).iter();
             let step = neighbours.map(|&k| self.step[k as usize]).fold(self.step[cell], f64::min);
@@ -81,15 +106,16 @@ impl Sample {
         [force, slope]
     }
 
-    /// The cells to displace that are not so close to a singular position that the step is lost in rounding.
-    pub fn resolved(&self) -> impl Iterator<Item = usize> {
-        self.displaced.iter().copied().filter(|&cell| self.step[cell] > SMALLEST_STEP * self.spacing)
+    /// Those of some cells that are not so close to a singular position that the step is lost in rounding.
+    pub fn resolved(&self, cells: &[usize]) -> impl Iterator<Item = usize> {
+        cells.iter().copied().filter(|&cell| self.step[cell] > SMALLEST_STEP * self.spacing)
     }
 
-    /// Batches of cells to displace together, no two of which act on one cell, with the cell that acts on each.
-    pub fn batches(&self) -> Vec<Batch> {
+    /// Batches of cells to displace together, no two of which act on one cell through terms, with the cell that acts on
+    /// each.
+    pub fn batches(&self, cells: &[usize]) -> Vec<Batch> {
         let mut batches: Vec<Batch> = Vec::new();
-        for cell in self.resolved() {
+        for cell in self.resolved(cells) {
             let reached = self.reached_from(cell);
             let free = |batch: &Batch| reached.iter().all(|&i| batch.moved_by[i].is_none());
             let at = batches.iter().position(free).unwrap_or_else(|| {
@@ -102,6 +128,12 @@ impl Sample {
             }
         }
         batches
+    }
+
+    /// Each cell on its own, acting on all.
+    pub fn single(&self, cells: &[usize]) -> Vec<Batch> {
+        let batch = |cell| Batch { cells: vec![cell], moved_by: vec![Some(cell); self.positions.len()] };
+        self.resolved(cells).map(batch).collect()
     }
 
     /// The cell, its neighbours and their neighbours.
@@ -124,6 +156,43 @@ pub(super) struct Batch {
     pub cells: Vec<usize>,
     /// For each cell, the one of the batch that its velocity depends on.
     pub moved_by: Vec<Option<usize>>,
+}
+
+/// Data that effects refer to.
+fn environment(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    spacing: f64,
+    trusted: &[bool],
+) -> Environment {
+    let cells = positions.len();
+    let origin = positions.iter().sum::<Vector<f64>>() / cells.max(1) as f64;
+    let labels = (0..cells).map(|cell| [Some(1), Some(2), None, Some(1)].get(cell % 4).copied().flatten());
+    let earlier = |cell: usize| {
+        let phase = cell as f64;
+        (cell % 5 != 0).then(|| Vector::new(phase.sin(), (2.0 * phase).cos()))
+    };
+    let given = |environment: Environment| {
+        let environment = environment
+            .about(origin)
+            .with_cell_size(spacing)?
+            .with_labels(labels.collect())?
+            .with_earlier((0..cells).map(earlier).collect())?;
+        let Domain::Open = tessellation.domain() else {
+            return Ok(environment);
+        };
+        let beyond = trusted.iter().map(|trusted| !trusted).collect();
+        let environment = environment.with_beyond_edge(beyond)?;
+        // One square that holds everything: between squares the field has kinks.
+        let far = positions.iter().map(|r| (r - origin).amax()).fold(spacing, f64::max) * 1.1;
+        let corner = origin - Vector::repeat(far);
+        let values = [[1.0, 0.5], [-0.5, 0.2], [0.3, -1.0], [0.8, 0.9]].map(Vector::from).to_vec();
+        match Grid::new([corner.x, corner.y], [2.0 * far; 2], [2, 2]) {
+            Ok(grid) => VectorMap::new(grid, values).map(|map| environment.with_map(map)),
+            Err(_) => Ok(environment),
+        }
+    };
+    given(Environment::default()).unwrap_or_default()
 }
 
 /// Area of the rectangle around all positions.

@@ -25,13 +25,13 @@ fn model(chirality: f64) -> Model<f64> {
 #[test]
 fn nothing_fails_without_an_error() {
     let sample = sample(0.0);
-    assert_eq!(failing(&Subject::new(MODEL, model(0.5), &sample)), []);
+    assert_eq!(failing(&Subject::new(MODEL, model(0.5), &sample, CELL_LIMIT)), []);
 }
 
 #[test]
 fn the_jacobian_of_slightly_different_positions_is_noticed() {
     let (sample, other) = (sample(0.0), sample(1e-5));
-    let mut subject = Subject::new(MODEL, model(0.5), &sample);
+    let mut subject = Subject::new(MODEL, model(0.5), &sample, CELL_LIMIT);
     subject.jacobian = jacobian(&other.tessellation, &other.positions, &subject.model);
     assert_eq!(failing(&subject), [Quantity::JacobianByDifferences, Quantity::JacobianByDuals]);
 }
@@ -39,7 +39,7 @@ fn the_jacobian_of_slightly_different_positions_is_noticed() {
 #[test]
 fn a_single_wrong_entry_is_noticed_and_located() {
     let sample = sample(0.0);
-    let mut subject = Subject::new(MODEL, model(0.5), &sample);
+    let mut subject = Subject::new(MODEL, model(0.5), &sample, CELL_LIMIT);
     let largest = subject.jacobian.block.iter().flatten().fold(0.0, |max: f64, entry| max.max(entry.abs()));
     let at = subject.jacobian.row_start[20] + 3;
     let by = subject.jacobian.column[at] as usize;
@@ -59,7 +59,7 @@ fn a_single_wrong_entry_is_noticed_and_located() {
 #[test]
 fn an_entry_that_is_not_a_number_is_noticed() {
     let sample = sample(0.0);
-    let mut subject = Subject::new(MODEL, model(0.5), &sample);
+    let mut subject = Subject::new(MODEL, model(0.5), &sample, CELL_LIMIT);
     subject.jacobian.block[17][1] = f64::NAN;
     let row = duals::jacobian(&subject).row(MODEL, Quantity::JacobianByDuals).unwrap();
     assert!(!row.passed() && row.worst.is_infinite());
@@ -68,8 +68,8 @@ fn an_entry_that_is_not_a_number_is_noticed() {
 #[test]
 fn a_chiral_force_is_not_taken_for_the_gradient_of_an_energy() {
     let sample = sample(0.0);
-    let mut subject = Subject::new(MODEL, model(0.0), &sample);
-    subject.velocities = Subject::new(MODEL, model(1e-4), &sample).velocities;
+    let mut subject = Subject::new(MODEL, model(0.0), &sample, CELL_LIMIT);
+    subject.velocities = Subject::new(MODEL, model(1e-4), &sample, CELL_LIMIT).velocities;
     for (quantity, comparison) in [
         (Quantity::EnergyByDuals, duals::energy(&subject)),
         (Quantity::EnergyByDifferences, differences::energy(&subject)),
@@ -81,7 +81,8 @@ fn a_chiral_force_is_not_taken_for_the_gradient_of_an_energy() {
 #[test]
 fn a_mirror_that_does_not_reverse_chirality_is_noticed() {
     let sample = sample(0.0);
-    let mut subject = Subject::new("wrong parity", Model::single(CorticalChirality.into()), &sample);
+    let mut subject =
+        Subject::new("wrong parity", Model::single(CorticalChirality.into()), &sample, CELL_LIMIT);
     for v in &mut subject.velocities {
         *v = -*v;
     }
@@ -94,7 +95,7 @@ fn a_mirror_that_does_not_reverse_chirality_is_noticed() {
 #[test]
 fn a_force_from_outside_is_noticed() {
     let sample = sample(0.0);
-    let mut subject = Subject::new(MODEL, model(0.5), &sample);
+    let mut subject = Subject::new(MODEL, model(0.5), &sample, CELL_LIMIT);
     for v in &mut subject.velocities {
         v.x += 1e-6;
     }
@@ -106,7 +107,7 @@ fn a_force_from_outside_is_noticed() {
 fn a_wrong_parameter_derivative_is_noticed() {
     let sample = sample(0.0);
     let parameters = Parameters { chirality: 0.5, ..Parameters::default() };
-    let subject = Subject::new(MODEL, Model::chiral_voronoi(&parameters), &sample);
+    let subject = Subject::new(MODEL, Model::chiral_voronoi(&parameters), &sample, CELL_LIMIT);
     assert!(differences::parameters(&subject, &parameters).iter().all(GradientRow::passed));
     let other = Parameters { chirality: 0.5, perimeter_elasticity: 1.1, ..parameters };
     let exact = parameter_derivatives(&sample.tessellation, &sample.positions, &other);

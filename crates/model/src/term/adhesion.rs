@@ -1,4 +1,4 @@
-use super::{ForceTerm, Parity};
+use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
 use voronudge_geometry::{Scalar, Shape};
 
@@ -19,12 +19,14 @@ impl ForceTerm for Adhesion {
         Parity::Achiral
     }
 
+    fn energy<S: Scalar>(&self, shape: Shape<S>) -> Option<S> {
+        Some(-shape.perimeter)
+    }
+}
+
+impl ShapeTerm for Adhesion {
     #[inline]
     fn act<S: Scalar>(&self, _shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_perimeter_gradient(coefficient);
-    }
-
-    fn energy<S: Scalar>(&self, shape: Shape<S>) -> Option<S> {
-        Some(-shape.perimeter)
     }
 }

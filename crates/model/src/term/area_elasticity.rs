@@ -1,4 +1,4 @@
-use super::{ForceTerm, Parity};
+use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
 use voronudge_geometry::{Scalar, Shape};
 
@@ -30,13 +30,15 @@ impl ForceTerm for AreaElasticity {
         Parity::Achiral
     }
 
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
-        forces.along_area_gradient((-shape.area + self.preferred_area) * coefficient);
-    }
-
     fn energy<S: Scalar>(&self, shape: Shape<S>) -> Option<S> {
         let excess = shape.area - self.preferred_area;
         Some(excess * excess * 0.5)
+    }
+}
+
+impl ShapeTerm for AreaElasticity {
+    #[inline]
+    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+        forces.along_area_gradient((-shape.area + self.preferred_area) * coefficient);
     }
 }

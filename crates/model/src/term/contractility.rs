@@ -1,4 +1,4 @@
-use super::{ForceTerm, Parity};
+use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
 use voronudge_geometry::{Scalar, Shape};
 
@@ -19,13 +19,15 @@ impl ForceTerm for Contractility {
         Parity::Achiral
     }
 
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
-        forces.along_perimeter_gradient(-shape.perimeter * coefficient);
-    }
-
     fn energy<S: Scalar>(&self, shape: Shape<S>) -> Option<S> {
         let perimeter = shape.perimeter;
         Some(perimeter * perimeter * 0.5)
+    }
+}
+
+impl ShapeTerm for Contractility {
+    #[inline]
+    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+        forces.along_perimeter_gradient(-shape.perimeter * coefficient);
     }
 }

@@ -1,4 +1,4 @@
-use super::{ForceTerm, Parity};
+use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
 use voronudge_geometry::{Scalar, Shape};
 
@@ -20,13 +20,11 @@ impl ForceTerm for CorticalChirality {
     fn parity(&self) -> Parity {
         Parity::Chiral
     }
+}
 
+impl ShapeTerm for CorticalChirality {
     #[inline]
     fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_turned_perimeter_gradient(shape.perimeter * coefficient);
-    }
-
-    fn energy<S: Scalar>(&self, _shape: Shape<S>) -> Option<S> {
-        None
     }
 }

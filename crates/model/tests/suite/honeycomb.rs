@@ -2,7 +2,7 @@
 
 use crate::samples::{honeycomb, largest, parameters, periodic};
 use voronudge_geometry::{Error, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{Model, Parameters, Term, jacobian, stress, velocities};
+use voronudge_model::{ForceTerm, Model, Parameters, Parity, Term, jacobian, stress, velocities};
 
 /// Perimeter 6d of a regular hexagon of unit area, `3√3/2 d² = 1`.
 fn hexagon_perimeter() -> f64 {
@@ -25,10 +25,11 @@ fn stretched(p: &Parameters<f64>, x: f64, y: f64) -> Result<[[f64; 2]; 2], Error
 }
 
 #[test]
-fn no_term_moves_a_honeycomb() -> Result<(), Error> {
+fn no_term_between_cells_moves_a_honeycomb() -> Result<(), Error> {
     let (positions, lengths) = honeycomb(10, 8);
     let tessellation = Tessellation::new(&positions, periodic(lengths)?)?;
-    for term in Term::all() {
+    let acts_within = |term: &Term| term.conserves_momentum() && term.parity() != Parity::Oriented;
+    for term in Term::all().into_iter().filter(acts_within) {
         let v = velocities(&tessellation, &positions, &Model::single(term));
         assert!(largest(&v) < 1e-13, "{term:?}");
     }

@@ -1,5 +1,6 @@
 //! The physics of the model: derivatives, symmetries, and limits known on paper.
 
+mod effects;
 mod gradients;
 mod honeycomb;
 mod jacobian;

@@ -1,0 +1,144 @@
+//! Effects beyond the base model, by their id.
+
+use crate::failure::Failure;
+use clap::Args;
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, areas};
+use voronudge_model::{Effect, Environment, Model};
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Model")]
+pub(crate) struct EffectArguments {
+    /// An effect beyond the base model with its coefficients, in units of the data: `drift=0.1,0`. May be repeated. The
+    /// ids are listed in docs/effects.md.
+    #[arg(long = "effect", value_name = "ID=VALUE[,VALUE…]", allow_hyphen_values = true)]
+    effects: Vec<String>,
+}
+
+/// Effects with their coefficients.
+#[derive(Debug, Clone, Default, Serialize)]
+#[serde(transparent)]
+pub(crate) struct ChosenEffects(BTreeMap<&'static str, Vec<f64>>);
+
+impl EffectArguments {
+    /// The effects as typed: each known, with finite coefficients.
+    pub fn resolve(&self) -> Result<ChosenEffects, Failure> {
+        let mut chosen = ChosenEffects::default();
+        for text in &self.effects {
+            let fault = |message: String| Failure::new(format!("--effect {text}: {message}"));
+            let Some((id, values)) = text.split_once('=') else {
+                return Err(fault("no coefficient is given".into()).with_hint("write --effect ID=VALUE"));
+            };
+            let Some(effect) = Effect::from_id(id) else {
+                return Err(fault(format!("there is no effect {id:?}")).with_hint(suggestion(id)));
+            };
+            let values =
+                values.split(',').map(|value| value.trim().parse().ok().filter(|v: &f64| v.is_finite()));
+            let values = values.collect::<Option<Vec<f64>>>().ok_or_else(|| {
+                fault("a coefficient is not a finite number".into())
+                    .with_hint("separate several coefficients by commas, as in drift=0.1,-0.2")
+            })?;
+            if chosen.0.insert(effect.id, values).is_some() {
+                return Err(
+                    fault("the effect is given twice".into()).with_hint("give all its coefficients at once")
+                );
+            }
+        }
+        Ok(chosen)
+    }
+}
+
+impl ChosenEffects {
+    pub fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// The model with these effects in an environment.
+    pub fn add_to(
+        &self,
+        model: Model<f64>,
+        environment: Environment,
+        domain: Domain,
+    ) -> Result<Model<f64>, Failure> {
+        let mut model = model;
+        for (id, values) in &self.0 {
+            let fault = |message: String| Failure::new(format!("--effect {id}: {message}"));
+            let Some(effect) = Effect::from_id(id) else { continue };
+            let columns = effect.columns(&environment, domain).map_err(|reason| {
+                fault(reason.into()).with_hint("docs/effects.md tells what each effect needs")
+            })?;
+            if columns.len() != values.len() {
+                return Err(fault(format!(
+                    "{} coefficients are given, but there are {}",
+                    values.len(),
+                    columns.len()
+                ))
+                .with_hint(format!("the coefficients are: {}", effect.coefficients)));
+            }
+            for (column, value) in columns.into_iter().zip(values) {
+                model = model.with(column, *value);
+            }
+        }
+        Ok(model.within(&Arc::new(environment)))
+    }
+}
+
+/// What effects may refer to at given positions: `ℓ_0` is the root of the mean area (of the box per cell, or of the cells
+/// that count), the origin the middle of the box or the mean position of these cells.
+pub(crate) fn environment(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    view: &FieldOfView,
+) -> Result<Environment, Failure> {
+    let (origin, area) = match tessellation.domain() {
+        Domain::Periodic(cell_box) => {
+            let [x, y] = cell_box.lengths();
+            (Vector::new(0.5 * x, 0.5 * y), cell_box.area() / positions.len() as f64)
+        }
+        Domain::Open => {
+            let counted: Vec<usize> = (0..positions.len()).filter(|&cell| view.counts(cell)).collect();
+            let areas = areas(tessellation, positions);
+            let number = counted.len().max(1) as f64;
+            let middle = counted.iter().map(|&cell| positions[cell]).sum::<Vector<f64>>() / number;
+            (middle, counted.iter().map(|&cell| areas[cell]).sum::<f64>() / number)
+        }
+    };
+    let environment = Environment::default().about(origin).with_cell_size(area.sqrt());
+    let beyond = (0..positions.len()).map(|cell| !view.counts(cell)).collect();
+    environment
+        .and_then(|environment| match tessellation.domain() {
+            Domain::Open => environment.with_beyond_edge(beyond),
+            Domain::Periodic(_) => Ok(environment),
+        })
+        .map_err(|error| Failure::new(error.to_string()).with_hint("check the positions"))
+}
+
+/// The id nearest to what was typed, and all.
+fn suggestion(typed: &str) -> String {
+    let nearest = Effect::all().iter().map(|effect| (distance(typed, effect.id), effect.id)).min();
+    let ids: Vec<&str> = Effect::all().iter().map(|effect| effect.id).collect();
+    match nearest {
+        Some((distance, id)) if distance <= 1 + typed.len() / 3 => {
+            format!("did you mean {id}? The effects are {}", ids.join(", "))
+        }
+        _ => format!("the effects are {}", ids.join(", ")),
+    }
+}
+
+/// Number of letters to insert, delete or replace (Levenshtein).
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, letter) in a.chars().enumerate() {
+        let mut diagonal = i;
+        row[0] = i + 1;
+        for (j, other) in b.iter().enumerate() {
+            let replaced = diagonal + usize::from(letter != *other);
+            diagonal = row[j + 1];
+            row[j + 1] = replaced.min(diagonal + 1).min(row[j] + 1);
+        }
+    }
+    row[b.len()]
+}

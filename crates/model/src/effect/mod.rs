@@ -1,0 +1,227 @@
+//! The catalogue of effects that the base model may lack: one file for each.
+//!
+//! An effect is a set of [`Column`]s, terms or responses, that belong to one cause. Its file holds the types with their
+//! formulas and its entry in the catalogue. The list of all effects is at the end of this file.
+
+mod alignment;
+mod alpha_adhesion;
+mod alpha_area;
+mod alpha_gradient;
+mod alpha_pressure;
+mod boundary_tension;
+mod boundary_torque;
+mod cell_centre_chirality;
+mod centroid_bias;
+mod chiral_edge_tension;
+mod coordination_tension;
+mod density_gradient;
+mod drift;
+mod edge_tension;
+mod equivariant_expansion;
+mod expansion;
+mod external_field;
+mod flow_blur;
+mod flow_gain;
+mod friction_gradient;
+mod internal_drag;
+mod kp_gradient;
+mod label_parameter;
+mod nematic_stress;
+mod nonlinear_area;
+mod nonlinear_contractility;
+mod odd_diffusion;
+mod odd_nematic_stress;
+mod odd_pair_force;
+mod p0_gradient;
+mod persistence;
+mod profile;
+mod quadratic_distortion;
+mod rotation;
+mod shear;
+mod short_range_repulsion;
+mod size_friction;
+mod smooth_field;
+mod time_lag;
+
+pub use alignment::Alignment;
+pub use alpha_adhesion::AlphaAdhesion;
+pub use alpha_area::AlphaArea;
+pub use alpha_gradient::ChiralityGradient;
+pub use alpha_pressure::AlphaPressure;
+pub use boundary_tension::BoundaryTension;
+pub use boundary_torque::BoundaryTorque;
+pub use cell_centre_chirality::CellCentreChirality;
+pub use centroid_bias::CentroidBias;
+pub use chiral_edge_tension::ChiralEdgeTension;
+pub use coordination_tension::CoordinationTension;
+pub use density_gradient::DensityGradient;
+pub use drift::Drift;
+pub use edge_tension::EdgeTension;
+pub use equivariant_expansion::{PairDirection, RadialShell};
+pub use expansion::Expansion;
+pub use external_field::ExternalField;
+pub use flow_blur::FlowBlur;
+pub use flow_gain::FlowGain;
+pub use friction_gradient::FrictionGradient;
+pub use internal_drag::InternalDrag;
+pub use kp_gradient::ContractilityGradient;
+pub use label_parameter::{LabelParameter, LabelledParameter};
+pub use nematic_stress::NematicStress;
+pub use nonlinear_area::NonlinearArea;
+pub use nonlinear_contractility::NonlinearContractility;
+pub use odd_diffusion::OddDiffusion;
+pub use odd_nematic_stress::OddNematicStress;
+pub use odd_pair_force::OddPairForce;
+pub use p0_gradient::AdhesionGradient;
+pub use persistence::Persistence;
+pub use profile::{Phase, Profile, Wave};
+pub use quadratic_distortion::PolynomialFlow;
+pub use rotation::Rotation;
+pub use shear::Shear;
+pub use short_range_repulsion::ShortRangeRepulsion;
+pub use size_friction::SizeFriction;
+pub use smooth_field::{Polarisation, WaveFlow};
+pub use time_lag::TimeLag;
+
+use crate::{Environment, Parity, Response, Term};
+use voronudge_geometry::Domain;
+
+/// One coefficient's contribution to the velocities.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Column {
+    /// A force term.
+    Term(Term),
+    /// A response to the velocities of the terms.
+    Response(Response),
+}
+
+/// What an effect stands for.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Kind {
+    /// Something that the tissue does.
+    Mechanism,
+    /// Something that the measurement does.
+    Observation,
+    /// A form that fits without saying why; never named as a mechanism.
+    Description,
+}
+
+/// The unit of a coefficient, as powers of a length and of a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Unit {
+    /// Power of the unit of length.
+    pub length: i8,
+    /// Power of the unit of time.
+    pub time: i8,
+}
+
+/// Another effect, or a parameter of the base model, that gives nearly the same velocities.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Alias {
+    /// Its id, or the name of the parameter.
+    pub of: &'static str,
+    /// The measurement that tells the two apart.
+    pub told_apart_by: &'static str,
+}
+
+/// The columns of an effect, or why it cannot be tested.
+type Columns = fn(&Environment, Domain) -> Result<Vec<Column>, &'static str>;
+
+/// An entry of the catalogue.
+#[derive(Debug, Clone, Copy)]
+pub struct Effect {
+    /// Name in reports and on the command line.
+    pub id: &'static str,
+    /// Formula as plain text.
+    pub formula: &'static str,
+    /// What it stands for, in one plain sentence.
+    pub meaning: &'static str,
+    /// What it stands for.
+    pub kind: Kind,
+    /// What a reflection does to it.
+    pub parity: Parity,
+    /// Its coefficients, in the order of the columns.
+    pub coefficients: &'static str,
+    /// The unit of its coefficients.
+    pub unit: Unit,
+    /// Near aliases.
+    pub aliases: &'static [Alias],
+    columns: Columns,
+}
+
+impl Effect {
+    /// The columns, one for each coefficient.
+    ///
+    /// # Errors
+    /// The reason why the effect cannot be tested here, such as `no labels were given`.
+    pub fn columns(&self, environment: &Environment, domain: Domain) -> Result<Vec<Column>, &'static str> {
+        (self.columns)(environment, domain)
+    }
+
+    /// Whether the effect can be tested.
+    ///
+    /// # Errors
+    /// The reason why not.
+    pub fn applies(&self, environment: &Environment, domain: Domain) -> Result<(), &'static str> {
+        self.columns(environment, domain).map(|_| ())
+    }
+
+    /// All effects of the catalogue.
+    pub fn all() -> &'static [Self] {
+        CATALOGUE
+    }
+
+    /// The effect of an id.
+    pub fn from_id(id: &str) -> Option<&'static Self> {
+        CATALOGUE.iter().find(|effect| effect.id == id)
+    }
+}
+
+fn open_only(domain: Domain) -> Result<(), &'static str> {
+    match domain {
+        Domain::Open => Ok(()),
+        Domain::Periodic(_) => Err("it is not periodic, and the tissue is in a periodic box"),
+    }
+}
+
+/// Every effect, in the order of the documentation.
+static CATALOGUE: &[Effect] = &[
+    drift::EFFECT,
+    expansion::EFFECT,
+    rotation::EFFECT,
+    shear::EFFECT,
+    quadratic_distortion::EFFECT,
+    density_gradient::EFFECT,
+    odd_diffusion::EFFECT,
+    alpha_adhesion::EFFECT,
+    alpha_pressure::EFFECT,
+    alpha_area::EFFECT,
+    cell_centre_chirality::EFFECT,
+    p0_gradient::EFFECT,
+    kp_gradient::EFFECT,
+    alpha_gradient::EFFECT,
+    friction_gradient::EFFECT,
+    size_friction::EFFECT,
+    nematic_stress::EFFECT,
+    odd_nematic_stress::EFFECT,
+    short_range_repulsion::EFFECT,
+    odd_pair_force::EFFECT,
+    internal_drag::EFFECT,
+    edge_tension::EFFECT,
+    chiral_edge_tension::EFFECT,
+    coordination_tension::EFFECT,
+    nonlinear_contractility::EFFECT,
+    nonlinear_area::EFFECT,
+    persistence::EFFECT,
+    alignment::EFFECT,
+    flow_blur::EFFECT,
+    flow_gain::EFFECT,
+    time_lag::EFFECT,
+    centroid_bias::EFFECT,
+    label_parameter::EFFECT,
+    external_field::EFFECT,
+    boundary_tension::EFFECT,
+    boundary_torque::EFFECT,
+    smooth_field::EFFECT,
+    equivariant_expansion::EFFECT,
+];
