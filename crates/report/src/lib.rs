@@ -41,5 +41,5 @@ pub use before_after::BeforeAfter;
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use page::{InferPage, Uncertainty};
+pub use page::{DiscoverFigures, DiscoverPage, InferPage, Uncertainty};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

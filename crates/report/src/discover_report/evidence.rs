@@ -45,6 +45,15 @@ pub struct NoiseBudget {
     pub unexplained: f64,
 }
 
+impl NoiseBudget {
+    /// Whether any of the shares is known.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        let Self { position_noise, velocity_noise, base, effects, unexplained, .. } = *self;
+        [position_noise, velocity_noise, base, effects, unexplained].into_iter().any(|share| share > 0.0)
+    }
+}
+
 /// What effects with a memory were predicted from. They may use velocities of earlier intervals
 /// only that share no position with the interval that is explained.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize)]

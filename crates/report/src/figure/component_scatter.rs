@@ -62,7 +62,8 @@ pub(super) fn annotate(chart: &mut Chart, outside: usize, y: f64) {
         chart.svg.text([left + 24.0, y], label, TextStyle::label(Anchor::Start));
     }
     if outside > 0 {
-        let text = format!("{outside} points outside the axes");
+        let noun = if outside == 1 { "point" } else { "points" };
+        let text = format!("{outside} {noun} outside the axes");
         chart.svg.text([right - 10.0, y], &text, TextStyle::quiet(Anchor::End));
     }
 }
