@@ -214,12 +214,17 @@ fn unextended(mut report: DiscoverReport) -> DiscoverReport {
     report.description = None;
     report.selected.clear();
     for candidate in &mut report.ranking {
-        if matches!(candidate.status, CandidateStatus::Selected | CandidateStatus::Alias) {
-            candidate.status = CandidateStatus::BelowThreshold;
+        if candidate.statistic > 6.0 {
+            if candidate.status != CandidateStatus::Description {
+                candidate.status = CandidateStatus::BelowThreshold;
+            }
+            candidate.statistic = 2.2;
+            candidate.p = 0.14;
             candidate.size = 1.2;
             candidate.size_ci95 = Some([0.0, 3.1]);
             candidate.p_adjusted = 0.74;
-            candidate.reason = "adjusted p 0.74".into();
+            candidate.gain = Some(Gain { value: -0.003, standard_error: 0.004 });
+            candidate.reason = "adjusted p above 0.05".into();
         }
     }
     report

@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::super::Figure;
 use super::super::parameter_table::{TableRow, parameter_rows};
-use super::super::words::{listed, noise_source, with_error};
+use super::super::words::{effect_name, noise_source, with_error};
 use crate::discover_report::{DiscoverReport, ModelFit, ModelNmse};
 use crate::figure::{Emphasis, ErrorBar, error_bars_with_floor};
 use crate::numbers::{significant, unit_text};
@@ -53,8 +53,9 @@ fn columns(report: &DiscoverReport) -> Vec<Column<'_>> {
     let mut push = |(name, floor, chi_square), nmse| columns.push(Column { name, nmse, floor, chi_square });
     push(column("base".into(), &models.before), &models.before.nmse);
     if report.is_extended() {
-        let added = listed(report.selected.iter().map(|effect| &effect.effect), "+");
-        push(column(format!("base + {added}"), &models.after), &models.after.nmse);
+        let added = report.selected.iter().map(|effect| effect_name(&effect.effect));
+        let name = std::iter::once("base".to_owned()).chain(added).collect::<Vec<_>>().join(" + ");
+        push(column(name, &models.after), &models.after.nmse);
     }
     if let Some(fit) = &report.description {
         push(("base + generic description".into(), fit.noise_floor_nmse, fit.chi_square_per_dof), &fit.nmse);
