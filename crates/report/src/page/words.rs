@@ -70,7 +70,7 @@ pub(super) fn percent(share: f64) -> String {
 
 /// A probability; the very small ones are not told apart.
 pub(super) fn probability(p: f64) -> String {
-    if (0.0..1e-4).contains(&p) { "< 0.0001".to_owned() } else { significant(p, 2) }
+    if (0.0..1e-4).contains(&p) { "<\u{a0}0.0001".to_owned() } else { significant(p, 2) }
 }
 
 /// A sentence as markup: symbols with subscripts, names of effects as words, everything escaped.
@@ -116,8 +116,8 @@ mod tests {
     fn errors_decide_the_digits() {
         assert_eq!(with_error(0.31234, 0.0213), "0.312 ± 0.021");
         assert_eq!(with_error(0.31234, f64::NAN), "0.312");
-        assert_eq!(probability(0.0), "< 0.0001");
-        assert_eq!(percent(0.318), "32 %");
+        assert_eq!(probability(0.0), "<\u{a0}0.0001");
+        assert_eq!(percent(0.471), "47 %");
     }
 
     #[test]

@@ -9,6 +9,9 @@ use crate::discover_report::{DiscoverReport, ModelFit, ModelNmse};
 use crate::figure::{Emphasis, ErrorBar, error_bars_with_floor};
 use crate::numbers::{significant, unit_text};
 
+/// Longest name of a model that stands beside its bar, in letters.
+const LABEL: usize = 24;
+
 /// Errors of the models side by side.
 #[derive(Serialize)]
 pub(super) struct Comparison {
@@ -27,10 +30,37 @@ struct ErrorRow {
 
 /// One column of the table.
 struct Column<'a> {
+    model: Model,
     name: String,
     nmse: &'a ModelNmse,
     floor: f64,
     chi_square: f64,
+}
+
+/// Which model a column is about.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Model {
+    Base,
+    Extended,
+    Description,
+}
+
+impl Model {
+    /// Its name where there is no room for the effects.
+    fn short_name(self) -> &'static str {
+        match self {
+            Self::Base => "base",
+            Self::Extended => "base + effects",
+            Self::Description => "base + description",
+        }
+    }
+}
+
+impl<'a> Column<'a> {
+    fn of(model: Model, name: String, fit: &'a ModelFit) -> Self {
+        let ModelFit { nmse, noise_floor_nmse, chi_square_per_dof, .. } = fit;
+        Self { model, name, nmse, floor: *noise_floor_nmse, chi_square: *chi_square_per_dof }
+    }
 }
 
 impl Comparison {
@@ -45,21 +75,20 @@ impl Comparison {
 }
 
 fn columns(report: &DiscoverReport) -> Vec<Column<'_>> {
-    let column = |name: String, fit: &'_ ModelFit| -> (String, f64, f64) {
-        (name, fit.noise_floor_nmse, fit.chi_square_per_dof)
-    };
     let models = &report.models;
-    let mut columns = Vec::new();
-    let mut push = |(name, floor, chi_square), nmse| columns.push(Column { name, nmse, floor, chi_square });
-    push(column("base".into(), &models.before), &models.before.nmse);
+    let mut columns = vec![Column::of(Model::Base, "base".into(), &models.before)];
     if report.is_extended() {
         let added = report.selected.iter().map(|effect| effect_name(&effect.effect));
         let name = std::iter::once("base".to_owned()).chain(added).collect::<Vec<_>>().join(" + ");
-        push(column(name, &models.after), &models.after.nmse);
+        columns.push(Column::of(Model::Extended, name, &models.after));
     }
-    if let Some(fit) = &report.description {
-        push(("base + generic description".into(), fit.noise_floor_nmse, fit.chi_square_per_dof), &fit.nmse);
-    }
+    columns.extend(report.description.as_ref().map(|fit| Column {
+        model: Model::Description,
+        name: "base + generic description".into(),
+        nmse: &fit.nmse,
+        floor: fit.noise_floor_nmse,
+        chi_square: fit.chi_square_per_dof,
+    }));
     columns
 }
 
@@ -92,7 +121,7 @@ fn rows(columns: &[Column<'_>]) -> Vec<ErrorRow> {
     rows.extend([
         row(
             "what noise alone leaves",
-            "no model gets below it; cells held out can come close".into(),
+            "but for chance, no prediction of new data gets below it".into(),
             &|column| number(column.floor),
         ),
         row("error at measured positions", "all cells, without their nudges".into(), &|column| {
@@ -123,18 +152,16 @@ fn error_figure(columns: &[Column<'_>]) -> Figure {
     let is_held_out = columns.first().is_some_and(|base| base.nmse.held_out().is_some());
     let bar = |column: &Column<'_>| {
         let held_out = column.nmse.held_out().filter(|_| is_held_out);
-        let label = if column.name.chars().count() <= 24 {
-            column.name.clone()
-        } else if column.name.ends_with("description") {
-            "base + description".into()
-        } else {
-            "base + effects".into()
-        };
+        let label =
+            if column.name.chars().count() <= LABEL { &column.name } else { column.model.short_name() };
         ErrorBar {
-            label,
+            label: label.to_owned(),
             nmse: held_out.map_or(column.nmse.un_nudged, |error| error.value),
             standard_error: held_out.map(|error| error.standard_error),
-            emphasis: if column.name.ends_with("description") { Emphasis::Quiet } else { Emphasis::Main },
+            emphasis: match column.model {
+                Model::Base | Model::Extended => Emphasis::Main,
+                Model::Description => Emphasis::Quiet,
+            },
         }
     };
     let bars: Vec<ErrorBar> = columns.iter().map(bar).collect();
