@@ -3,7 +3,7 @@
 use crate::map::{Legend, Viewport};
 use crate::numbers::{nice_below, quantile, significant};
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::{FrameView, is_finite, length};
+use crate::view::{CellView, FrameView, is_finite, length};
 
 /// How long a vector is drawn: units of length on the map per unit of the vector.
 ///
@@ -25,6 +25,15 @@ impl ArrowScale {
         let measured = cells().filter_map(|cell| cell.measured).map(length);
         let predicted = cells().filter_map(|cell| cell.predicted).map(length);
         Self::of_speeds(measured, predicted, typical_spacing(frames)?)
+    }
+
+    /// The scale at which the 95th percentile of the residual speeds is 1.3 cell spacings long. `None`
+    /// where no residual is known.
+    #[must_use]
+    pub fn residuals(frames: &[FrameView]) -> Option<Self> {
+        let cells = frames.iter().flat_map(|frame| &frame.cells);
+        let speeds = cells.filter_map(CellView::residual).map(length);
+        Self::of_speeds(speeds, std::iter::empty(), typical_spacing(frames)?)
     }
 
     /// The scale at which the 95th percentile of the `measured` (failing those, `predicted`) speeds

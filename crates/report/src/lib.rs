@@ -1,12 +1,13 @@
 //! Figures, HTML pages and report files from results.
 //!
 //! This crate knows plain numbers only: no model, no fit, no files. The command line fills
-//! [`FrameView`] and [`InferReport`] and gets back text:
+//! [`FrameView`] and [`InferReport`] or [`DiscoverReport`] and gets back text:
 //!
 //! - [`figure`]: one function per figure, each a stand-alone SVG. Charts stand on [`chart::Chart`]
 //!   (axes by plotters), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
 //! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
-//! - [`infer_report`]: what `report.json` holds, described by [`INFER_SCHEMA`].
+//! - [`infer_report`], [`discover_report`]: what `report.json` holds, described by [`INFER_SCHEMA`] and
+//!   [`DISCOVER_SCHEMA`].
 //!
 //! ```
 //! use voronudge_report::figure::{ErrorBar, Emphasis, error_bars};
@@ -18,10 +19,12 @@
 //! ```
 
 pub mod arrows;
+mod before_after;
 pub mod chart;
 pub mod colour;
 pub mod colour_bar;
 pub mod contour;
+pub mod discover_report;
 mod error;
 pub mod figure;
 pub mod histogram;
@@ -34,7 +37,9 @@ pub mod page;
 pub mod svg;
 mod view;
 
+pub use before_after::BeforeAfter;
+pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use page::{InferPage, Uncertainty};
+pub use page::{DiscoverFigures, DiscoverPage, InferPage, Uncertainty};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

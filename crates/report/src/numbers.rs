@@ -137,7 +137,8 @@ pub fn unit_text(unit: &str) -> String {
         }
     }
     text.push_str(unit_word(&word));
-    for (typed, printed) in [("^-1", "⁻¹"), ("^-2", "⁻²"), ("^2", "²"), ("^3", "³"), ("*", "·")] {
+    for (typed, printed) in [("^-1", "⁻¹"), ("^-2", "⁻²"), ("^2", "²"), ("^3", "³"), ("^4", "⁴"), ("*", "·")]
+    {
         text = text.replace(typed, printed);
     }
     text

@@ -3,6 +3,7 @@
 use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::BLUE;
+use crate::key::KeyEntry;
 use crate::numbers::significant;
 use crate::svg::{Anchor, PathData, TextStyle};
 
@@ -10,6 +11,9 @@ use crate::svg::{Anchor, PathData, TextStyle};
 const LONGEST: f64 = 2.5;
 /// Height of a bar's row in pixels.
 const ROW: f64 = 34.0;
+
+/// The line at what noise alone leaves.
+const FLOOR: &str = r##"stroke="#d55e00" stroke-width="1.8""##;
 
 /// One bar.
 #[derive(Debug, Clone, PartialEq)]
@@ -37,6 +41,13 @@ pub enum Emphasis {
 /// finite are left out.
 #[must_use]
 pub fn error_bars(bars: &[ErrorBar]) -> String {
+    error_bars_with_floor(bars, None)
+}
+
+/// [`error_bars`] with a line at what measurement noise alone leaves (`floor`, where it is finite):
+/// no model gets below it.
+#[must_use]
+pub fn error_bars_with_floor(bars: &[ErrorBar], floor: Option<f64>) -> String {
     let title = "normalised mean square error";
     let bars: Vec<&ErrorBar> = bars.iter().filter(|bar| bar.nmse.is_finite()).collect();
     let longest = bars.iter().map(|bar| bar.nmse).fold(0.0, f64::max);
@@ -61,10 +72,16 @@ pub fn error_bars(bars: &[ErrorBar]) -> String {
     }
     let ends = [[1.0, 0.0], [1.0, count]];
     chart.curve(&ends, r##"stroke="#222" stroke-width="1.2" stroke-dasharray="5 3""##);
+    let floor = floor.filter(|&floor| chart.contains([floor, 0.0]));
+    if let Some(floor) = floor {
+        chart.curve(&[[floor, 0.0], [floor, count]], FLOOR);
+    }
     for (row, bar) in bars.iter().enumerate() {
         draw_number(&mut chart, bar, (middle(row), end));
     }
-    chart.finish()
+    let label = |floor: f64| format!("noise alone: {}", significant(floor, 2));
+    let key: Vec<KeyEntry> = floor.map(|floor| KeyEntry::line(&label(floor), FLOOR)).into_iter().collect();
+    chart.finish_with_key(&key)
 }
 
 fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {

@@ -35,12 +35,26 @@ impl FlowMap<'_> {
     /// 1.3 grid spacings long, the same for all `flows`. `None` where nothing moves.
     #[must_use]
     pub fn scale(flows: &[Self]) -> Option<ArrowScale> {
-        let speeds = |of: fn(&Self) -> &[Option<[f64; 2]>]| {
-            let all = flows.iter().flat_map(move |flow| of(flow).iter().flatten());
-            all.map(|&velocity| length(velocity))
-        };
+        let speeds = |field: VelocityField| flows.iter().flat_map(move |flow| flow.speeds(field));
         let spacing = quantile(flows.iter().filter_map(FlowMap::spacing), 0.5)?;
-        ArrowScale::of_speeds(speeds(|flow| &flow.measured), speeds(|flow| &flow.predicted), spacing)
+        ArrowScale::of_speeds(speeds(VelocityField::Measured), speeds(VelocityField::Predicted), spacing)
+    }
+
+    /// The scale at which the 95th percentile of the residual speeds is 1.3 grid spacings long, the
+    /// same for all `flows`. `None` where no residual is known.
+    #[must_use]
+    pub fn residual_scale<'b>(flows: impl Iterator<Item = &'b Self> + Clone) -> Option<ArrowScale>
+    where
+        Self: 'b,
+    {
+        let spacing = quantile(flows.clone().filter_map(FlowMap::spacing), 0.5)?;
+        let speeds = flows.flat_map(|flow| flow.speeds(VelocityField::Residual));
+        ArrowScale::of_speeds(speeds, std::iter::empty(), spacing)
+    }
+
+    /// The known speeds of one field.
+    fn speeds(&self, field: VelocityField) -> impl Iterator<Item = f64> + '_ {
+        self.points(field).filter_map(|(_, velocity)| velocity).map(length)
     }
 
     /// Typical distance between grid points.
@@ -52,10 +66,9 @@ impl FlowMap<'_> {
         quantile(all, 0.5).filter(|&spacing| spacing > 0.0)
     }
 
-    /// The grid points and the tips of all arrows but the longest, the same for all fields.
-    fn reach(&self, scale: &ArrowScale) -> Vec<[f64; 2]> {
-        let fields = [VelocityField::Measured, VelocityField::Predicted];
-        let arrows = fields.into_iter().flat_map(|field| self.points(field));
+    /// The grid points and the tips of all arrows of some fields but the longest.
+    pub(super) fn reach(&self, fields: &[VelocityField], scale: &ArrowScale) -> Vec<[f64; 2]> {
+        let arrows = fields.iter().copied().flat_map(|field| self.points(field));
         let ends = arrows.flat_map(|(place, velocity)| {
             let velocity = velocity.filter(|&velocity| length(velocity) <= scale.reference);
             let tip = velocity.map(|[x, y]| [place[0] + x * scale.stretch, place[1] + y * scale.stretch]);
@@ -85,14 +98,25 @@ pub fn flow_map(
     scale: Option<&ArrowScale>,
     units: &Units,
 ) -> String {
+    let fields = [VelocityField::Measured, VelocityField::Predicted];
+    let view = scale.and_then(|scale| Viewport::around_with(flow.frame, &flow.reach(&fields, scale)));
+    match (view, scale) {
+        (Some(view), Some(scale)) => draw_flow(flow, view, (field, scale), units),
+        _ => no_data(field.caption()),
+    }
+}
+
+/// Draws the arrows of one field as `view` shows them, and the legend.
+pub(super) fn draw_flow(
+    flow: &FlowMap<'_>,
+    view: Viewport,
+    (field, scale): (VelocityField, &ArrowScale),
+    units: &Units,
+) -> String {
     let caption = field.caption();
-    let known = flow.points(field).any(|(_, velocity)| velocity.is_some());
-    let (Some(scale), true) = (scale, known) else {
+    if flow.points(field).all(|(_, velocity)| velocity.is_none()) {
         return no_data(caption);
-    };
-    let Some(view) = Viewport::around_with(flow.frame, &flow.reach(scale)) else {
-        return no_data(caption);
-    };
+    }
     let mut map = Map::with_view(view, flow.frame, caption);
     map.outlines(flow.frame);
     let (mut arrows, mut crosses, mut missing) = (Arrows::default(), PathData::new(), 0);

@@ -5,30 +5,43 @@
 
 mod bootstrap_histogram;
 mod cell_map;
+mod component_scatter;
+mod correlation_function;
+mod effect_ranking;
 mod error_bars;
 mod flow_map;
 mod landscape;
 mod method_comparison;
+mod noise_budget;
 mod nudge_histogram;
 mod nudge_map;
 mod objective_trace;
+mod outlier_map;
 mod parameter_intervals;
+mod partial_regression;
 mod predicted_against_measured;
 mod profile;
+mod residual_maps;
 mod velocity_map;
 
 pub use bootstrap_histogram::{BootstrapHistogram, bootstrap_histogram};
 pub use cell_map::{CellScalar, cell_map};
-pub use error_bars::{Emphasis, ErrorBar, error_bars};
+pub use correlation_function::{Correlation, CorrelationFunction, CorrelationPoint, correlation_function};
+pub use effect_ranking::effect_ranking;
+pub use error_bars::{Emphasis, ErrorBar, error_bars, error_bars_with_floor};
 pub use flow_map::{FlowMap, flow_map};
 pub use landscape::{Landscape, LandscapeAxis, landscape};
 pub use method_comparison::{MethodComparison, MethodSeries, method_comparison};
+pub use noise_budget::noise_budget;
 pub use nudge_histogram::{NudgeHistogram, nudge_histogram};
 pub use nudge_map::nudge_map;
 pub use objective_trace::{ObjectiveTrace, objective_trace};
+pub use outlier_map::{Outlier, Suspicion, outlier_map};
 pub use parameter_intervals::{Estimate, ParameterRow, parameter_intervals};
+pub use partial_regression::{PartialPoint, PartialRegression, partial_regression};
 pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
 pub use profile::{ProfileCurve, profile};
+pub use residual_maps::{residual_flow_maps, residual_maps};
 pub use velocity_map::{VelocityField, velocity_map};
 
 use crate::svg::{Anchor, Svg, TextStyle};

@@ -7,10 +7,12 @@ use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Height of a row in pixels.
 const ROW: f64 = 50.0;
-/// Left and right end of the small axes in pixels.
-const AXIS: [f64; 2] = [86.0, 392.0];
-/// Width of the figure in pixels.
-const WIDTH: f64 = 540.0;
+/// Least distance of the small axes from the left, their length, and the room behind them, in pixels.
+const LEFT: f64 = 86.0;
+const AXIS: f64 = 306.0;
+const RIGHT: f64 = 148.0;
+/// About the width of a letter of a symbol in pixels.
+const LETTER: f64 = 7.4;
 
 /// Whether a parameter was fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -61,26 +63,31 @@ pub fn parameter_intervals(rows: &[ParameterRow]) -> String {
     if rows.is_empty() {
         return no_data(title);
     }
-    let mut svg = Svg::new([WIDTH, ROW * rows.len() as f64 + 30.0], title);
-    legend(&mut svg);
+    let longest = rows.iter().map(|row| row.symbol.chars().count()).max().unwrap_or(0);
+    let left = LEFT.max(18.0 + LETTER * longest as f64);
+    let axis = [left, left + AXIS];
+    let mut svg = Svg::new([axis[1] + RIGHT, ROW * rows.len() as f64 + 30.0], title);
+    legend(&mut svg, &rows, axis);
     for (index, row) in rows.iter().enumerate() {
-        draw_row(&mut svg, row, 30.0 + ROW * index as f64);
+        draw_row(&mut svg, row, (axis, 30.0 + ROW * index as f64));
     }
     svg.finish()
 }
 
-fn legend(svg: &mut Svg) {
-    let y = 12.0;
-    interval_mark(svg, [Some(86.0), Some(110.0)], [98.0, y]);
-    svg.text([117.0, y + 4.0], "nudged, 95 % interval", TextStyle::quiet(Anchor::Start));
-    cross(svg, [262.0, y]);
-    svg.text([272.0, y + 4.0], "naive (no nudges)", TextStyle::quiet(Anchor::Start));
+fn legend(svg: &mut Svg, rows: &[&ParameterRow], axis: [f64; 2]) {
+    let (x, y) = (axis[0], 12.0);
+    interval_mark(svg, [Some(x), Some(x + 24.0)], (axis, [x + 12.0, y]));
+    svg.text([x + 31.0, y + 4.0], "nudged, 95 % interval", TextStyle::quiet(Anchor::Start));
+    if rows.iter().any(|row| row.naive.is_some()) {
+        cross(svg, [x + 176.0, y]);
+        svg.text([x + 186.0, y + 4.0], "naive (no nudges)", TextStyle::quiet(Anchor::Start));
+    }
 }
 
-fn draw_row(svg: &mut Svg, row: &ParameterRow, top: f64) {
+fn draw_row(svg: &mut Svg, row: &ParameterRow, (ends, top): ([f64; 2], f64)) {
     let y = top + 14.0;
     let baseline = top + 26.0;
-    let [left, right] = AXIS;
+    let [left, right] = ends;
     let range = row_range(row);
     let place = |value: f64| left + (value - range[0]) / (range[1] - range[0]) * (right - left);
     let symbol = TextStyle { size: 14.0, ..TextStyle::label(Anchor::Start) };
@@ -104,14 +111,14 @@ fn draw_row(svg: &mut Svg, row: &ParameterRow, top: f64) {
         svg.path(&zero, r##"fill="none" stroke="#222" stroke-width=".9" stroke-dasharray="3 2""##);
     }
     if let Some(naive) = row.naive.filter(|naive| naive.is_finite()) {
-        naive_mark(svg, naive, (range, [place(naive), y]));
+        naive_mark(svg, naive, (range, ends), [place(naive), y]);
     }
     let at = place(row.value);
     if row.estimate == Estimate::AtBound {
         wall(svg, [at, y]);
     }
     match row.interval() {
-        Some(ends) => interval_mark(svg, ends.map(|end| end.map(place)), [at, y]),
+        Some(interval) => interval_mark(svg, interval.map(|end| end.map(place)), (ends, [at, y])),
         None => fixed_mark(svg, [at, y]),
     }
     svg.text([right + 12.0, y + 4.0], &value_text(row), TextStyle::label(Anchor::Start));
@@ -142,8 +149,8 @@ fn row_range(row: &ParameterRow) -> [f64; 2] {
     [range[0] - room, range[1] + room]
 }
 
-fn naive_mark(svg: &mut Svg, naive: f64, (range, at): ([f64; 2], [f64; 2])) {
-    let [left, right] = AXIS;
+fn naive_mark(svg: &mut Svg, naive: f64, (range, axis): ([f64; 2], [f64; 2]), at: [f64; 2]) {
+    let [left, right] = axis;
     if (range[0]..=range[1]).contains(&naive) {
         cross(svg, at);
         return;
@@ -167,15 +174,15 @@ fn arrow_head(svg: &mut Svg, tip: [f64; 2], along: f64, colour: &str) {
 }
 
 /// Draws an interval whose ends stand at these places, none for an end without a bound.
-fn interval_mark(svg: &mut Svg, ends: [Option<f64>; 2], [at, y]: [f64; 2]) {
+fn interval_mark(svg: &mut Svg, ends: [Option<f64>; 2], (axis, [at, y]): ([f64; 2], [f64; 2])) {
     let mut line = PathData::new();
-    let [low, high] = [ends[0].unwrap_or(AXIS[0] + 4.0), ends[1].unwrap_or(AXIS[1] - 4.0)];
+    let [low, high] = [ends[0].unwrap_or(axis[0] + 4.0), ends[1].unwrap_or(axis[1] - 4.0)];
     line.line(&[[low, y], [high, y]]);
     for end in ends.into_iter().flatten() {
         line.line(&[[end, y - 4.0], [end, y + 4.0]]);
     }
     svg.path(&line, &format!(r#"fill="none" stroke="{BLUE}" stroke-width="1.8""#));
-    for (end, tip, along) in [(ends[0], AXIS[0], -8.0), (ends[1], AXIS[1], 8.0)] {
+    for (end, tip, along) in [(ends[0], axis[0], -8.0), (ends[1], axis[1], 8.0)] {
         if end.is_none() {
             arrow_head(svg, [tip, y], along, BLUE);
         }

@@ -62,11 +62,22 @@ pub fn velocity_map(
     scale: Option<&ArrowScale>,
     units: &Units,
 ) -> String {
-    let caption = field.caption();
-    let known = frame.cells.iter().any(|cell| field.of(cell).is_some());
-    let (Some(mut map), Some(scale), true) = (Map::new(frame, caption), scale, known) else {
-        return no_data(caption);
-    };
+    match (Map::new(frame, field.caption()), scale) {
+        (Some(map), Some(scale)) => draw_velocities(map, frame, (field, scale), units),
+        _ => no_data(field.caption()),
+    }
+}
+
+/// Draws the arrows of one field on an empty map, and its legend.
+pub(super) fn draw_velocities(
+    mut map: Map,
+    frame: &FrameView,
+    (field, scale): (VelocityField, &ArrowScale),
+    units: &Units,
+) -> String {
+    if frame.cells.iter().all(|cell| field.of(cell).is_none()) {
+        return no_data(field.caption());
+    }
     map.outlines(frame);
     let mut arrows = Arrows::default();
     for cell in &frame.cells {

@@ -4,6 +4,7 @@ use serde::Serialize;
 
 use super::parameter_table::{TableRow, parameter_rows};
 use super::uncertainty::{Known, Uncertainty};
+use super::words::{data, fit_status, mean_removed, noise_source, warnings};
 use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
 use crate::error::ReportError;
@@ -12,7 +13,7 @@ use crate::figure::{
     VelocityPair, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
     predicted_against_measured, velocity_map, velocity_pairs,
 };
-use crate::infer_report::{FitStatus, InferReport, MeanRemoved, NoiseSource};
+use crate::infer_report::InferReport;
 use crate::numbers::{NO_VALUE, significant};
 use crate::view::FrameView;
 
@@ -46,13 +47,13 @@ impl InferPage<'_> {
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
         let report = self.report;
-        let rows = parameter_rows(report);
+        let rows = parameter_rows(&report.parameters, Some(&report.naive));
         let head = PageHead {
             title: self.title,
             headline: self.headline,
             summary: self.summary,
             doubts: &report.fit.doubts,
-            warnings: warnings(report),
+            warnings: warnings(&report.run, &report.fit.doubts),
             cards: cards(report, &rows),
             run: &report.run,
         };
@@ -63,7 +64,7 @@ impl InferPage<'_> {
             noise_source: noise_source(report.noise.source),
             fit_status: fit_status(report.fit.status),
             velocity_unit: report.units.velocity_text(),
-            data: data(report),
+            data: data(report.flow.as_ref()),
             known: Known::new(report, &rows, self.uncertainty),
             parameters: rows.iter().map(TableRow::new).collect(),
             error_figure: self.error_figure(),
@@ -166,17 +167,6 @@ struct Context<'a> {
     panels: Vec<Panel>,
 }
 
-/// What velocities belong to.
-fn data(report: &InferReport) -> &'static str {
-    if report.flow.is_some() { "grid points" } else { "cells" }
-}
-
-/// The warnings that are no doubts, which have a box of their own.
-fn warnings(report: &InferReport) -> Vec<&str> {
-    let known = |text: &&str| !report.fit.doubts.iter().any(|doubt| doubt == text);
-    report.run.warnings.iter().map(String::as_str).filter(known).collect()
-}
-
 /// The grid points with a measured and a predicted velocity.
 fn flow_pairs(flow: &FlowMap<'_>) -> Vec<VelocityPair> {
     let both = flow.measured.iter().zip(&flow.predicted);
@@ -209,7 +199,7 @@ fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
     };
     cards.push(Card { label: "NMSE".into(), value: significant(nmse, 2), note: note.into() });
     cards.push(Card {
-        label: data(report).into(),
+        label: data(report.flow.as_ref()).into(),
         value: report.cells.used.to_string(),
         note: format!(
             "used in {}; {} left out",
@@ -246,29 +236,4 @@ fn bars(report: &InferReport) -> Vec<ErrorBar> {
         });
     }
     bars
-}
-
-fn mean_removed(mean: MeanRemoved) -> &'static str {
-    match mean {
-        MeanRemoved::None => "no mean velocity was removed",
-        MeanRemoved::PerFrame => "the median velocity of each frame was removed",
-        MeanRemoved::Overall => "the median velocity over all frames was removed",
-    }
-}
-
-fn noise_source(source: NoiseSource) -> &'static str {
-    match source {
-        NoiseSource::Given => "given on the command line",
-        NoiseSource::DataSet => "stated by the data set",
-        NoiseSource::Estimated => "estimated from these data",
-        NoiseSource::Assumed => "assumed",
-    }
-}
-
-fn fit_status(status: FitStatus) -> &'static str {
-    match status {
-        FitStatus::Converged => "converged",
-        FitStatus::IterationLimit => "stopped at the limit of iterations",
-        FitStatus::Stalled => "stalled before a minimum",
-    }
 }

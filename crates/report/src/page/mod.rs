@@ -4,10 +4,13 @@
 //! figures ([`Figure`]) and symbols are the only markup that passes.
 
 mod directions;
+mod discover;
 mod infer;
 mod parameter_table;
 mod uncertainty;
+mod words;
 
+pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
 pub use uncertainty::Uncertainty;
 
@@ -120,6 +123,7 @@ pub fn render(template: Template, context: &impl Serialize) -> Result<String, Re
         environment.set_auto_escape_callback(|_| AutoEscape::Html);
         environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
         environment.add_filter("symbol", symbol);
+        environment.add_filter("prose", |text: String| Value::from_safe_string(words::prose(&text)));
         environment.add_filter("significant", significant_value);
         environment.add_filter("unit", |unit: String| unit_text(&unit));
         environment.add_template("base.html", BASE)?;

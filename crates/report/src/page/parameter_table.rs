@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::figure::{Estimate, ParameterRow};
-use crate::infer_report::{InferReport, Parameter};
+use crate::infer_report::{NaiveParameters, Parameter, Parameters};
 use crate::numbers::{NO_VALUE, as_given, interval_text, significant, unit_text};
 
 /// A parameter as the table shows it.
@@ -40,13 +40,14 @@ impl TableRow {
     }
 }
 
-/// The printed symbol of a parameter's name in the file.
+/// The printed symbol of the name of a parameter, or of the coefficient of an effect, in the file.
 pub(super) fn symbol_of(name: &str) -> String {
     match name {
         "alpha" => "α".to_owned(),
         "K_P_alpha" => "K_P α".to_owned(),
         "K_P_P_0" => "K_P P_0".to_owned(),
         "shape_index" => "P_0/ℓ_0".to_owned(),
+        effect if effect.starts_with(char::is_lowercase) => effect.replace('_', " "),
         other => other.to_owned(),
     }
 }
@@ -61,41 +62,52 @@ fn estimate(parameter: &Parameter) -> Estimate {
     }
 }
 
-/// The rows of the parameter table, the best determined first.
-pub(super) fn parameter_rows(report: &InferReport) -> Vec<ParameterRow> {
-    let (fitted, naive) = (&report.parameters, &report.naive);
-    let row = |name: &str, parameter: &Parameter, naive: f64, meaning: &str| ParameterRow {
+/// The row of one parameter.
+pub(super) fn parameter_row(
+    name: &str,
+    parameter: &Parameter,
+    naive: Option<f64>,
+    meaning: &str,
+) -> ParameterRow {
+    ParameterRow {
         symbol: symbol_of(name),
         unit: parameter.unit.clone(),
         value: parameter.value,
         ci95: parameter.interval(),
-        naive: Some(naive).filter(|naive| naive.is_finite()),
+        naive: naive.filter(|naive| naive.is_finite()),
         estimate: estimate(parameter),
         meaning: meaning.to_owned(),
+    }
+}
+
+/// The rows of the parameter table, the best determined first.
+pub(super) fn parameter_rows(fitted: &Parameters, naive: Option<&NaiveParameters>) -> Vec<ParameterRow> {
+    let row = |name: &str, parameter: &Parameter, of: fn(&NaiveParameters) -> f64, meaning: &str| {
+        parameter_row(name, parameter, naive.map(of), meaning)
     };
     vec![
         row(
             "K_P_alpha",
             &fitted.K_P_alpha,
-            naive.K_P_alpha,
+            |naive| naive.K_P_alpha,
             "chiral rate: strength of the turned outline force; for positive values the extra force points a \
              quarter turn clockwise from the outline force (y axis up)",
         ),
         row(
             "shape_index",
             &fitted.shape_index,
-            naive.shape_index,
+            |naive| naive.shape_index,
             "preferred shape: small is round and rigid, above about 3.8 elongated and fluid \
              (without chirality)",
         ),
         row(
             "alpha",
             &fitted.alpha,
-            naive.alpha,
+            |naive| naive.alpha,
             "chirality: turned outline force relative to the outline force itself",
         ),
-        row("K_P", &fitted.K_P, naive.K_P, "stiffness of the cell outline"),
-        row("P_0", &fitted.P_0, naive.P_0, "preferred length of the cell outline"),
-        row("K_A", &fitted.K_A, naive.K_A, "stiffness of the cell area; often not determined"),
+        row("K_P", &fitted.K_P, |naive| naive.K_P, "stiffness of the cell outline"),
+        row("P_0", &fitted.P_0, |naive| naive.P_0, "preferred length of the cell outline"),
+        row("K_A", &fitted.K_A, |naive| naive.K_A, "stiffness of the cell area; often not determined"),
     ]
 }

@@ -53,6 +53,13 @@ pub fn assert_sound(name: &str, svg: &str) {
     assert!(!svg.contains("<script") && !svg.contains("href"), "{name}");
 }
 
+/// What a figure or a page must contain.
+pub fn assert_has(text: &str, parts: &[&str]) {
+    for part in parts {
+        assert!(text.contains(part), "lacks {part}");
+    }
+}
+
 #[test]
 fn maps_state_scale_and_unit() {
     for (name, svg) in figures(sample::frame("frame 6", 20)) {

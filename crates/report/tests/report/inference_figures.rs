@@ -1,19 +1,13 @@
 //! Landscapes, profiles, bootstraps, comparisons and flows: what they must contain, and that
 //! unknown numbers do no harm.
 
-use crate::figures::{assert_sound, units};
+use crate::figures::{assert_has, assert_sound, units};
 use crate::{figure_sample, sample};
 use voronudge_report::FrameView;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::figure::{
     FlowMap, VelocityField, bootstrap_histogram, flow_map, landscape, method_comparison, profile,
 };
-
-fn assert_has(svg: &str, texts: &[&str]) {
-    for text in texts {
-        assert!(svg.contains(text), "lacks {text}");
-    }
-}
 
 #[test]
 fn a_landscape_names_axes_contours_and_marks() {

@@ -1,5 +1,8 @@
 //! Figures, pages and report files from synthetic data.
 
+mod discover_figures;
+mod discover_pages;
+mod discover_sample;
 mod figure_sample;
 mod figures;
 mod inference_figures;

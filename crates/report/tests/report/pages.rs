@@ -5,13 +5,15 @@ use serde_json::Value;
 use voronudge_report::figure::FlowMap;
 use voronudge_report::{INFER_SCHEMA, InferReport, Uncertainty};
 
-/// What the schema has to say against a report.
+/// What a schema has to say against a report.
+pub fn schema_errors(schema: &str, report: &str) -> Result<Vec<String>, Box<dyn std::error::Error>> {
+    let [schema, value] = [schema, report].map(serde_json::from_str::<Value>);
+    let validator = jsonschema::validator_for(&schema?).map_err(|error| error.to_string())?;
+    Ok(validator.iter_errors(&value?).map(|error| error.to_string()).collect())
+}
+
 fn errors(report: &InferReport) -> Result<Vec<String>, Box<dyn std::error::Error>> {
-    let schema: Value = serde_json::from_str(INFER_SCHEMA)?;
-    let value: Value = serde_json::from_str(&report.to_json()?)?;
-    let validator = jsonschema::validator_for(&schema).map_err(|error| error.to_string())?;
-    let errors = validator.iter_errors(&value);
-    Ok(errors.map(|error| error.to_string()).collect())
+    schema_errors(INFER_SCHEMA, &report.to_json()?)
 }
 
 #[test]

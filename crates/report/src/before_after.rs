@@ -1,0 +1,20 @@
+//! The base model against the model with the effects that were added.
+
+use serde::Serialize;
+
+/// Something of the base model and the same of the model with the effects added. Where no effect
+/// was added the two are equal.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct BeforeAfter<T> {
+    /// Of the base model.
+    pub before: T,
+    /// Of the base model with the selected effects, everything fitted again.
+    pub after: T,
+}
+
+impl<T> BeforeAfter<T> {
+    /// The two with their names.
+    pub fn named(&self) -> [(&'static str, &T); 2] {
+        [("before", &self.before), ("after", &self.after)]
+    }
+}

@@ -1,0 +1,87 @@
+//! What remains, what noise makes of the data, and how the search was checked.
+
+use serde::Serialize;
+
+/// What remains after the last fit.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Unexplained {
+    /// Share of the squared velocities that neither model nor noise explains.
+    pub share: f64,
+    /// Distance over which the residual stays correlated, in units of length.
+    pub correlation_length: f64,
+    /// Share of the smooth part of the residual that is free of curl.
+    pub divergence_share: f64,
+    /// Share of the smooth part of the residual that is free of divergence.
+    pub curl_share: f64,
+    /// Tests for structure in the residual.
+    pub tests: Vec<StructureTest>,
+}
+
+/// One test for structure in the residual.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StructureTest {
+    /// What is tested, for a reader.
+    pub name: String,
+    /// The statistic.
+    pub statistic: f64,
+    /// Probability of so large a statistic of a residual without structure.
+    pub p: f64,
+}
+
+/// What the squared velocities are made of, in shares of their sum.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct NoiseBudget {
+    /// The sum Σ‖v‖² over the cells used, in units of length² per time².
+    pub total: f64,
+    /// Share that noise of the positions explains.
+    pub position_noise: f64,
+    /// Share that noise of the velocities explains.
+    pub velocity_noise: f64,
+    /// Share that the base model explains.
+    pub base: f64,
+    /// Share that the added effects explain.
+    pub effects: f64,
+    /// Share that remains. Noise levels are estimates, so it may come out slightly negative.
+    pub unexplained: f64,
+}
+
+impl NoiseBudget {
+    /// Whether any of the shares is known.
+    #[must_use]
+    pub fn is_known(&self) -> bool {
+        let Self { position_noise, velocity_noise, base, effects, unexplained, .. } = *self;
+        [position_noise, velocity_noise, base, effects, unexplained].into_iter().any(|share| share > 0.0)
+    }
+}
+
+/// What effects with a memory were predicted from. They may use velocities of earlier intervals
+/// only that share no position with the interval that is explained.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct Predictors {
+    /// The earlier interval, in words.
+    pub interval: String,
+    /// Statement on the overlap of the two intervals.
+    pub overlap: String,
+}
+
+/// Synthetic data without an effect, fitted as the data were.
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+pub struct NullSets {
+    /// Number of sets fitted.
+    pub refitted: usize,
+    /// Their seeds.
+    pub seeds: Vec<u64>,
+}
+
+/// How the search behaved on the null sets.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Calibration {
+    /// Probability at which a candidate counts as found.
+    pub level: f64,
+    /// What p a single candidate needs to stay within that level over all candidates.
+    pub single_p: f64,
+    /// Share of the null sets in which some candidate came below the unadjusted level.
+    pub unadjusted_false_positives: f64,
+    /// How the search behaved, in a sentence.
+    pub words: String,
+}

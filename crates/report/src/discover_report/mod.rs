@@ -1,0 +1,102 @@
+//! `report.json` of the command `discover`.
+//!
+//! Field names are the interface that scripts use; [`DISCOVER_SCHEMA`] describes them. Numbers that
+//! are not finite are written as `null`. What `infer` reports too has the types of
+//! [`crate::infer_report`].
+
+mod evidence;
+mod model_fit;
+mod ranking;
+mod selected;
+mod verdict;
+
+pub use evidence::{Calibration, NoiseBudget, NullSets, Predictors, StructureTest, Unexplained};
+pub use model_fit::{DescriptionFit, HeldOutError, ModelFit, ModelNmse};
+pub use ranking::{CandidateStatus, EffectKind, Gain, RankedEffect};
+pub use selected::{EffectCoefficient, SelectedEffect};
+pub use verdict::Verdict;
+
+use serde::Serialize;
+
+use crate::before_after::BeforeAfter;
+use crate::error::ReportError;
+use crate::infer_report::{CellCounts, FlowGrid, GivenConstraints, Quantity, RunRecord};
+use crate::view::Units;
+
+/// JSON Schema (draft 2020-12) of [`DiscoverReport`].
+pub const DISCOVER_SCHEMA: &str = include_str!("../../schema/discover.schema.json");
+
+/// Everything `discover` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DiscoverReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
+    pub length_scale: Quantity,
+    /// Which cells were used.
+    pub cells: CellCounts,
+    /// The grid, where velocities were measured on one.
+    pub flow: Option<FlowGrid>,
+    /// What was said of the parameters before the fits.
+    pub constraints: GivenConstraints,
+    /// The answer.
+    pub verdict: Verdict,
+    /// The answer in a sentence.
+    pub sentence: String,
+    /// What the answer does not say, in a sentence; empty if nothing needs to be said.
+    pub caveat: String,
+    /// What to measure next, in a sentence; empty if there is nothing to advise.
+    pub measure_next: String,
+    /// The base model and the model with the selected effects, at the top level of the file.
+    #[serde(flatten)]
+    pub models: BeforeAfter<ModelFit>,
+    /// The base model with a generic description of what it leaves unexplained, where it was fitted.
+    pub description: Option<DescriptionFit>,
+    /// The effects that were added, in the order of their selection.
+    pub selected: Vec<SelectedEffect>,
+    /// Every candidate, the largest statistic first.
+    pub ranking: Vec<RankedEffect>,
+    /// What remains after the last fit.
+    pub unexplained: Unexplained,
+    /// What the squared velocities are made of.
+    pub noise_budget: BeforeAfter<NoiseBudget>,
+    /// What effects with a memory were predicted from, where any was tried.
+    pub predictors: Option<Predictors>,
+    /// The synthetic data without an effect to which the search was put.
+    pub null_sets: NullSets,
+    /// How the search behaved on them.
+    pub calibration: Option<Calibration>,
+}
+
+impl DiscoverReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+
+    /// Whether an effect was added, so that before and after differ.
+    #[must_use]
+    pub fn is_extended(&self) -> bool {
+        !self.selected.is_empty()
+    }
+
+    /// Reasons not to trust the fits, each once.
+    #[must_use]
+    pub fn doubts(&self) -> Vec<String> {
+        let mut doubts = Vec::new();
+        let fits = [&self.models.before, &self.models.after].into_iter().filter_map(|fit| fit.fit.as_ref());
+        for doubt in fits.flat_map(|fit| &fit.doubts) {
+            if !doubts.contains(doubt) {
+                doubts.push(doubt.clone());
+            }
+        }
+        doubts
+    }
+}

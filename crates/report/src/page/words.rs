@@ -1,0 +1,131 @@
+//! Words and numbers that several pages say alike.
+
+use super::parameter_table::symbol_of;
+use crate::infer_report::{FitStatus, FlowGrid, MeanRemoved, NoiseSource, RunRecord};
+use crate::numbers::{NO_VALUE, significant, with_interval};
+use crate::svg::{SubscriptMarkup, subscripts};
+
+/// What velocities belong to.
+pub(super) fn data(flow: Option<&FlowGrid>) -> &'static str {
+    if flow.is_some() { "grid points" } else { "cells" }
+}
+
+/// The warnings that are no doubts, which have a box of their own.
+pub(super) fn warnings<'a>(run: &'a RunRecord, doubts: &[String]) -> Vec<&'a str> {
+    run.warnings.iter().filter(|text| !doubts.contains(text)).map(String::as_str).collect()
+}
+
+pub(super) fn mean_removed(mean: MeanRemoved) -> &'static str {
+    match mean {
+        MeanRemoved::None => "no mean velocity was removed",
+        MeanRemoved::PerFrame => "the median velocity of each frame was removed",
+        MeanRemoved::Overall => "the median velocity over all frames was removed",
+    }
+}
+
+pub(super) fn noise_source(source: NoiseSource) -> &'static str {
+    match source {
+        NoiseSource::Given => "given on the command line",
+        NoiseSource::DataSet => "stated by the data set",
+        NoiseSource::Estimated => "estimated from these data",
+        NoiseSource::Assumed => "assumed",
+    }
+}
+
+pub(super) fn fit_status(status: FitStatus) -> &'static str {
+    match status {
+        FitStatus::Converged => "converged",
+        FitStatus::IterationLimit => "stopped at the limit of iterations",
+        FitStatus::Stalled => "stalled before a minimum",
+    }
+}
+
+/// The name of an effect as it is printed.
+pub(super) fn effect_name(effect: &str) -> String {
+    effect.replace('_', " ")
+}
+
+/// Names of effects as a list in a sentence, with `and` or another word before the last.
+pub(super) fn listed<'a>(effects: impl IntoIterator<Item = &'a String>, joint: &str) -> String {
+    let names: Vec<String> = effects.into_iter().map(|effect| effect_name(effect)).collect();
+    match names.as_slice() {
+        [others @ .., last] if !others.is_empty() => format!("{} {joint} {last}", others.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+/// A number with its standard error, to the digits that this deserves.
+pub(super) fn with_error(value: f64, error: f64) -> String {
+    if !value.is_finite() || !error.is_finite() {
+        return significant(value, 3);
+    }
+    let [value, ..] = with_interval(value, [value - error, value + error]);
+    format!("{value} ± {}", significant(error, 2))
+}
+
+/// A share in percent.
+pub(super) fn percent(share: f64) -> String {
+    if share.is_finite() { format!("{} %", significant(100.0 * share, 2)) } else { NO_VALUE.to_owned() }
+}
+
+/// A probability; the very small ones are not told apart.
+pub(super) fn probability(p: f64) -> String {
+    if (0.0..1e-4).contains(&p) { "<\u{a0}0.0001".to_owned() } else { significant(p, 2) }
+}
+
+/// A sentence as markup: symbols with subscripts, names of effects as words, everything escaped.
+pub(super) fn prose(text: &str) -> String {
+    let is_inner = |letter: char| letter.is_alphanumeric() || letter == '_';
+    let mut markup = String::with_capacity(text.len());
+    let mut word = String::new();
+    for letter in text.chars().chain(std::iter::once('\0')) {
+        if is_inner(letter) {
+            word.push(letter);
+            continue;
+        }
+        markup.push_str(&subscripts(&printed_word(&word), SubscriptMarkup::Html));
+        word.clear();
+        if letter != '\0' {
+            markup.push_str(&crate::svg::escape(letter.encode_utf8(&mut [0; 4])));
+        }
+    }
+    markup
+}
+
+/// A word with the symbol it stands for; an underscore behind more than one letter joins words.
+fn printed_word(word: &str) -> String {
+    let symbol = symbol_of(word);
+    match word.split_once('_') {
+        Some((head, _)) if symbol == word && head.chars().count() != 1 => effect_name(word),
+        _ => symbol,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn prose_tells_symbols_from_names_of_effects() {
+        let text = "density_gradient moves K_P_alpha and P_0, not <alpha>";
+        let markup = "density gradient moves K<sub>P</sub> α and P<sub>0</sub>, not &lt;α&gt;";
+        assert_eq!(prose(text), markup);
+    }
+
+    #[test]
+    fn errors_decide_the_digits() {
+        assert_eq!(with_error(0.31234, 0.0213), "0.312 ± 0.021");
+        assert_eq!(with_error(0.31234, f64::NAN), "0.312");
+        assert_eq!(probability(0.0), "<\u{a0}0.0001");
+        assert_eq!(percent(0.471), "47 %");
+    }
+
+    #[test]
+    fn lists_end_with_and() {
+        let names = ["drift", "shear", "odd_diffusion"].map(String::from);
+        assert_eq!(listed(&names, "and"), "drift, shear and odd diffusion");
+        assert_eq!(listed(&names[1..], "or"), "shear or odd diffusion");
+        assert_eq!(listed(&names[..1], "and"), "drift");
+        assert_eq!(listed(&[], "and"), "");
+    }
+}
