@@ -16,6 +16,7 @@ mod coefficients;
 mod constraints;
 mod cross_validation;
 pub mod diagnostics;
+pub mod discover;
 mod error;
 mod estimates;
 mod flow;

@@ -56,7 +56,7 @@ fn two_quantities(text: &str) -> Result<[Quantity; 2], String> {
 fn varies(space: &CoefficientSpace, quantity: Quantity) -> bool {
     let at = |step: f64| -> f64 {
         let free: Vec<f64> = (0..space.dimension()).map(|k| 1.3 + step * (k as f64 + 0.7)).collect();
-        quantity.of(&space.coefficients(&free))
+        quantity.of(space.coefficients(&free).as_slice())
     };
     let (one, other) = (at(0.37), at(0.91));
     (one - other).abs() > 1e-9 * one.abs()

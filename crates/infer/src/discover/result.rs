@@ -1,0 +1,221 @@
+//! What a search for missing effects answers.
+
+use crate::diagnostics::Diagnostics;
+use crate::{Estimate, Inference, Progress, Request};
+use std::ops::ControlFlow;
+use voronudge_model::{Column, Effect};
+
+/// What to search for, and how.
+#[derive(Debug, Clone)]
+pub struct Search {
+    /// The fit of the base model.
+    pub fit: Request,
+    /// Candidates, descriptions among them.
+    pub candidates: Vec<&'static Effect>,
+    /// Probability that data without any effect lead to one.
+    pub level: f64,
+    /// Synthetic data without an effect that are refitted before one is believed; none for as many as time allows.
+    pub null_sets: Option<usize>,
+    /// Effects added at most.
+    pub most_effects: usize,
+    /// Which tracked cell each cell of each frame is, if cells are tracked.
+    pub identities: Option<Vec<Vec<i64>>>,
+}
+
+impl Search {
+    /// The whole catalogue at a level of 5 %.
+    pub fn new(fit: Request) -> Self {
+        Self {
+            fit,
+            candidates: Effect::all().iter().collect(),
+            level: 0.05,
+            null_sets: None,
+            most_effects: 4,
+            identities: None,
+        }
+    }
+}
+
+/// The answer in a word.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Verdict {
+    /// The base model explains the data within noise.
+    NothingMissing,
+    /// An effect, or a class of effects that the data cannot tell apart, explains what the base model lacks.
+    Attributed,
+    /// An effect explains a part; the rest has no name.
+    Partial,
+    /// Something with a structure in space or time is missing that no effect of the catalogue explains.
+    UnexplainedStructured,
+    /// There is more scatter than noise explains, without structure.
+    UnexplainedWhite,
+    /// The data are too few to tell.
+    NotTestable,
+}
+
+/// A share of the squared velocities with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct HeldOut {
+    /// `Σ‖v − v̂‖² / Σ‖v‖²` over velocities that the fit has not seen, at the measured positions.
+    pub value: f64,
+    /// Its standard error over folds.
+    pub standard_error: f64,
+    /// Number of folds.
+    pub folds: usize,
+    /// What is held out together.
+    pub unit: HeldOutUnit,
+}
+
+/// What is held out together.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum HeldOutUnit {
+    /// Whole frames.
+    Frames,
+    /// Contiguous blocks of cells.
+    Blocks,
+}
+
+/// What the squared velocities are made of, as shares of their sum.
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub struct Budget {
+    /// Errors of the positions.
+    pub position_noise: f64,
+    /// Errors of the velocities.
+    pub velocity_noise: f64,
+    /// The base model.
+    pub base: f64,
+    /// Effects added.
+    pub effects: f64,
+    /// The rest.
+    pub unexplained: f64,
+}
+
+/// One model with what it leaves.
+#[derive(Debug, Clone)]
+pub struct Fitted {
+    /// The fit.
+    pub inference: Inference,
+    /// Its error on velocities held out; none if they are too few.
+    pub held_out: Option<HeldOut>,
+    /// What the squared velocities are made of.
+    pub budget: Budget,
+    /// The whitened residual: of unit variance and without correlations if nothing is missing. One entry per target.
+    pub residuals: Vec<Vec<nalgebra::Vector2<f64>>>,
+    /// What the whitened residual looks like.
+    pub diagnostics: Diagnostics,
+}
+
+/// An effect that was added.
+#[derive(Debug, Clone)]
+pub struct Selected {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Its columns, in the order of `coefficients`.
+    pub columns: Vec<Column>,
+    /// Its coefficients, scaled as the data are.
+    pub coefficients: Vec<Estimate>,
+    /// Probability of so small a p of any candidate if nothing is missing.
+    pub adjusted_p: f64,
+    /// Share of what the model without it lacks beyond noise that it explains.
+    pub share_of_excess: f64,
+    /// Root mean square velocity that it adds, relative to that of the data.
+    pub size: f64,
+    /// Other effects that the data cannot tell from it.
+    pub class: Vec<&'static Effect>,
+    /// What it predicts beyond the other terms, and what they leave, for each target of each frame: prediction, residual.
+    pub partial: Vec<[nalgebra::Vector2<f64>; 2]>,
+}
+
+/// What became of a candidate.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Fate {
+    /// It was added.
+    Selected,
+    /// It cannot be told from the effect of this id, which was added.
+    Alias(&'static str),
+    /// Whatever it says, the parameters of the model say too.
+    Absorbed,
+    /// It is no more than chance.
+    BelowThreshold,
+    /// It was as good as others at first, but explains nothing beyond those added.
+    Explained,
+    /// It was better than chance, but fails one of the further conditions.
+    NotConfirmed(&'static str),
+    /// The data do not allow to test it.
+    NotTestable(&'static str),
+    /// A description, which is no cause.
+    Description,
+}
+
+/// One candidate against the base model.
+#[derive(Debug, Clone)]
+pub struct Ranked {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Number of coefficients that the data determine.
+    pub dimension: usize,
+    /// Score statistic, χ² with `dimension` degrees of freedom if nothing is missing.
+    pub statistic: f64,
+    /// Probability of a larger statistic.
+    pub p: f64,
+    /// Probability of so small a p of any candidate.
+    pub adjusted_p: f64,
+    /// Root mean square velocity, relative to that of the data, that would be found in 9 of 10 cases.
+    pub detection_limit: f64,
+    /// Estimate of the root mean square velocity when added alone, relative to that of the data.
+    pub size: f64,
+    /// 95 % interval of the size, for a single coefficient.
+    pub interval: Option<[f64; 2]>,
+    /// What became of it.
+    pub fate: Fate,
+}
+
+/// A generic description of what the base model lacks.
+#[derive(Debug, Clone)]
+pub struct Described {
+    /// The description.
+    pub effect: &'static Effect,
+    /// Number of its coefficients.
+    pub dimension: usize,
+    /// The fit.
+    pub inference: Inference,
+    /// Its error on velocities held out.
+    pub held_out: Option<HeldOut>,
+}
+
+/// Synthetic data without an effect, fitted and searched like the data.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct NullSets {
+    /// Smallest p of any candidate in each set, ascending.
+    pub smallest_p: Vec<f64>,
+    /// Seeds of the sets.
+    pub seeds: Vec<u64>,
+}
+
+/// The result of [`discover`](crate::discover).
+#[derive(Debug, Clone)]
+pub struct Discovery {
+    /// The answer.
+    pub verdict: Verdict,
+    /// The base model.
+    pub before: Fitted,
+    /// The model with the effects added; the same as before if there are none.
+    pub after: Fitted,
+    /// The effects added, in the order of their selection.
+    pub selected: Vec<Selected>,
+    /// Every candidate, the smallest p first.
+    pub ranking: Vec<Ranked>,
+    /// A generic description in place of the effects, if one is better than chance.
+    pub description: Option<Described>,
+    /// Fall of the held-out error by the effects, and its standard error over folds (of the differences).
+    pub gain: Option<[f64; 2]>,
+    /// Share of what the base model lacks beyond noise that the effects explain.
+    pub share_of_excess: f64,
+    /// p that a single candidate needs, so that any of them is reached by chance with the probability asked for.
+    pub single_p: f64,
+    /// Synthetic data without an effect.
+    pub null_sets: NullSets,
+}
+
+/// Told of progress; may stop the search.
+pub type Observer<'o> = &'o mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
