@@ -1,7 +1,8 @@
 //! Which effects can be tested on the data.
 
 use crate::Observation;
-use voronudge_model::{Column, Effect, Kind};
+use voronudge_model::effect::Kind;
+use voronudge_model::{Column, Effect};
 
 /// An effect on offer.
 #[derive(Debug, Clone)]

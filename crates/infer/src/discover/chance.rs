@@ -45,7 +45,8 @@ impl Chance {
                     .sum();
                 let rest = within + remainder.map_or(0.0, |chi| chi.sample(&mut rng));
                 let unit = projected.variance().unwrap_or(variance);
-                let z = (&root * normal).zip_map(&DVector::from_column_slice(&scale), |z, s| z * s * unit.sqrt());
+                let z =
+                    (&root * normal).zip_map(&DVector::from_column_slice(&scale), |z, s| z * s * unit.sqrt());
                 candidates
                     .iter()
                     .map(|candidate| projected.score_of(*candidate, &z, rest * unit).p)

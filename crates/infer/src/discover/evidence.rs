@@ -1,6 +1,6 @@
 //! What is known of a model after its fit: error on data it has not seen, budget, whitened residual.
 
-use super::result::{Budget, Fitted, HeldOut, HeldOutUnit};
+use super::result::{Budget, Fitted, HeldOut};
 use super::whitening::whitened;
 use crate::cross_validation::Folds;
 use crate::diagnostics::{CellData, ResidualField, diagnose};
@@ -11,6 +11,7 @@ use crate::{Error, Inference, Observation, Request, Velocities};
 use voronudge_geometry::{Vector, areas};
 
 /// A fit with what it leaves.
+#[derive(Clone, Copy)]
 pub(super) struct Evidence<'a> {
     pub frames: &'a [Observation],
     pub request: &'a Request,
@@ -23,8 +24,10 @@ impl Evidence<'_> {
     pub fn of(&self, inference: Inference, folds: Option<&Folds>) -> Result<Fitted, Error> {
         let residuals = self.whitened(&inference)?;
         let frames = self.frames;
-        let places: Vec<Vec<Vector<f64>>> =
-            frames.iter().map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect()).collect();
+        let places: Vec<Vec<Vector<f64>>> = frames
+            .iter()
+            .map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect())
+            .collect();
         let cells: Vec<Option<(Vec<f64>, Vec<Vector<f64>>)>> = frames.iter().map(cell_data).collect();
         let fields = (0..frames.len())
             .map(|k| {
@@ -43,11 +46,7 @@ impl Evidence<'_> {
             frames.iter().zip(all).map(own).collect()
         });
         let diagnostics = diagnose(&fields, identities.as_deref(), self.request.seed);
-        let held_out = folds.map(|folds| {
-            let [value, standard_error] = folds.error();
-            let unit = if folds.of_frames { HeldOutUnit::Frames } else { HeldOutUnit::Blocks };
-            HeldOut { value, standard_error, folds: folds.count(), unit }
-        });
+        let held_out = folds.map(HeldOut::of);
         Ok(Fitted { budget: self.budget(&inference), held_out, residuals, diagnostics, inference })
     }
 

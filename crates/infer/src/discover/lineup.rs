@@ -11,9 +11,9 @@
 //! candidate by positions is needed. Where σ_v was estimated, T is compared with what is left (an F test).
 
 use super::candidate::Candidate;
-use crate::quantity::BASE;
 use crate::linearisation::Whitened;
 use crate::objective::Objective;
+use crate::quantity::BASE;
 use crate::uncertainty::nudges;
 use crate::{Error, Inference, NoiseSource, Observation, Request};
 use nalgebra::{DMatrix, DVector};
@@ -77,7 +77,8 @@ pub(super) struct Projected<'a> {
 
 /// The structure of a model with candidates beside it: where the columns of both are among the coefficients.
 fn enlarged(model: &Structure, candidates: &[Candidate]) -> (Structure, Vec<usize>, Vec<Vec<usize>>) {
-    let all: Vec<Column> = candidates.iter().filter_map(|c| c.columns.as_ref().ok()).flatten().copied().collect();
+    let all: Vec<Column> =
+        candidates.iter().filter_map(|c| c.columns.as_ref().ok()).flatten().copied().collect();
     let structure = model.with(&all);
     let terms = all.iter().filter(|column| matches!(column, Column::Term(_))).count();
     let first_response = model.terms.len() + terms;
@@ -187,7 +188,8 @@ impl Lineup {
     fn beyond_columns(&self, model: &[usize]) -> Projected<'_> {
         let q = model.len();
         let own = DMatrix::from_fn(q, q, |i, j| self.information[(model[i], model[j])]);
-        let scale: Vec<f64> = model.iter().map(|k| self.information[(*k, *k)].sqrt().max(f64::MIN_POSITIVE)).collect();
+        let scale: Vec<f64> =
+            model.iter().map(|k| self.information[(*k, *k)].sqrt().max(f64::MIN_POSITIVE)).collect();
         let (inverse, rank) = pseudo_inverse(&own, &scale);
         let mixed = DMatrix::from_fn(q, self.score.len(), |i, j| self.information[(model[i], j)]);
         let score = DVector::from_fn(q, |i, _| self.score[model[i]]);
@@ -229,6 +231,13 @@ fn pseudo_inverse(matrix: &DMatrix<f64>, scale: &[f64]) -> (DMatrix<f64>, usize)
 }
 
 impl Projected<'_> {
+    /// sᵀG⁻¹s: by how much the squared misfit falls if a candidate is added.
+    pub fn gain(&self, candidate: usize) -> f64 {
+        let group = self.lineup.group(candidate);
+        let s = DVector::from_fn(group.len(), |i, _| self.score[group[i]]);
+        s.dot(&(self.inverse(candidate).0 * &s)).max(0.0)
+    }
+
     /// The score of a candidate.
     pub fn score(&self, candidate: usize) -> Score {
         self.score_of(candidate, &self.score, self.rest)
@@ -253,7 +262,8 @@ impl Projected<'_> {
         };
         let sizes = &self.lineup.sizes;
         let squared = |c: &DVector<f64>| -> f64 {
-            let pairs = group.iter().enumerate().flat_map(|(i, a)| group.iter().enumerate().map(move |b| (i, a, b)));
+            let pairs =
+                group.iter().enumerate().flat_map(|(i, a)| group.iter().enumerate().map(move |b| (i, a, b)));
             pairs.map(|(i, a, (j, b))| c[i] * c[j] * sizes[(*a, *b)]).sum::<f64>().max(0.0)
         };
         let size = squared(&coefficients).sqrt();
@@ -282,10 +292,6 @@ impl Projected<'_> {
         self.lineup.variance
     }
 
-    /// Whether the size of the noise was given.
-    pub fn is_calibrated(&self) -> bool {
-        self.lineup.variance.is_some()
-    }
 }
 
 impl Score {

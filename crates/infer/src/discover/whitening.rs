@@ -81,7 +81,10 @@ fn inverse_root(apply: impl Fn(&DVector<f64>) -> DVector<f64>, b: &DVector<f64>)
                 (&coordinates - old).norm()
             });
             if ended || change <= TOLERANCE * coordinates.norm() {
-                return basis.iter().zip(coordinates.iter()).fold(DVector::zeros(b.len()), |sum, (q, c)| sum + q * *c);
+                return basis
+                    .iter()
+                    .zip(coordinates.iter())
+                    .fold(DVector::zeros(b.len()), |sum, (q, c)| sum + q * *c);
             }
             previous = Some(coordinates);
         }
