@@ -28,7 +28,7 @@ pub use result::*;
 use crate::cross_validation::{BLOCKS, Folds, cross_validate};
 use crate::objective::Objective;
 use crate::search::Watch;
-use crate::{Error, Observation};
+use crate::{CrossValidation, Error, Observation};
 use candidate::{Candidate, candidates};
 use classes::Selection;
 use evidence::Evidence;
@@ -54,14 +54,17 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
     let mut watch = Watch { observe };
     let base = setting.fit(Vec::new(), &mut watch)?;
     let blocks = blocks(frames);
-    let base = Tried { folds: folds(frames, &base, blocks, &mut watch)?, model: base };
+    let mut base = Tried { folds: None, model: base };
+    if search.fit.cross_validation == CrossValidation::Done {
+        base.hold_out(frames, blocks, &mut watch)?;
+    }
     let lineup = setting.lineup(&base.model)?;
     let mut ranking = Ranking::new(&setting, &lineup);
     let testable = lineup.left() >= lineup.number_of_columns() as f64;
     let mut null_sets = NullSets::default();
     let mut grown = None;
     if testable {
-        grown = grow(&setting, &base, blocks, &mut ranking, &mut watch)?;
+        grown = grow(&setting, &mut base, blocks, &mut ranking, &mut watch)?;
         if grown.is_some() {
             null_sets = null_data::searched(&setting, &base.model, &mut watch)?;
             grown = confirm(&setting, grown, &null_sets, blocks, &mut ranking, &mut watch)?;
@@ -104,19 +107,35 @@ struct Tried {
     folds: Option<Folds>,
 }
 
+impl Tried {
+    /// Measures the errors, if they are not known.
+    fn hold_out(
+        &mut self,
+        frames: &[Observation],
+        blocks: usize,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), Error> {
+        if self.folds.is_none() {
+            self.folds = folds(frames, &self.model, blocks, watch)?;
+        }
+        Ok(())
+    }
+}
+
 /// Adds what the model lacks, one effect after another, as long as the error on velocities held out falls, and takes back
 /// what others make superfluous.
 fn grow(
     setting: &Setting<'_>,
-    base: &Tried,
+    base: &mut Tried,
     blocks: usize,
     ranking: &mut Ranking,
     watch: &mut Watch<'_>,
 ) -> Result<Option<Tried>, Error> {
     let mut grown: Option<Tried> = None;
     while grown.as_ref().map_or(0, |tried| tried.model.added.len()) < setting.search.most_effects {
-        let current = grown.as_ref().unwrap_or(base);
+        let current = grown.as_mut().unwrap_or(base);
         let Some(candidate) = setting.lacking(&current.model, watch)? else { break };
+        current.hold_out(setting.frames, blocks, watch)?;
         let mut added = current.model.added.clone();
         added.push(candidate);
         let model = setting.fit(added, watch)?;
