@@ -2,6 +2,7 @@
 
 pub(crate) mod check_gradients;
 pub(crate) mod evaluate;
+mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
 pub(crate) mod simulate;
