@@ -102,7 +102,8 @@ pub(crate) struct OrderedField {
 }
 
 impl OrderedField {
-    fn new(field: &FlowField, window: Window) -> Result<Self, Failure> {
+    /// The field with what each of its points stands for.
+    pub fn new(field: &FlowField, window: Window) -> Result<Self, Failure> {
         let mut velocities = field.velocities.clone();
         let axes = [&field.x, &field.y];
         let descends = axes.map(|coordinates| coordinates.first() > coordinates.last());

@@ -22,7 +22,7 @@ pub(crate) mod words;
 
 pub(crate) use arguments::SnapshotArguments;
 pub(crate) use constraints::{ConstraintArguments, quantity};
-pub(crate) use flow::OrderedField;
+pub(crate) use flow::{OrderedField, scaled as scaled_flow};
 pub(crate) use measured::Measured;
 pub(crate) use prepare::{Prepared, Question, observe, remove_median};
 pub(crate) use search::SearchArguments;

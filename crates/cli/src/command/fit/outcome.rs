@@ -90,7 +90,9 @@ pub(crate) fn given(constraints: &Constraints) -> GivenConstraints {
 /// The nudges.
 pub(crate) fn nudge(prepared: &Prepared, result: &Inference) -> Nudge {
     let scale = &prepared.scale;
-    let left = 2.0 * result.used as f64 - result.degrees_of_freedom - result.directions.len() as f64;
+    let effects = result.coefficients.len().saturating_sub(COEFFICIENTS.len());
+    let fitted = (result.directions.len() + effects) as f64;
+    let left = 2.0 * result.used as f64 - result.degrees_of_freedom - fitted;
     Nudge {
         k: result.noise.spring() / (scale.time * scale.time),
         rms: result.nudge_rms * scale.length,
