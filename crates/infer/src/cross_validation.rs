@@ -6,55 +6,71 @@ use crate::search::{Watch, follow};
 use crate::{Error, Observation, Progress};
 use std::ops::ControlFlow;
 
-/// Blocks along each axis into which a single frame is cut.
-const BLOCKS: usize = 2;
+/// Blocks along each axis into which a frame is cut at least.
+pub(crate) const BLOCKS: usize = 2;
 
 /// Steps at the end of a fold's fit. One continuation is enough: the flip of a contact hardly changes the parameters.
 const STEPS: u64 = 12;
 
-/// Which velocities are held out together.
-enum Folds {
-    /// Each frame in turn.
-    Frames(usize),
-    /// Each contiguous block of cells in turn, in all frames.
-    Blocks,
+/// Errors on velocities held out of the fit, predicted at the measured positions (whose nudges they would otherwise have
+/// shaped).
+#[derive(Debug, Clone, PartialEq)]
+pub(crate) struct Folds {
+    /// Whether whole frames are held out, or contiguous blocks of cells.
+    pub of_frames: bool,
+    /// Squared error and sum of squares of each.
+    folds: Vec<(f64, f64)>,
 }
 
-/// Normalised error of velocities held out of the fit, predicted at the measured positions (whose nudges they would
-/// otherwise have shaped): the pooled value and its standard error over folds. Whole frames are held out where there are
-/// three or more, contiguous blocks of cells otherwise.
+impl Folds {
+    pub fn count(&self) -> usize {
+        self.folds.len()
+    }
+
+    /// Normalised error, pooled, and its standard error over folds.
+    pub fn error(&self) -> [f64; 2] {
+        ratio(self.folds.iter().copied())
+    }
+
+    /// By how much another model's error is less, on the same folds.
+    pub fn gain(&self, other: &Self) -> [f64; 2] {
+        ratio(self.folds.iter().zip(&other.folds).map(|(a, b)| (a.0 - b.0, a.1)))
+    }
+}
+
+/// A ratio of sums over folds with its standard error.
+fn ratio(folds: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 2] {
+    let (sum, total) = folds.clone().fold((0.0, 0.0), |sum, fold| (sum.0 + fold.0, sum.1 + fold.1));
+    let (pooled, n) = (sum / total, folds.clone().count() as f64);
+    let spread: f64 = folds.map(|(part, weight)| (part - pooled * weight).powi(2)).sum();
+    [pooled, (n / (n - 1.0) * spread).sqrt() / total]
+}
+
+/// Holds out whole frames in turn where there are three or more, contiguous blocks of cells otherwise. `None` if too few
+/// velocities are left to fit, or to hold out.
 pub(crate) fn cross_validate(
     whole: &Objective<'_>,
+    blocks: usize,
     watch: &mut Watch<'_>,
-) -> Result<Option<[f64; 2]>, Error> {
+) -> Result<Option<Folds>, Error> {
     let frames = whole.frames;
-    let folds = if frames.len() >= 3 { Folds::Frames(frames.len()) } else { Folds::Blocks };
-    let count = match folds {
-        Folds::Frames(count) => count,
-        Folds::Blocks => BLOCKS * BLOCKS,
-    };
+    let of_frames = frames.len() >= 3;
+    let count = if of_frames { frames.len() } else { blocks * blocks };
     let folds: Vec<Vec<Vec<bool>>> = (0..count)
         .map(|fold| {
-            let held_out = |(index, frame): (usize, &Observation)| match folds {
-                Folds::Frames(_) => vec![index == fold; frame.velocities.values().len()],
-                Folds::Blocks => in_block(frame, fold),
+            let held_out = |(index, frame): (usize, &Observation)| match of_frames {
+                true => vec![index == fold; frame.velocities.values().len()],
+                false => in_block(frame, fold, blocks),
             };
             frames.iter().enumerate().map(held_out).collect()
         })
         .collect();
     let tested = watch.each("cross-validation", &folds, 1.0, |held_out| test(whole, held_out))?;
-    let Some(tested) = tested.into_iter().collect::<Option<Vec<(f64, f64)>>>() else {
+    let Some(folds) = tested.into_iter().collect::<Option<Vec<(f64, f64)>>>() else {
         return Ok(None);
     };
-    let errors: Vec<(f64, f64)> = tested.into_iter().filter(|(_, total)| *total > 0.0).collect();
-    if errors.len() < 2 {
-        return Ok(None);
-    }
-    let (error, total) = errors.iter().fold((0.0, 0.0), |sum, fold| (sum.0 + fold.0, sum.1 + fold.1));
-    let (pooled, n) = (error / total, errors.len() as f64);
-    // Standard error of a ratio of sums over folds.
-    let spread: f64 = errors.iter().map(|(error, weight)| (error - pooled * weight).powi(2)).sum();
-    Ok(Some([pooled, (n / (n - 1.0) * spread).sqrt() / total]))
+    let folds: Vec<(f64, f64)> = folds.into_iter().filter(|(_, total)| *total > 0.0).collect();
+    Ok((folds.len() >= 2).then_some(Folds { of_frames, folds }))
 }
 
 /// Fits without some velocities: the squared error on them and their sum of squares. `None` if too few are left.
@@ -87,16 +103,16 @@ fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f6
 }
 
 /// Whether a cell is in one of the blocks between the quantiles of the coordinates of cells with a target.
-fn in_block(frame: &Observation, fold: usize) -> Vec<bool> {
-    let block = [fold % BLOCKS, fold / BLOCKS];
+fn in_block(frame: &Observation, fold: usize, blocks: usize) -> Vec<bool> {
+    let block = [fold % blocks, fold / blocks];
     let bounds: Vec<(f64, f64)> = (0..2)
         .map(|axis| {
             let mut at: Vec<f64> = frame.targets().map(|(datum, _)| frame.place(datum)[axis]).collect();
             at.sort_unstable_by(f64::total_cmp);
             let quantile = |k: usize| match k {
                 0 => f64::NEG_INFINITY,
-                k if k == BLOCKS => f64::INFINITY,
-                k => at.get(k * at.len() / BLOCKS).copied().unwrap_or(f64::INFINITY),
+                k if k == blocks => f64::INFINITY,
+                k => at.get(k * at.len() / blocks).copied().unwrap_or(f64::INFINITY),
             };
             (quantile(block[axis]), quantile(block[axis] + 1))
         })

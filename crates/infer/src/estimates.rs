@@ -78,6 +78,26 @@ impl Fitted<'_> {
         })
     }
 
+    /// Coefficients of effects, which no bound restricts.
+    pub fn effects(&self) -> Result<Vec<Estimate>, Error> {
+        let quadratic = Quadratic::new(self.centre.clone(), self.information)?;
+        let covariance = crate::least_squares::invert(self.information.clone())?;
+        let estimate = |k: usize| {
+            let function = Functional {
+                constant: 0.0,
+                gradient: DVector::from_fn(self.free.len(), |i, _| f64::from(i == k)),
+            };
+            let interval = quadratic.linear_interval(&function, &self.space.half_spaces(), CHI_SQUARED_95);
+            let Interval { lower, upper } = interval.unwrap_or(Interval { lower: None, upper: None });
+            Estimate {
+                value: self.free[k],
+                standard_error: covariance[(k, k)].max(0.0).sqrt(),
+                interval: [lower, upper],
+            }
+        };
+        Ok((self.space.base_dimension()..self.free.len()).map(estimate).collect())
+    }
+
     /// Whether a quantity has one value throughout the space.
     fn held(&self, quantity: Quantity) -> bool {
         let c = self.space.coefficients(self.free);

@@ -1,7 +1,7 @@
 //! The fit: naive, then nudged, with noise levels, intervals and errors.
 
 use crate::coefficients::parameters;
-use crate::cross_validation::cross_validate;
+use crate::cross_validation::{BLOCKS, cross_validate};
 use crate::estimates::Fitted;
 use crate::least_squares::{self, residuals_as_measured};
 use crate::noisy_fit::{at_limit, fit};
@@ -49,7 +49,7 @@ pub fn infer(
     let objective = objective;
     let levels = objective.levels;
     let cross_validated = match request.cross_validation {
-        CrossValidation::Done => cross_validate(&objective, &mut watch)?,
+        CrossValidation::Done => cross_validate(&objective, BLOCKS, &mut watch)?.map(|folds| folds.error()),
         CrossValidation::Skipped => None,
     };
     let (free, nudges) = objective.split(&found.parameters);
@@ -84,6 +84,7 @@ pub fn infer(
     ];
     Ok(Inference {
         parameters: fitted.estimates()?,
+        effects: fitted.effects()?,
         model_parameters: parameters(&coefficients),
         naive: parameters(&space.coefficients(&naive)),
         nmse: Nmse {
@@ -112,6 +113,7 @@ pub fn infer(
         transitions: [found.transitions_tried, found.transitions_made],
         doubts: doubts.into_iter().flatten().collect(),
         used,
+        total,
     })
 }
 

@@ -120,9 +120,7 @@ impl<'a> Objective<'a> {
 
     /// Number of measured components that no background takes up.
     pub fn components(&self) -> usize {
-        let own =
-            |frame: &Observation| (2 * frame.targets().count()).saturating_sub(frame.background_dimension());
-        self.frames.iter().map(own).sum()
+        self.frames.iter().map(Observation::components).sum()
     }
 
     /// What Φ is expected to be if model and noise levels are right: σ_v² for each component that no coefficient takes up.

@@ -144,6 +144,11 @@ impl Observation {
         }
     }
 
+    /// Number of measured components that no background takes up.
+    pub(crate) fn components(&self) -> usize {
+        (2 * self.targets().count()).saturating_sub(self.background_dimension())
+    }
+
     /// The targets without their background.
     pub fn explainable(&self) -> Vec<Vector<f64>> {
         let mut targets: Vec<Vector<f64>> = self.targets().map(|(_, v)| v).collect();

@@ -30,6 +30,9 @@ impl Quantity {
         Self::ChiralCoefficient,
     ];
 
+    /// Number of coefficients of the base model.
+    pub const COEFFICIENTS: usize = BASE;
+
     /// The name in files and on the command line.
     pub fn name(self) -> &'static str {
         match self {

@@ -110,6 +110,8 @@ pub struct FrameResult {
 pub struct Inference {
     /// Fitted parameters.
     pub parameters: ParameterEstimates,
+    /// Coefficients of effects, in the order of the structure.
+    pub effects: Vec<Estimate>,
     /// The fitted parameters as the model takes them.
     pub model_parameters: Parameters<f64>,
     /// Parameters of the naive fit.
@@ -152,6 +154,8 @@ pub struct Inference {
     pub doubts: Vec<Doubt>,
     /// Number of velocities used.
     pub used: usize,
+    /// `Σ‖v‖²` over them, without the background.
+    pub total: f64,
 }
 
 impl Inference {

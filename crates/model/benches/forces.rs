@@ -8,7 +8,7 @@ use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{BlockMatrix, HalfEdgeForces, JacobianBuilder, Model, Parameters};
+use voronudge_model::{BlockMatrix, Effect, HalfEdgeForces, JacobianBuilder, Model, Parameters};
 
 fn main() {
     divan::main();
@@ -41,6 +41,35 @@ fn velocities(bencher: Bencher, side: usize) {
 #[divan::bench(args = [10, 100, 1000], max_time = 20)]
 fn sparse_jacobian(bencher: Bencher, side: usize) {
     let (positions, tessellation, model) = tissue(side);
+    let (mut builder, mut matrix) = (JacobianBuilder::default(), BlockMatrix::default());
+    bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
+        builder.build(&tessellation, divan::black_box(&positions), &model, &mut matrix);
+    });
+}
+
+/// The base model and one further effect.
+const EFFECTS: [&str; 4] = ["alpha_area", "nematic_stress", "p0_gradient", "internal_drag"];
+
+fn with(id: &str) -> (Vec<Vector<f64>>, Tessellation, Model<f64>) {
+    let (positions, tessellation, model) = tissue(30);
+    let effect = Effect::from_id(id).expect("an effect of the catalogue");
+    let columns = effect.columns(&model.environment, tessellation.domain()).expect("an effect that applies");
+    let model = columns.into_iter().fold(model, |model, column| model.with(column, 0.1));
+    (positions, tessellation, model)
+}
+
+#[divan::bench(args = EFFECTS)]
+fn velocities_with(bencher: Bencher, id: &str) {
+    let (positions, tessellation, model) = with(id);
+    let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
+    bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
+        forces.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
+    });
+}
+
+#[divan::bench(args = EFFECTS, max_time = 5)]
+fn sparse_jacobian_with(bencher: Bencher, id: &str) {
+    let (positions, tessellation, model) = with(id);
     let (mut builder, mut matrix) = (JacobianBuilder::default(), BlockMatrix::default());
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
         builder.build(&tessellation, divan::black_box(&positions), &model, &mut matrix);

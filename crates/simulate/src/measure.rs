@@ -51,8 +51,8 @@ pub fn hexatic_order(tessellation: &Tessellation, positions: &[Vector<f64>]) -> 
 
 /// The energy `E = Σ_i Σ_t c_t e_t(A_i, P_i)` of the cells with a closed polygon, for positions (N).
 ///
-/// Terms without an energy (cortical chirality) must have a coefficient of zero; otherwise there is none and the result
-/// is `None`. Without them, velocities are `v_i = −∂E/∂r_i` and `E` decreases along every trajectory in a periodic box.
+/// Terms without an energy (cortical chirality) and responses must have a coefficient of zero; otherwise there is none and
+/// the result is `None`. Without them, velocities are `v_i = −∂E/∂r_i` and `E` decreases along every trajectory in a periodic box.
 ///
 /// ```
 /// use voronudge_geometry::{Domain, PeriodicBox, Tessellation};
@@ -68,6 +68,9 @@ pub fn hexatic_order(tessellation: &Tessellation, positions: &[Vector<f64>]) -> 
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn energy(tessellation: &Tessellation, positions: &[Vector<f64>], model: &Model<f64>) -> Option<f64> {
+    if model.responses.iter().any(|weighted| weighted.coefficient != 0.0) {
+        return None;
+    }
     let mut polygon = CellPolygon::default();
     let mut total = 0.0;
     for cell in (0..tessellation.len()).filter(|&cell| tessellation.is_closed(cell)) {

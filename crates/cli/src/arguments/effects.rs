@@ -146,3 +146,40 @@ fn distance(a: &str, b: &str) -> usize {
     }
     row[b.len()]
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use voronudge_geometry::PeriodicBox;
+
+    fn resolve(typed: &[&str]) -> Result<ChosenEffects, String> {
+        let effects = typed.iter().map(|text| (*text).to_owned()).collect();
+        EffectArguments { effects }.resolve().map_err(|failure| failure.to_string())
+    }
+
+    #[test]
+    fn unknown_ids_are_refused_with_the_nearest() {
+        let error = resolve(&["nematic_stres=1"]).unwrap_err();
+        assert!(error.contains("did you mean nematic_stress?") && error.contains("internal_drag"), "{error}");
+        assert!(!resolve(&["phlogiston=1"]).unwrap_err().contains("did you mean"));
+        for fault in ["drift", "drift=", "drift=1,x", "drift=inf,0"] {
+            assert!(resolve(&[fault]).unwrap_err().contains("hint"), "{fault}");
+        }
+        assert!(resolve(&["drift=1,0", "drift=0,1"]).unwrap_err().contains("twice"));
+    }
+
+    #[test]
+    fn coefficients_are_counted_and_reasons_given() {
+        let domain = Domain::Periodic(PeriodicBox::new([4.0, 4.0]).unwrap());
+        let add = |typed: &str| {
+            let model = Model::with_coefficients(&[], &[]);
+            let added = resolve(&[typed]).unwrap().add_to(model, Environment::default(), domain);
+            added.map_err(|failure| failure.to_string())
+        };
+        assert_eq!(add("drift=-1,0.5").unwrap().terms.len(), 2);
+        assert_eq!(add("internal_drag=0.5").unwrap().responses.len(), 1);
+        assert!(add("drift=1").unwrap_err().contains("c₁, c₂"));
+        assert!(add("label_parameter=1,2,3").unwrap_err().contains("no labels were given"));
+        assert!(add("rotation=1").unwrap_err().contains("not periodic"));
+    }
+}

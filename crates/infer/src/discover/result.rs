@@ -1,5 +1,6 @@
 //! What a search for missing effects answers.
 
+use crate::cross_validation::Folds;
 use crate::diagnostics::Diagnostics;
 use crate::{Estimate, Inference, Progress, Request};
 use std::ops::ControlFlow;
@@ -64,6 +65,14 @@ pub struct HeldOut {
     pub folds: usize,
     /// What is held out together.
     pub unit: HeldOutUnit,
+}
+
+impl HeldOut {
+    pub(super) fn of(folds: &Folds) -> Self {
+        let [value, standard_error] = folds.error();
+        let unit = if folds.of_frames { HeldOutUnit::Frames } else { HeldOutUnit::Blocks };
+        Self { value, standard_error, folds: folds.count(), unit }
+    }
 }
 
 /// What is held out together.

@@ -70,6 +70,18 @@ fn replicate(
     result: &Inference,
     number: u64,
 ) -> Result<[f64; 5], Error> {
+    let (synthetic, request) = synthetic(frames, request, result, number)?;
+    let refit = infer(&synthetic, &request, &mut |_| ControlFlow::Continue(()))?;
+    Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))
+}
+
+/// Data that a fit could have made, and the request to fit them in the same way; another set for every number.
+pub(crate) fn synthetic(
+    frames: &[Observation],
+    request: &Request,
+    result: &Inference,
+    number: u64,
+) -> Result<(Vec<Observation>, Request), Error> {
     let mut rng = Pcg64::seed_from_u64(request.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(number));
     let level =
         |sigma: f64| Normal::new(0.0, sigma).map_err(|_| Error::Noise { name: "position", value: sigma });
@@ -104,6 +116,5 @@ fn replicate(
         *prior =
             Prior { mean: quantity.of(result.coefficients.as_slice()) + normal.sample(&mut rng), ..*prior };
     }
-    let refit = infer(&synthetic, &request, &mut |_| ControlFlow::Continue(()))?;
-    Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))
+    Ok((synthetic, request))
 }

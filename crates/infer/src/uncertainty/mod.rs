@@ -4,13 +4,14 @@ mod bootstrap;
 mod landscape;
 mod profile;
 
+pub(crate) use bootstrap::synthetic;
 pub use bootstrap::{Bootstrap, bootstrap};
 pub use landscape::{Landscape, landscape};
 pub use profile::{Profile, profile};
 
 use crate::objective::Objective;
 use crate::search::refine;
-use crate::{CoefficientSpace, Error, Inference, Observation, Quantity, Request};
+use crate::{CoefficientSpace, Error, FrameResult, Inference, Observation, Quantity, Request};
 use nalgebra::DVector;
 use voronudge_model::Structure;
 
@@ -33,13 +34,12 @@ struct Point<'a> {
 }
 
 impl<'a> Point<'a> {
-    fn new(frames: &'a [Observation], request: &'a Request, result: &'a Inference) -> Result<Self, Error> {
-        let nudges = frames
-            .iter()
-            .zip(&result.frames)
-            .flat_map(|(frame, own)| frame.positions.iter().zip(&own.nudged_positions))
-            .flat_map(|(from, to)| [to.x - from.x, to.y - from.y])
-            .collect();
+    pub fn new(
+        frames: &'a [Observation],
+        request: &'a Request,
+        result: &'a Inference,
+    ) -> Result<Self, Error> {
+        let nudges = nudges(frames, result).concat();
         Ok(Self {
             frames,
             structure: &request.structure,
@@ -98,6 +98,15 @@ impl<'a> Point<'a> {
     fn level(&self) -> f64 {
         self.result.objective / self.result.expected_objective
     }
+}
+
+/// ε of each frame.
+pub(crate) fn nudges(frames: &[Observation], result: &Inference) -> Vec<Vec<f64>> {
+    let of = |(frame, own): (&Observation, &FrameResult)| {
+        let pairs = frame.positions.iter().zip(&own.nudged_positions);
+        pairs.flat_map(|(from, to)| [to.x - from.x, to.y - from.y]).collect()
+    };
+    frames.iter().zip(&result.frames).map(of).collect()
 }
 
 /// Coefficients with one quantity changed and the other parameters kept.

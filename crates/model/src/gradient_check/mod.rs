@@ -3,13 +3,13 @@
 //! The sparse Jacobian is assembled from derivatives of single elements. Here it meets what takes nothing for granted:
 //! central differences of the velocities, and dual numbers through the whole system. Velocities meet the gradient of the
 //! energy they descend, and the tissue as it was moved, wrapped, turned and mirrored. The list of terms is
-//! [`base_terms`](crate::base_terms) and the catalogue of effects, so a new effect is checked from the moment it exists.
+//! [`base_terms`] and the catalogue of effects, so a new effect is checked from the moment it exists.
 //! Data that effects refer to (labels, earlier velocities, a map, an edge) are made up. The columns of an effect are
 //! checked together, with different coefficients; responses on top of the base model.
 //!
 //! Some rows are missing: an effect that refers to directions of the frame has no rotation and no mirror, one that does
 //! not conserve momentum no sum, and one whose Jacobian leaves something out
-//! ([`Exactness`](crate::Exactness)) is not compared or to that accuracy only.
+//! ([`Exactness`]) is not compared or to that accuracy only.
 //!
 //! Each row of the report states its largest error *relative to the largest magnitude of the quantity compared*. Where
 //! symmetry makes a quantity vanish, as on the honeycomb, only rounding is left to compare. The magnitude therefore

@@ -170,7 +170,7 @@ fn environment(
     let labels = (0..cells).map(|cell| [Some(1), Some(2), None, Some(1)].get(cell % 4).copied().flatten());
     let earlier = |cell: usize| {
         let phase = cell as f64;
-        (cell % 5 != 0).then(|| Vector::new(phase.sin(), (2.0 * phase).cos()))
+        (!cell.is_multiple_of(5)).then(|| Vector::new(phase.sin(), (2.0 * phase).cos()))
     };
     let given = |environment: Environment| {
         let environment = environment

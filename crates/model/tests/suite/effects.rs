@@ -10,14 +10,18 @@ use voronudge_model::{
 
 type Outcome = Result<(), Box<dyn Error>>;
 
+/// Positions, who is whose neighbour, and the environment.
+type Tissue = (Vec<Vector<f64>>, Tessellation, Arc<Environment>);
+
 /// A disordered tissue in a box, with everything that effects may refer to.
-fn tissue(side: usize) -> Result<(Vec<Vector<f64>>, Tessellation, Arc<Environment>), Box<dyn Error>> {
+fn tissue(side: usize) -> Result<Tissue, Box<dyn Error>> {
     let length = side as f64;
     let positions = jittered(side, side, 0.35, 7);
     let cells = positions.len();
     let tessellation = Tessellation::new(&positions, periodic([length, length])?)?;
-    let earlier =
-        |cell: usize| (cell % 5 != 0).then(|| Vector::new((cell as f64).sin(), (cell as f64).cos()));
+    let earlier = |cell: usize| {
+        (!cell.is_multiple_of(5)).then(|| Vector::new((cell as f64).sin(), (cell as f64).cos()))
+    };
     let environment = Environment::default()
         .about(Vector::new(length / 2.0, length / 2.0))
         .with_labels((0..cells).map(|cell| [Some(4), Some(4), Some(9), None][cell % 4]).collect())?
@@ -34,10 +38,7 @@ fn effect(id: &str) -> Result<&'static Effect, String> {
 }
 
 /// The fields of all columns of an effect, each for a coefficient of one on top of the base model.
-fn fields(
-    id: &str,
-    tissue: &(Vec<Vector<f64>>, Tessellation, Arc<Environment>),
-) -> Result<Vec<Vec<f64>>, String> {
+fn fields(id: &str, tissue: &Tissue) -> Result<Vec<Vec<f64>>, String> {
     let (positions, tessellation, environment) = tissue;
     let base = Model::chiral_voronoi(&parameters()).within(environment);
     let without = velocities(tessellation, positions, &base);

@@ -1,0 +1,202 @@
+//! What was added against everything that could stand in its place.
+
+use super::chance::Chance;
+use super::lineup::added_places;
+use super::result::Selected;
+use super::steps::{LARGE, Lacking, Model, Setting};
+use crate::least_squares::residuals;
+use crate::objective::Objective;
+use crate::search::Watch;
+use crate::uncertainty::nudges;
+use crate::{Error, NoiseLevels, Quantity};
+use nalgebra::{DMatrix, DVector};
+use voronudge_geometry::Vector;
+use voronudge_model::Effect;
+
+/// Lead in `−2 log L` below which another effect could as well be the right one: under it, so large a lead of a wrong one has a
+/// probability below `exp(−lead/2)`, 5 %.
+const LEAD: f64 = 6.0;
+
+/// Lead of the linear problem below which it is refitted to know.
+const UNSURE: f64 = 25.0;
+
+/// The effects added.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Selection {
+    pub selected: Vec<Selected>,
+    /// Share of what the base model lacks beyond noise that they explain together.
+    pub share: f64,
+    /// The largest share that is compatible with chance.
+    pub largest_share: f64,
+}
+
+/// The effect added that is least beyond chance given the others, if any is not beyond it.
+pub(super) fn superfluous(setting: &Setting<'_>, model: &Model) -> Result<Option<usize>, Error> {
+    let mut worst: Option<(usize, f64)> = None;
+    for own in without_each(setting, model)? {
+        if own.adjusted_p >= setting.search.level && worst.is_none_or(|(_, p)| own.adjusted_p > p) {
+            worst = Some((own.candidate, own.adjusted_p));
+        }
+    }
+    Ok(worst.map(|(candidate, _)| candidate))
+}
+
+/// One effect added, tested with all others in the model.
+struct Tested {
+    candidate: usize,
+    adjusted_p: f64,
+    statistic: f64,
+    size: f64,
+    /// Other candidates in its place: lead over them in the linear problem, and their coefficients.
+    others: Vec<(usize, f64, Vec<f64>)>,
+}
+
+fn without_each(setting: &Setting<'_>, model: &Model) -> Result<Vec<Tested>, Error> {
+    let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
+    let mut all = Vec::with_capacity(model.added.len());
+    for (candidate, places) in model.added.iter().zip(&places.effects) {
+        let mut lineup = setting.lineup(model)?;
+        let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
+        lineup.restore(*candidate, &own);
+        let others: Vec<usize> = model.added.iter().copied().filter(|k| k != candidate).collect();
+        let projected = lineup.beyond(&others);
+        let on_offer = setting.named(&others);
+        let chance = Chance::new(&projected, &on_offer, setting.search.fit.seed);
+        let score = projected.score(*candidate);
+        let worth = |statistic: f64, dimension: usize| statistic - setting.price(&lineup, dimension);
+        let mine = worth(score.statistic, score.dimension);
+        // What another explains is measured with the same noise.
+        let unit = score.statistic / projected.gain(*candidate).max(f64::MIN_POSITIVE);
+        let rivals = on_offer.iter().filter(|k| *k != candidate).map(|k| {
+            let other = projected.score(*k);
+            (
+                *k,
+                mine - worth(projected.gain(*k) * unit, other.dimension),
+                other.coefficients.as_slice().to_vec(),
+            )
+        });
+        all.push(Tested {
+            candidate: *candidate,
+            adjusted_p: chance.adjusted(score.p),
+            statistic: score.statistic,
+            size: score.size,
+            others: rivals.collect(),
+        });
+    }
+    Ok(all)
+}
+
+/// The effects added with all that is known of them.
+pub(super) fn selection(
+    setting: &Setting<'_>,
+    base: &Model,
+    model: &Model,
+    found: &[Lacking],
+    watch: &mut Watch<'_>,
+) -> Result<Selection, Error> {
+    let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
+    let tested = without_each(setting, model)?;
+    let excess = Excess::new(setting, base, model)?;
+    let mut selected = Vec::with_capacity(tested.len());
+    for (tested, places) in tested.into_iter().zip(&places.effects) {
+        let candidate = &setting.candidates[tested.candidate];
+        let first = found.iter().find(|lacking| lacking.candidate == tested.candidate);
+        selected.push(Selected {
+            effect: candidate.effect,
+            columns: candidate.columns.clone().unwrap_or_default(),
+            coefficients: places
+                .iter()
+                .map(|k| model.inference.effects[k - Quantity::COEFFICIENTS])
+                .collect(),
+            adjusted_p: first.map_or(1.0, |lacking| lacking.adjusted_p).max(tested.adjusted_p),
+            share_of_excess: (tested.statistic / excess.before).clamp(0.0, 1.0),
+            size: tested.size,
+            class: class(setting, model, &tested, watch)?,
+            partial: partial(setting, model, places)?,
+        });
+    }
+    Ok(Selection { selected, share: excess.share(0.0), largest_share: excess.share(1.645) })
+}
+
+/// Effects that could as well stand in the place of one that was added.
+fn class(
+    setting: &Setting<'_>,
+    model: &Model,
+    tested: &Tested,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<&'static Effect>, Error> {
+    let mut rivals: Vec<&(usize, f64, Vec<f64>)> =
+        tested.others.iter().filter(|own| own.1 < UNSURE).collect();
+    rivals.sort_by(|a, b| a.1.total_cmp(&b.1));
+    let cells: usize = setting.frames.iter().map(|frame| frame.positions.len()).sum();
+    let leads = if cells > LARGE {
+        rivals.iter().map(|rival| rival.1).collect()
+    } else {
+        let kept: Vec<usize> = model.added.iter().copied().filter(|k| *k != tested.candidate).collect();
+        let lineup = setting.lineup(model)?;
+        let price = |k: usize| setting.price(&lineup, lineup.group(k).len());
+        let mine = model.inference.objective + price(tested.candidate);
+        watch.each("classes", &rivals, 1.0, |(candidate, _, coefficients)| {
+            let mut added = kept.clone();
+            added.push(*candidate);
+            let value = setting.refined(model, &kept, &added, coefficients)?;
+            Ok(value + price(*candidate) - mine)
+        })?
+    };
+    let close = rivals.iter().zip(leads).filter(|(_, lead)| *lead < LEAD);
+    Ok(close.map(|((candidate, ..), _)| setting.candidates[*candidate].effect).collect())
+}
+
+/// What an effect predicts beyond the terms of the base model, and that with what the whole model leaves, in each target.
+fn partial(setting: &Setting<'_>, model: &Model, places: &[usize]) -> Result<Vec<[Vector<f64>; 2]>, Error> {
+    let (frames, request) = (setting.frames, &model.request);
+    let space = request.space()?;
+    let levels: NoiseLevels = model.inference.noise;
+    let objective = Objective { frames, structure: &request.structure, space: &space, levels };
+    let coefficients = model.inference.coefficients.as_slice();
+    let base = Quantity::COEFFICIENTS;
+    let (mut rows, mut targets) = (Vec::new(), Vec::new());
+    for (index, nudges) in nudges(frames, &model.inference).iter().enumerate() {
+        let evaluated = objective.place(index, nudges)?.evaluate(coefficients);
+        for (datum, rest) in residuals(&frames[index], &evaluated.predicted) {
+            let at = |k: usize| evaluated.by_coefficient[k][datum];
+            let effect =
+                places.iter().fold(Vector::zeros(), |sum: Vector<f64>, k| sum + at(*k) * coefficients[*k]);
+            rows.push((std::array::from_fn::<Vector<f64>, 4, _>(at), effect));
+            targets.push(rest);
+        }
+    }
+    let normal = DMatrix::from_fn(base, base, |i, j| rows.iter().map(|(x, _)| x[i].dot(&x[j])).sum());
+    let right = DVector::from_fn(base, |i, _| rows.iter().map(|(x, effect)| x[i].dot(effect)).sum());
+    let shared =
+        crate::least_squares::invert(normal).map_or_else(|_| DVector::zeros(base), |inverse| inverse * right);
+    let beyond = rows.iter().map(|(x, effect)| (0..base).fold(*effect, |rest, k| rest - x[k] * shared[k]));
+    Ok(beyond.zip(targets).map(|(predicted, rest)| [predicted, predicted + rest]).collect())
+}
+
+/// What the base model lacks beyond noise, at the noise levels of the model with the effects.
+struct Excess {
+    before: f64,
+    after: f64,
+    deviation: f64,
+}
+
+impl Excess {
+    fn new(setting: &Setting<'_>, base: &Model, model: &Model) -> Result<Self, Error> {
+        let levels = model.inference.noise;
+        let at_levels = Model {
+            added: Vec::new(),
+            request: base.request.clone(),
+            inference: crate::Inference { noise: levels, ..base.inference.clone() },
+        };
+        let before = setting.refined(&at_levels, &[], &[], &[])? - base.inference.expected_objective;
+        let after = model.inference.objective - model.inference.expected_objective;
+        let deviation = (2.0 * model.inference.expected_objective).sqrt();
+        Ok(Self { before: before.max(before - after).max(f64::MIN_POSITIVE), after, deviation })
+    }
+
+    /// The share explained, with what is left smaller by so many standard deviations.
+    fn share(&self, deviations: f64) -> f64 {
+        (1.0 - (self.after - deviations * self.deviation).max(0.0) / self.before).clamp(0.0, 1.0)
+    }
+}

@@ -1,0 +1,103 @@
+//! What is known of a model after its fit: error on data it has not seen, budget, whitened residual.
+
+use super::result::{Budget, Fitted, HeldOut};
+use super::whitening::whitened;
+use crate::cross_validation::Folds;
+use crate::diagnostics::{CellData, ResidualField, diagnose};
+use crate::least_squares::residuals;
+use crate::objective::Objective;
+use crate::uncertainty::nudges;
+use crate::{Error, Inference, Observation, Request, Velocities};
+use voronudge_geometry::{Vector, areas};
+
+/// A fit with what it leaves.
+#[derive(Clone, Copy)]
+pub(super) struct Evidence<'a> {
+    pub frames: &'a [Observation],
+    pub request: &'a Request,
+    pub identities: Option<&'a [Vec<i64>]>,
+    /// Error of the base model at the measured positions.
+    pub base_error: f64,
+}
+
+impl Evidence<'_> {
+    pub fn of(&self, inference: Inference, folds: Option<&Folds>) -> Result<Fitted, Error> {
+        let residuals = self.whitened(&inference)?;
+        let frames = self.frames;
+        let places: Vec<Vec<Vector<f64>>> = frames
+            .iter()
+            .map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect())
+            .collect();
+        let cells: Vec<Option<(Vec<f64>, Vec<Vector<f64>>)>> = frames.iter().map(cell_data).collect();
+        let fields = (0..frames.len())
+            .map(|k| {
+                let domain = frames[k].tessellation.domain();
+                let field = ResidualField::new(k, &places[k], &residuals[k], domain, 1.0)?;
+                match &cells[k] {
+                    Some((areas, velocities)) => field.with_cells(k, CellData { areas, velocities }),
+                    None => Ok(field),
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let identities: Option<Vec<Vec<i64>>> = self.identities.map(|all| {
+            let own = |(frame, ids): (&Observation, &Vec<i64>)| {
+                frame.targets().map(|(datum, _)| ids.get(datum).copied().unwrap_or(-1)).collect()
+            };
+            frames.iter().zip(all).map(own).collect()
+        });
+        let diagnostics = diagnose(&fields, identities.as_deref(), self.request.seed);
+        let held_out = folds.map(HeldOut::of);
+        Ok(Fitted { budget: self.budget(&inference), held_out, residuals, diagnostics, inference })
+    }
+
+    fn budget(&self, inference: &Inference) -> Budget {
+        let components: usize = self.frames.iter().map(Observation::components).sum();
+        let velocity_noise = components as f64 * inference.noise.velocity.powi(2) / inference.total;
+        Budget {
+            position_noise: inference.nmse.noise_floor - velocity_noise,
+            velocity_noise,
+            base: 1.0 - self.base_error,
+            effects: self.base_error - inference.nmse.un_nudged,
+            unexplained: inference.nmse.un_nudged - inference.nmse.noise_floor,
+        }
+    }
+
+    /// The residual linearised back to the measured positions and freed from the correlations that their errors make.
+    fn whitened(&self, inference: &Inference) -> Result<Vec<Vec<Vector<f64>>>, Error> {
+        let space = self.request.space()?;
+        let Self { frames, request, .. } = *self;
+        let objective =
+            Objective { frames, structure: &request.structure, space: &space, levels: inference.noise };
+        let coefficients = inference.coefficients.as_slice();
+        let mut fields = Vec::with_capacity(frames.len());
+        for (index, nudges) in nudges(frames, inference).iter().enumerate() {
+            let placed = objective.place(index, nudges)?;
+            let evaluated = placed.evaluate(coefficients);
+            let jacobian = placed.jacobian(coefficients, &evaluated);
+            let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
+                .into_iter()
+                .map(|(datum, rest)| {
+                    let back = jacobian.row(datum).fold(rest, |sum, (cell, b)| {
+                        let (x, y) = (nudges[2 * cell], nudges[2 * cell + 1]);
+                        sum + Vector::new(b[0] * x + b[1] * y, b[2] * x + b[3] * y)
+                    });
+                    (datum, back)
+                })
+                .unzip();
+            let cells = frames[index].positions.len();
+            fields.push(whitened(&jacobian, cells, &rows, &y, objective.spring(), inference.noise.velocity));
+        }
+        Ok(fields)
+    }
+}
+
+/// Areas and velocities of the cells with a target; nothing for velocities on a grid.
+fn cell_data(frame: &Observation) -> Option<(Vec<f64>, Vec<Vector<f64>>)> {
+    match &frame.velocities {
+        Velocities::OnGrid(_) => None,
+        Velocities::OfCells(_) => {
+            let all = areas(&frame.tessellation, &frame.positions);
+            Some(frame.targets().map(|(cell, v)| (all[cell], v)).unzip())
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Synthetic data without an effect, searched like the data.
+
+use super::result::NullSets;
+use super::steps::{Model, Setting};
+use crate::search::Watch;
+use crate::uncertainty::synthetic;
+use crate::{Error, infer};
+use std::ops::ControlFlow;
+
+/// Sets refitted if nothing else is asked for: with 39, a result that none of them reaches has p = 1/40.
+const SETS: usize = 39;
+
+/// Velocities of all frames above which no set is refitted if nothing else is asked for.
+const LARGE: usize = 1000;
+
+/// Fits and screens data that the base model could have made.
+pub(super) fn searched(
+    setting: &Setting<'_>,
+    base: &Model,
+    watch: &mut Watch<'_>,
+) -> Result<NullSets, Error> {
+    let count = match setting.search.null_sets {
+        Some(count) => count,
+        None if base.inference.used <= LARGE => SETS,
+        None => 0,
+    };
+    // Apart from the replicates of a bootstrap with the same seed.
+    let numbers: Vec<u64> = (1..=count as u64).map(|k| 1_000_000 + k).collect();
+    let smallest =
+        watch.each("null data", &numbers, 1.0, |number| Ok(smallest_p(setting, base, *number).ok()))?;
+    let (seeds, mut smallest_p): (Vec<u64>, Vec<f64>) =
+        numbers.into_iter().zip(smallest).filter_map(|(seed, p)| Some((seed, p?))).unzip();
+    smallest_p.sort_unstable_by(f64::total_cmp);
+    Ok(NullSets { smallest_p, seeds })
+}
+
+fn smallest_p(setting: &Setting<'_>, base: &Model, number: u64) -> Result<f64, Error> {
+    let (frames, request) = synthetic(setting.frames, &base.request, &base.inference, number)?;
+    let inference = infer(&frames, &request, &mut |_| ControlFlow::Continue(()))?;
+    let setting = Setting { frames: &frames, ..*setting };
+    let model = Model { added: Vec::new(), request, inference };
+    let lineup = setting.lineup(&model)?;
+    let projected = lineup.beyond(&[]);
+    Ok(setting.named(&[]).into_iter().map(|k| projected.score(k).p).fold(1.0, f64::min))
+}
+
+/// Probability of so small a p of any candidate, from the sets; zero if there are none.
+pub(super) fn probability(sets: &NullSets, p: f64) -> f64 {
+    if sets.smallest_p.is_empty() {
+        return 0.0;
+    }
+    let reached = sets.smallest_p.partition_point(|own| *own <= p);
+    (reached + 1) as f64 / (sets.smallest_p.len() + 1) as f64
+}

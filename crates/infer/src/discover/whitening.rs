@@ -1,0 +1,114 @@
+//! Residuals without the correlations that errors of the positions make.
+
+use nalgebra::{DMatrix, DVector};
+use voronudge_geometry::Vector;
+use voronudge_model::BlockMatrix;
+
+/// Most dimensions of the Krylov space.
+const DIMENSIONS: usize = 160;
+
+/// Change of the result, relative to its size, that ends the iteration.
+const TOLERANCE: f64 = 1e-9;
+
+/// `W^{−1/2} y / σ_v` with `W = I + JJᵀ/k`, by the Lanczos method: of unit variance and without correlations if y has the
+/// covariance `σ_v² W`. `rows` are the rows of J that belong to y.
+pub(super) fn whitened(
+    jacobian: &BlockMatrix,
+    cells: usize,
+    rows: &[usize],
+    y: &[Vector<f64>],
+    spring: f64,
+    velocity_noise: f64,
+) -> Vec<Vector<f64>> {
+    let apply = |x: &DVector<f64>| {
+        let mut transposed = vec![0.0; 2 * cells];
+        for (k, row) in rows.iter().enumerate() {
+            let (u, w) = (x[2 * k], x[2 * k + 1]);
+            for (column, b) in jacobian.row(*row) {
+                transposed[2 * column] += b[0] * u + b[2] * w;
+                transposed[2 * column + 1] += b[1] * u + b[3] * w;
+            }
+        }
+        let mut result = x.clone();
+        for (k, row) in rows.iter().enumerate() {
+            for (column, b) in jacobian.row(*row) {
+                let (u, w) = (transposed[2 * column], transposed[2 * column + 1]);
+                result[2 * k] += (b[0] * u + b[1] * w) / spring;
+                result[2 * k + 1] += (b[2] * u + b[3] * w) / spring;
+            }
+        }
+        result
+    };
+    let start = DVector::from_iterator(2 * y.len(), y.iter().flat_map(|v| [v.x, v.y]));
+    let root = inverse_root(apply, &start) / velocity_noise;
+    root.as_slice().chunks_exact(2).map(|v| Vector::new(v[0], v[1])).collect()
+}
+
+/// `A^{−1/2} b` for a symmetric operator A whose eigenvalues are one or more.
+fn inverse_root(apply: impl Fn(&DVector<f64>) -> DVector<f64>, b: &DVector<f64>) -> DVector<f64> {
+    let size = b.norm();
+    if size <= 0.0 {
+        return b.clone();
+    }
+    let (mut basis, mut diagonal, mut beside) = (vec![b / size], Vec::new(), Vec::<f64>::new());
+    let mut previous: Option<DVector<f64>> = None;
+    let most = DIMENSIONS.min(b.len());
+    loop {
+        let m = basis.len();
+        let mut next = apply(&basis[m - 1]);
+        diagonal.push(next.dot(&basis[m - 1]));
+        // Twice, because once leaves rounding behind.
+        for _ in 0..2 {
+            for q in &basis {
+                let amount = q.dot(&next);
+                next.axpy(-amount, q, 1.0);
+            }
+        }
+        let norm = next.norm();
+        let ended = m == most || norm <= 1e-12 * diagonal[0].abs();
+        if ended || m % 8 == 0 {
+            let mut small = DMatrix::from_diagonal(&DVector::from_column_slice(&diagonal));
+            for (k, entry) in beside.iter().enumerate() {
+                small[(k, k + 1)] = *entry;
+                small[(k + 1, k)] = *entry;
+            }
+            let eigen = small.symmetric_eigen();
+            let first = eigen.eigenvectors.row(0).transpose();
+            let weights = first.zip_map(&eigen.eigenvalues, |v, e| v / e.max(1.0).sqrt());
+            let coordinates = &eigen.eigenvectors * weights * size;
+            let change = previous.as_ref().map_or(f64::INFINITY, |old: &DVector<f64>| {
+                let old = old.clone().resize_vertically(m, 0.0);
+                (&coordinates - old).norm()
+            });
+            if ended || change <= TOLERANCE * coordinates.norm() {
+                return basis
+                    .iter()
+                    .zip(coordinates.iter())
+                    .fold(DVector::zeros(b.len()), |sum, (q, c)| sum + q * *c);
+            }
+            previous = Some(coordinates);
+        }
+        beside.push(norm);
+        basis.push(next / norm);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_root_is_that_of_the_dense_matrix() {
+        let n = 24;
+        let j = DMatrix::from_fn(n, n, |i, k| ((i * 7 + k * 3) as f64).sin() * 3.0);
+        let w = DMatrix::identity(n, n) + &j * j.transpose();
+        let b = DVector::from_fn(n, |i, _| (i as f64).cos());
+        let eigen = w.clone().symmetric_eigen();
+        let expected = &eigen.eigenvectors
+            * DMatrix::from_diagonal(&eigen.eigenvalues.map(|e| 1.0 / e.sqrt()))
+            * eigen.eigenvectors.transpose()
+            * &b;
+        let found = inverse_root(|x| &w * x, &b);
+        assert!((found - &expected).norm() < 1e-8 * expected.norm());
+    }
+}
