@@ -86,7 +86,6 @@ impl DataSetArguments {
             unwrapped: self.unwrapped.then_some(true),
             position_noise: self.position_noise,
             velocity_noise: self.velocity_noise,
-            ..Source::default()
         };
         Ok(source.load()?)
     }
