@@ -291,7 +291,6 @@ impl Projected<'_> {
     pub fn variance(&self) -> Option<f64> {
         self.lineup.variance
     }
-
 }
 
 impl Score {

@@ -1,6 +1,6 @@
 //! Effects as the report tells them.
 
-use super::sentences::{listed, percent, told_apart_by};
+use super::sentences::{listed, percent, probability, told_apart_by};
 use crate::command::fit::Prepared;
 use voronudge_infer::discover::{Discovery, Fate, Ranked, Selected};
 use voronudge_infer::{Estimate, Scale};
@@ -9,7 +9,6 @@ use voronudge_report::Units;
 use voronudge_report::discover_report::{
     CandidateStatus, EffectCoefficient, EffectKind, Gain, RankedEffect, SelectedEffect,
 };
-use voronudge_report::numbers::significant;
 
 /// The family of an effect.
 pub(super) fn family(effect: &Effect) -> EffectKind {
@@ -124,18 +123,20 @@ pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) 
 }
 
 /// What became of a candidate.
-pub(super) fn ranked(candidate: &Ranked, discovery: &Discovery, level: f64) -> RankedEffect {
+pub(super) fn ranked(candidate: &Ranked, discovery: &Discovery) -> RankedEffect {
     let percentage = |share: f64| 100.0 * share;
     let only = matches!(discovery.selected.as_slice(), [only] if only.effect.id == candidate.effect.id);
     let gain = discovery.gain.filter(|_| only);
-    let (status, reason) = verdict(candidate, discovery, level);
+    let (status, reason) = verdict(candidate, discovery);
+    // What could not be tested has no statistic.
+    let tested = |number: f64| if candidate.dimension == 0 { f64::NAN } else { number };
     RankedEffect {
         effect: candidate.effect.id.into(),
         kind: family(candidate.effect),
         dimension: candidate.dimension,
-        statistic: candidate.statistic,
-        p: candidate.p,
-        p_adjusted: candidate.adjusted_p,
+        statistic: tested(candidate.statistic),
+        p: tested(candidate.p),
+        p_adjusted: tested(candidate.adjusted_p),
         detection_limit: percentage(candidate.detection_limit),
         size: percentage(candidate.size),
         size_ci95: candidate.interval.map(|ends| ends.map(percentage)),
@@ -146,28 +147,24 @@ pub(super) fn ranked(candidate: &Ranked, discovery: &Discovery, level: f64) -> R
 }
 
 /// Why a candidate was taken or not.
-fn verdict(candidate: &Ranked, discovery: &Discovery, level: f64) -> (CandidateStatus, String) {
-    let p = significant(candidate.adjusted_p, 2);
+fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, String) {
+    let p = probability(candidate.adjusted_p);
     match candidate.fate {
         Fate::Selected => {
             let found = discovery.selected.iter().find(|selected| selected.effect.id == candidate.effect.id);
             let share = found.map_or(String::new(), |selected| {
                 format!(", explains {} of what is missing without it", percent(selected.share_of_excess))
             });
-            (
-                CandidateStatus::Selected,
-                format!("stands out against chance{share}, and helps on data not seen"),
-            )
+            (CandidateStatus::Selected, format!("stands out against chance{share}"))
         }
         Fate::Alias(id) => (CandidateStatus::Alias, format!("these data cannot tell it from {id}")),
         Fate::Absorbed => (
             CandidateStatus::NotTestable,
             "a change of the parameters of the base model does the same".into(),
         ),
-        Fate::BelowThreshold => (
-            CandidateStatus::BelowThreshold,
-            format!("no more than chance: adjusted p {p} is not below {level}"),
-        ),
+        Fate::BelowThreshold => {
+            (CandidateStatus::BelowThreshold, format!("no more than chance (adjusted p {p})"))
+        }
         Fate::Explained => {
             let added: Vec<&str> = discovery.selected.iter().map(|selected| selected.effect.id).collect();
             (

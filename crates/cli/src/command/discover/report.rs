@@ -1,8 +1,10 @@
 //! The result of `discover` as its report.
 
+use super::sentences::probability;
 use super::{effects, sentences};
 use crate::command::fit::{OrderedField, Prepared, outcome};
 use crate::run::Run;
+use voronudge_infer::diagnostics::Kind;
 use voronudge_infer::discover::{
     Budget, Described, Discovery, Fitted, HeldOut, HeldOutUnit, Search, Verdict as Answer,
 };
@@ -13,7 +15,6 @@ use voronudge_report::discover_report::{
     StructureTest, Unexplained, Verdict,
 };
 use voronudge_report::infer_report::Quantity;
-use voronudge_report::numbers::significant;
 use voronudge_report::{BeforeAfter, DiscoverReport, Units};
 
 /// What was searched, and in which data.
@@ -44,7 +45,7 @@ pub(super) fn report(run: &Run, asked: &Asked<'_>, discovery: &Discovery) -> Dis
         models: fits,
         description: discovery.description.as_ref().map(|described| description(prepared, described)),
         selected: discovery.selected.iter().map(|one| effects::selected(one, prepared, &units)).collect(),
-        ranking: discovery.ranking.iter().map(|one| effects::ranked(one, discovery, search.level)).collect(),
+        ranking: discovery.ranking.iter().map(|one| effects::ranked(one, discovery)).collect(),
         unexplained: unexplained(prepared, &discovery.after),
         noise_budget: BeforeAfter {
             before: budget(prepared, &discovery.before.budget),
@@ -136,6 +137,15 @@ fn unexplained(prepared: &Prepared, fitted: &Fitted) -> Unexplained {
     }
 }
 
+/// What a test for structure looks at.
+fn tested(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Neighbours => "neighbours are alike",
+        Kind::LowModes => "a smooth pattern across the field",
+        Kind::Successive => "the same cell in successive frames",
+    }
+}
+
 fn budget(prepared: &Prepared, shares: &Budget) -> NoiseBudget {
     let squares = |v: &voronudge_geometry::Vector<f64>| v.norm_squared();
     let of_frame =
@@ -170,7 +180,7 @@ fn calibration(discovery: &Discovery, level: f64) -> Calibration {
             [least, ..] => format!(
                 "{} made-up data sets of the base model with {noise} were fitted and searched; their smallest p of any candidate is {}.",
                 smallest.len(),
-                significant(*least, 2)
+                probability(*least)
             ),
         },
     }

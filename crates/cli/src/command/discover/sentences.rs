@@ -20,6 +20,11 @@ pub(super) fn percent(share: f64) -> String {
     format!("{} %", significant(100.0 * share, 2))
 }
 
+/// A probability; the very small ones are not told apart.
+pub(super) fn probability(p: f64) -> String {
+    if (0.0..1e-4).contains(&p) { "<0.0001".into() } else { significant(p, 2) }
+}
+
 /// The measurement that tells two effects apart.
 pub(super) fn told_apart_by(effect: &Effect, other: &Effect) -> String {
     let known = |one: &Effect, two: &Effect| {
@@ -89,7 +94,7 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
         }
         (Verdict::Attributed, [meaning]) => {
             format!(
-                "{meaning} ({}): it explains {share} of what the base model lacks; {errors}.",
+                "{meaning} ({}). This explains {share} of what the base model lacks; {errors}.",
                 names.concat()
             )
         }

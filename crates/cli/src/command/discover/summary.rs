@@ -1,5 +1,6 @@
 //! The result of `discover` as a summary on stdout.
 
+use super::sentences::probability;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::DiscoverReport;
@@ -60,7 +61,7 @@ fn selected(report: &DiscoverReport) -> String {
             text,
             "\n{}: adjusted p {}, {} % of what is missing",
             effect.effect,
-            significant(effect.p_adjusted, 2),
+            probability(effect.p_adjusted),
             significant(100.0 * effect.share_of_excess, 2)
         );
         for (name, parameter) in effect.parameters() {
@@ -92,7 +93,7 @@ fn ranking(report: &DiscoverReport) -> String {
             effect.effect,
             significant(effect.size, 2),
             significant(effect.detection_limit, 2),
-            significant(effect.p_adjusted, 2),
+            probability(effect.p_adjusted),
             effect.reason
         );
     }
