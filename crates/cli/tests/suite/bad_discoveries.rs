@@ -87,7 +87,7 @@ fn external_fields_that_are_none_are_refused() {
     refused(&["--field", field], &["--field-x"]);
     refused(&["--field-x", x], &["--field"]);
     let all = ["--field", field, "--field-x", x, "--field-y", y];
-    refused(&all, &["field.npy", "not there"]);
+    refused(&all, &["field.npy", "no such file"]);
     data.write_array("field.npy", &Array3::<f64>::zeros((4, 4, 2)));
     refused(&all, &["y.npy", "3"]);
     let mut vectors = Array3::<f64>::ones((3, 4, 2));

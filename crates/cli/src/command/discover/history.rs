@@ -5,7 +5,6 @@
 
 use crate::command::fit::{Measured, SnapshotArguments, observe, remove_median};
 use crate::failure::Failure;
-use crate::run::Run;
 use crate::snapshot::Snapshot;
 use clap::ValueEnum;
 use ndarray::Axis;
@@ -147,36 +146,43 @@ impl History {
     }
 }
 
-/// Frames with earlier velocities, if candidates have a memory and there are such frames; all otherwise. The predictors,
-/// if they are used.
+/// The frames that are explained.
+pub(super) struct Kept {
+    pub frames: Vec<usize>,
+    /// What effects with a memory are predicted from, if they can be tested.
+    pub predictors: Option<Predictors>,
+    /// Which frames were left out, and why.
+    pub warning: Option<String>,
+}
+
+/// Frames with earlier velocities, if candidates have a memory and there are such frames; all otherwise.
 pub(super) fn keep_frames(
     history: Option<&History>,
     data: &DataSet,
     frames: Vec<usize>,
     candidates: &[&'static Effect],
-    run: &mut Run,
-) -> (Vec<usize>, Option<Predictors>) {
-    let remembered: Vec<&str> =
+) -> Kept {
+    let remembering: Vec<&str> =
         candidates.iter().filter(|effect| has_memory(effect)).map(|effect| effect.id).collect();
-    let Some(history) = history.filter(|_| !remembered.is_empty()) else {
-        return (frames, None);
+    let Some(history) = history.filter(|_| !remembering.is_empty()) else {
+        return Kept { frames, predictors: None, warning: None };
     };
     let (with, without): (Vec<usize>, Vec<usize>) =
         frames.iter().partition(|&&frame| history.reaches(data, frame));
     if with.is_empty() {
-        return (frames, None);
+        return Kept { frames, predictors: None, warning: None };
     }
-    if !without.is_empty() {
-        let list: Vec<String> = without.iter().map(usize::to_string).collect();
-        let (plural, verb) = if without.len() == 1 { ("", "is") } else { ("s", "are") };
-        run.warn(format!(
-            "frame{plural} {} {verb} left out: no cell has an earlier velocity there, from which {} could be predicted; \
-             --without {} keeps {}",
+    let list: Vec<String> = without.iter().map(usize::to_string).collect();
+    let (noun, verb, them) =
+        if without.len() == 1 { ("frame", "is", "it") } else { ("frames", "are", "them") };
+    let warning = (!without.is_empty()).then(|| {
+        format!(
+            "{noun} {} {verb} left out: no cell has an earlier velocity there, from which {} could be predicted; \
+             --without {} keeps {them}",
             list.join(", "),
-            remembered.join(" and "),
-            remembered.join(","),
-            if without.len() == 1 { "it" } else { "them" },
-        ));
-    }
-    (with, Some(history.predictors.clone()))
+            remembering.join(" and "),
+            remembering.join(","),
+        )
+    });
+    Kept { frames: with, predictors: Some(history.predictors.clone()), warning }
 }

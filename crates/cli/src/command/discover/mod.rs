@@ -66,11 +66,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let map = arguments.field.load(&mut data)?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let velocities = Measured::new(snapshots, &data, arguments.difference)?;
-    warn_of_shared_errors(&velocities, &mut run);
-    warn_of_unknown_noise(&data, &mut run);
+    let mut warnings: Vec<String> =
+        shared_errors(&velocities).into_iter().chain(unknown_noise(&data)).collect();
     let history = History::new(&data, &velocities, arguments.given_difference)?;
     let frames = velocities.frames(snapshots, &data)?;
-    let (frames, predictors) = history::keep_frames(history.as_ref(), &data, frames, &candidates, &mut run);
+    let kept = history::keep_frames(history.as_ref(), &data, frames, &candidates);
+    warnings.extend(kept.warning);
     let question = Question {
         arguments: snapshots,
         data: &data,
@@ -78,8 +79,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         method: arguments.method.method(),
         seed: arguments.common.seed,
     };
-    let mut prepared = question.prepare(velocities, frames, &mut run)?;
+    let mut prepared = question.prepare(velocities, kept.frames, &mut run)?;
     surroundings::surround(&mut prepared, (snapshots, &data), map.as_ref(), history.as_ref())?;
+    warnings.iter().for_each(|warning| run.warn(warning));
     let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
     let mut progress = Progress::new(arguments.common.verbosity());
     let searched = discover(&prepared.observations, &search, &mut |state| {
@@ -92,7 +94,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
         arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
     }
-    let asked = Asked { data: &data, prepared: &prepared, search: &search, predictors };
+    let asked = Asked { data: &data, prepared: &prepared, search: &search, predictors: kept.predictors };
     let report = report::report(&run, &asked, &discovery);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
@@ -105,32 +107,31 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     Ok(if is_acceptable(last) { Answer::Positive } else { Answer::Negative })
 }
 
-/// Says what the error of a shared position does to differences.
-fn warn_of_shared_errors(velocities: &Measured, run: &mut Run) {
-    let force = match velocities.derived() {
-        Some(Difference::Forward) => "start at: it acts as a spurious restoring force",
-        Some(Difference::Backward) => "end at: it acts as a spurious repelling force",
-        _ => return,
+/// What the error of a shared position does to differences.
+fn shared_errors(velocities: &Measured) -> Option<String> {
+    let (kind, force) = match velocities.derived()? {
+        Difference::Forward => ("forward", "start at: it acts as a spurious restoring force"),
+        Difference::Backward => ("backward", "end at: it acts as a spurious repelling force"),
+        Difference::Central => return None,
     };
-    let kind = velocities.derived().unwrap_or_default();
-    run.warn(format!(
+    Some(format!(
         "velocities are {kind} differences, which share the error of the position they {force}; --difference central does not, \
-         but needs three more frames for earlier velocities"
-    ));
+         but needs more frames for earlier velocities"
+    ))
 }
 
-/// Says what an estimate of the noise contains.
-fn warn_of_unknown_noise(data: &DataSet, run: &mut Run) {
+/// What an estimate of the noise contains.
+fn unknown_noise(data: &DataSet) -> Option<String> {
     let what = match (data.position_noise, data.velocity_noise) {
-        (Some(_), Some(_)) => return,
+        (Some(_), Some(_)) => return None,
         (None, Some(_)) => "position noise",
         (Some(_), None) => "velocity noise",
         (None, None) => "noise of positions and velocities",
     };
-    run.warn(format!(
+    Some(format!(
         "the {what} is not given, so it is estimated from what the fit leaves: an effect that is missing inflates the estimate, \
          which is an upper bound; state position_noise and velocity_noise where they are known"
-    ));
+    ))
 }
 
 /// The tracks of the cells of each frame, where there are several frames.

@@ -132,7 +132,11 @@ fn unexplained(prepared: &Prepared, fitted: &Fitted) -> Unexplained {
             .structure
             .tests
             .iter()
-            .map(|test| StructureTest { name: test.kind.name().into(), statistic: test.statistic, p: test.p })
+            .map(|test| StructureTest {
+                name: tested(test.kind).into(),
+                statistic: test.statistic,
+                p: test.p,
+            })
             .collect(),
     }
 }

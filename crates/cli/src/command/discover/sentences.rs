@@ -7,6 +7,9 @@ use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Search, Selected, 
 use voronudge_model::Effect;
 use voronudge_report::numbers::significant;
 
+/// How meanings tell which sign of the coefficient is meant.
+const POSITIVE: &str = "(c > 0)";
+
 /// Names of effects as a list, with a word before the last.
 pub(super) fn listed(names: &[&str], joint: &str) -> String {
     match names {
@@ -51,9 +54,15 @@ fn others(selected: &Selected) -> impl Iterator<Item = &'static Effect> {
     selected.class.iter().copied().filter(|other| other.id != selected.effect.id)
 }
 
-/// What an effect means, without the full stop.
-fn meaning(effect: &Effect) -> &'static str {
-    effect.meaning.trim_end_matches('.')
+/// What an effect means, without the full stop; with its sign here, where that decides on the meaning.
+fn meaning(selected: &Selected) -> String {
+    let text = selected.effect.meaning.trim_end_matches('.');
+    match selected.coefficients.as_slice() {
+        [only] if text.contains(POSITIVE) => {
+            format!("{text}; here c {} 0", if only.value > 0.0 { ">" } else { "<" })
+        }
+        _ => text.to_owned(),
+    }
 }
 
 /// The error on data that the fit has not seen, before and after.
@@ -87,7 +96,7 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
     let share = percent(discovery.share_of_excess);
     let names: Vec<String> = discovery.selected.iter().map(name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
-    let meanings: Vec<&str> = discovery.selected.iter().map(|selected| meaning(selected.effect)).collect();
+    let meanings: Vec<String> = discovery.selected.iter().map(meaning).collect();
     match (discovery.verdict, meanings.as_slice()) {
         (Verdict::NothingMissing, _) => {
             format!("Nothing is missing: the base model leaves no more than noise; {errors}.")

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::DiscoverReport;
 use voronudge_report::discover_report::{HeldOutError, ModelFit};
-use voronudge_report::numbers::{interval_text, significant};
+use voronudge_report::numbers::{interval_text, significant, unit_text};
 
 /// Candidates shown; the report has all.
 const SHOWN: usize = 5;
@@ -72,7 +72,7 @@ fn selected(report: &DiscoverReport) -> String {
             let _ = writeln!(
                 text,
                 "  {}",
-                format!("{name:<28} {value:>12}  {interval:<26} {}", parameter.unit).trim_end()
+                format!("{name:<28} {value:>12}  {interval:<26} {}", unit_text(&parameter.unit)).trim_end()
             );
         }
     }
