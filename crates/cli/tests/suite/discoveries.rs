@@ -182,3 +182,28 @@ fn earlier_velocities_never_share_time_with_those_explained() {
     assert_eq!(told["cells"]["frames"], serde_json::json!([3]));
     assert!(told["predictors"]["interval"].as_str().unwrap().contains("frame t − 2"));
 }
+
+#[test]
+fn coefficients_are_in_the_units_of_the_data() {
+    // A cell of 20 µm and a time of 5 min instead of one of both.
+    let (length, time) = (20.0, 5.0);
+    let search = |data: &Path, flags: &str| {
+        let noise = "--position-noise 1% --velocity-noise 5%";
+        report(discover(data, &format!("--effects alpha_area --null-sets 0 {noise} {flags}")).path())
+    };
+    let plain = search(&fixture("undeclared/set-29"), "");
+    let data = Folder::copy_of("undeclared/set-29");
+    data.change("positions.npy", |r| *r *= length);
+    data.change("velocities.npy", |v| *v *= length / time);
+    let settings = fs::read_to_string(data.file("dataset.toml")).unwrap();
+    let sides = settings.lines().find_map(|line| line.strip_prefix("box = [")?.strip_suffix(']')).unwrap();
+    let sides: Vec<String> =
+        sides.split(',').map(|side| (length * side.trim().parse::<f64>().unwrap()).to_string()).collect();
+    let units = "--length-unit um --time-unit min";
+    let scaled = search(data.path(), &format!("--box {} {units}", sides.join(" ")));
+    assert_eq!(scaled["selected"][0]["coefficients"][0]["unit"], "1/(um^2*min)");
+    for pointer in ["/selected/0/coefficients/0/value", "/selected/0/ci95/0/0", "/selected/0/ci95/0/1"] {
+        let ratio = number(&scaled, pointer) / number(&plain, pointer) * length * length * time;
+        assert!((ratio - 1.0).abs() < 1e-3, "{pointer}: {ratio}");
+    }
+}
