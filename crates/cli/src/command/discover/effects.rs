@@ -169,7 +169,7 @@ fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, Strin
             let added: Vec<&str> = discovery.selected.iter().map(|selected| selected.effect.id).collect();
             (
                 CandidateStatus::BelowThreshold,
-                format!("explains nothing more once {} is in", listed(&added, "and")),
+                format!("explains nothing more beside {}", listed(&added, "and")),
             )
         }
         Fate::NotConfirmed(why) => {

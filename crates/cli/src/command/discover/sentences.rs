@@ -113,11 +113,15 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
             listed(&names, "and"),
             meanings.join("; ")
         ),
-        (Verdict::Partial, meanings) => format!(
-            "The data are consistent with {}, which explains {share} of what the base model lacks; the rest is \
-             unidentified ({}); {errors}.",
-            listed(&names, "and"),
-            meanings.join("; ")
+        (Verdict::Partial, [meaning]) => format!(
+            "{meaning} ({}): the data are consistent with that, and it explains {share} of what the base model lacks; the \
+             rest is unidentified; {errors}.",
+            names.concat()
+        ),
+        (Verdict::Partial, _) => format!(
+            "The data are consistent with {}, which together explain {share} of what the base model lacks; the rest is \
+             unidentified; {errors}.",
+            listed(&names, "and")
         ),
         (Verdict::UnexplainedStructured, _) => {
             let length =
