@@ -83,7 +83,10 @@ impl<'a> Nudged<'a> {
 
     /// The derivative of what is measured with respect to the positions.
     pub fn jacobian(&self, coefficients: &[f64], evaluated: &Evaluated) -> BlockMatrix {
-        let model = self.structure.model(coefficients, &self.environment);
+        let mut model = self.structure.model(coefficients, &self.environment);
+        // Candidates that are not part of the model yet.
+        model.terms.retain(|weighted| weighted.coefficient != 0.0);
+        model.responses.retain(|weighted| weighted.coefficient != 0.0);
         let of_cells = jacobian(&self.tessellation, &self.positions, &model);
         match &self.sampling {
             None => of_cells,

@@ -4,7 +4,7 @@ use crate::{
     Adhesion, AreaElasticity, Column, Contractility, CorticalChirality, Environment, Parameters, Response,
     Term, columns, response::respond,
 };
-use num_dual::DualSVec64;
+use num_dual::{Dual64, DualSVec64};
 use std::sync::Arc;
 use voronudge_geometry::{Scalar, Tessellation, Vector, lift};
 
@@ -201,40 +201,71 @@ impl Structure {
         environment: &Arc<Environment>,
     ) -> Evaluation {
         if self.responses.is_empty() {
-            let velocities = (0..positions.len())
-                .map(|cell| {
-                    columns.iter().zip(coefficients).fold(Vector::zeros(), |sum, (x, c)| sum + x[cell] * *c)
-                })
-                .collect();
+            let velocities = Fields { tessellation, positions, columns }.sum(coefficients);
             return Evaluation { velocities, by_coefficient: columns.to_vec() };
         }
-        let lifted: Vec<Vector<Dual>> = lift(positions);
-        let mut evaluation = Evaluation { velocities: Vec::new(), by_coefficient: Vec::new() };
-        for first in (0..self.dimension()).step_by(DIRECTIONS) {
-            let last = (first + DIRECTIONS).min(self.dimension());
-            let seeded: Vec<Dual> = (coefficients.iter().enumerate())
-                .map(|(k, &c)| match (first..last).contains(&k) {
-                    true => Dual::from_re(c).derivative(k - first),
-                    false => Dual::from_re(c),
-                })
-                .collect();
-            let model = self.model(&seeded, environment);
-            let zero = Dual::from_re(0.0);
-            let mut v = vec![Vector::new(zero, zero); positions.len()];
-            for (column, coefficient) in columns.iter().zip(&seeded) {
-                for (sum, x) in v.iter_mut().zip(column) {
-                    *sum += Vector::new(*coefficient * x.x, *coefficient * x.y);
+        let fields = Fields { tessellation, positions, columns };
+        let mut model = self.model(coefficients, environment);
+        let is_active = |k: usize| k < self.terms.len() || coefficients[k] != 0.0;
+        let active: Vec<usize> = (0..self.dimension()).filter(|k| is_active(*k)).collect();
+        model.responses.retain(|w| w.coefficient != 0.0);
+        let mut by_coefficient = vec![Vec::new(); self.dimension()];
+        let velocities = if model.responses.is_empty() {
+            by_coefficient[..columns.len()].clone_from_slice(columns);
+            fields.sum(coefficients)
+        } else {
+            let mut velocities = Vec::new();
+            for chosen in active.chunks(DIRECTIONS) {
+                let mut at: Vec<Dual> = coefficients.iter().map(|c| Dual::from_re(*c)).collect();
+                chosen.iter().enumerate().for_each(|(k, c)| at[*c] = at[*c].derivative(k));
+                let mut seeded = self.model(&at, environment);
+                seeded.responses.retain(|w| w.coefficient.re != 0.0);
+                let v = fields.respond(&seeded, &at);
+                for (k, c) in chosen.iter().enumerate() {
+                    let slope = |x: &Dual| x.eps.0.map_or(0.0, |eps| eps[k]);
+                    by_coefficient[*c] = v.iter().map(|v| Vector::new(slope(&v.x), slope(&v.y))).collect();
                 }
+                velocities = v.iter().map(|v| Vector::new(v.x.re, v.y.re)).collect();
             }
-            respond(tessellation, &lifted, &model, &mut v);
-            let slope = |x: &Dual, k: usize| x.eps.0.map_or(0.0, |eps| eps[k]);
-            evaluation.by_coefficient.extend(
-                (0..last - first).map(|k| {
-                    v.iter().map(|v| Vector::new(slope(&v.x, k), slope(&v.y, k))).collect::<Vec<_>>()
-                }),
-            );
-            evaluation.velocities = v.iter().map(|v| Vector::new(v.x.re, v.y.re)).collect();
+            velocities
+        };
+        // What is not part of the model yet, one after another.
+        for k in (0..self.dimension()).filter(|k| !is_active(*k)) {
+            let at: Vec<Dual64> = coefficients.iter().map(|c| Dual64::from_re(*c)).collect();
+            let mut seeded = model.map(Dual64::from_re);
+            let response = self.responses[k - self.terms.len()];
+            seeded.responses.push(WeightedResponse { response, coefficient: Dual64::new(0.0, 1.0) });
+            let v = fields.respond(&seeded, &at);
+            by_coefficient[k] = v.iter().map(|v| Vector::new(v.x.eps, v.y.eps)).collect();
         }
-        evaluation
+        Evaluation { velocities, by_coefficient }
+    }
+}
+
+/// The columns of the terms at some positions.
+struct Fields<'a> {
+    tessellation: &'a Tessellation,
+    positions: &'a [Vector<f64>],
+    columns: &'a [Vec<Vector<f64>>],
+}
+
+impl Fields<'_> {
+    /// Velocities of the terms.
+    fn sum<S: Scalar>(&self, coefficients: &[S]) -> Vec<Vector<S>> {
+        let zero = S::constant(0.0);
+        let mut v = vec![Vector::new(zero, zero); self.positions.len()];
+        for (column, coefficient) in self.columns.iter().zip(coefficients) {
+            for (sum, x) in v.iter_mut().zip(column) {
+                *sum += Vector::new(*coefficient * x.x, *coefficient * x.y);
+            }
+        }
+        v
+    }
+
+    /// The same with the responses of a model.
+    fn respond<S: Scalar>(&self, model: &Model<S>, coefficients: &[S]) -> Vec<Vector<S>> {
+        let mut v = self.sum(coefficients);
+        respond(self.tessellation, &lift::<S>(self.positions), model, &mut v);
+        v
     }
 }

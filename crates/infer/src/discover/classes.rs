@@ -3,7 +3,7 @@
 use super::chance::Chance;
 use super::lineup::added_places;
 use super::result::Selected;
-use super::steps::{LARGE, Lacking, Model, Setting};
+use super::steps::{LARGE, Model, Setting};
 use crate::least_squares::residuals;
 use crate::objective::Objective;
 use crate::search::Watch;
@@ -32,18 +32,21 @@ pub(super) struct Selection {
 
 /// The effect added that is least beyond chance given the others, if any is not beyond it.
 pub(super) fn superfluous(setting: &Setting<'_>, model: &Model) -> Result<Option<usize>, Error> {
-    let mut worst: Option<(usize, f64)> = None;
-    for own in without_each(setting, model)? {
-        if own.adjusted_p >= setting.search.level && worst.is_none_or(|(_, p)| own.adjusted_p > p) {
-            worst = Some((own.candidate, own.adjusted_p));
-        }
-    }
-    Ok(worst.map(|(candidate, _)| candidate))
+    let weakest =
+        without_each(setting, model)?.into_iter().max_by(|a, b| a.adjusted_p.total_cmp(&b.adjusted_p));
+    Ok(weakest.filter(|own| own.adjusted_p >= setting.search.level).map(|own| own.candidate))
+}
+
+/// The effect added whose p is largest given the others, and that p.
+pub(super) fn weakest(setting: &Setting<'_>, model: &Model) -> Result<Option<(usize, f64)>, Error> {
+    let weakest = without_each(setting, model)?.into_iter().max_by(|a, b| a.p.total_cmp(&b.p));
+    Ok(weakest.map(|own| (own.candidate, own.p)))
 }
 
 /// One effect added, tested with all others in the model.
 struct Tested {
     candidate: usize,
+    p: f64,
     adjusted_p: f64,
     statistic: f64,
     size: f64,
@@ -77,6 +80,7 @@ fn without_each(setting: &Setting<'_>, model: &Model) -> Result<Vec<Tested>, Err
         });
         all.push(Tested {
             candidate: *candidate,
+            p: score.p,
             adjusted_p: chance.adjusted(score.p),
             statistic: score.statistic,
             size: score.size,
@@ -91,7 +95,6 @@ pub(super) fn selection(
     setting: &Setting<'_>,
     base: &Model,
     model: &Model,
-    found: &[Lacking],
     watch: &mut Watch<'_>,
 ) -> Result<Selection, Error> {
     let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
@@ -100,7 +103,6 @@ pub(super) fn selection(
     let mut selected = Vec::with_capacity(tested.len());
     for (tested, places) in tested.into_iter().zip(&places.effects) {
         let candidate = &setting.candidates[tested.candidate];
-        let first = found.iter().find(|lacking| lacking.candidate == tested.candidate);
         selected.push(Selected {
             effect: candidate.effect,
             columns: candidate.columns.clone().unwrap_or_default(),
@@ -108,7 +110,7 @@ pub(super) fn selection(
                 .iter()
                 .map(|k| model.inference.effects[k - Quantity::COEFFICIENTS])
                 .collect(),
-            adjusted_p: first.map_or(1.0, |lacking| lacking.adjusted_p).max(tested.adjusted_p),
+            adjusted_p: tested.adjusted_p,
             share_of_excess: (tested.statistic / excess.before).clamp(0.0, 1.0),
             size: tested.size,
             class: class(setting, model, &tested, watch)?,

@@ -28,10 +28,11 @@ pub use result::*;
 use crate::cross_validation::{BLOCKS, Folds, cross_validate};
 use crate::objective::Objective;
 use crate::search::Watch;
-use crate::{Error, Observation};
+use crate::{CrossValidation, Error, Observation};
 use candidate::{Candidate, candidates};
 use classes::Selection;
 use evidence::Evidence;
+use ranking::Ranking;
 use steps::{Model, Setting};
 use voronudge_model::effect::Kind;
 
@@ -52,92 +53,149 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
     let setting = Setting { frames, search, candidates: &offered };
     let mut watch = Watch { observe };
     let base = setting.fit(Vec::new(), &mut watch)?;
-    let lineup = setting.lineup(&base)?;
-    let mut ranking = ranking::rank(&setting, &lineup);
-    let testable = lineup.left() >= lineup.number_of_columns() as f64;
-    let (mut model, mut found) = (None, Vec::new());
-    if testable {
-        (model, found) = grow(&setting, &base, &mut watch)?;
-    }
-    let base_error = base.inference.nmse.un_nudged;
     let blocks = blocks(frames);
-    let before_folds = folds(frames, &base, blocks, &mut watch)?;
-    let mut after_folds = match &model {
-        Some(model) => folds(frames, model, blocks, &mut watch)?,
-        None => None,
-    };
-    let mut gain = before_folds.as_ref().zip(after_folds.as_ref()).map(|(before, after)| before.gain(after));
+    let mut base = Tried { folds: None, model: base };
+    if search.fit.cross_validation == CrossValidation::Done {
+        base.hold_out(frames, blocks, &mut watch)?;
+    }
+    let lineup = setting.lineup(&base.model)?;
+    let mut ranking = Ranking::new(&setting, &lineup);
+    let testable = lineup.left() >= lineup.number_of_columns() as f64;
     let mut null_sets = NullSets::default();
-    let mut refused = None;
-    if model.is_some() {
-        if gain.is_some_and(|[value, error]| value <= error) {
-            refused = Some("the error on velocities held out does not fall by more than its standard error");
-        } else {
-            null_sets = null_data::searched(&setting, &base, &mut watch)?;
-            let smallest = found.iter().map(|lacking: &steps::Lacking| lacking.p).fold(1.0, f64::min);
-            if null_data::probability(&null_sets, smallest) >= search.level {
-                refused = Some("synthetic data without any effect lead to one as often");
-            }
+    let mut grown = None;
+    if testable {
+        grown = grow(&setting, &mut base, blocks, &mut ranking, &mut watch)?;
+        if grown.is_some() {
+            null_sets = null_data::searched(&setting, &base.model, &mut watch)?;
+            grown = confirm(&setting, grown, &null_sets, blocks, &mut ranking, &mut watch)?;
         }
     }
-    if let (Some(reason), Some(model)) = (refused, model.take_if(|_| refused.is_some())) {
-        ranking::refuse(&mut ranking, &setting, &model.added, reason);
-        found.clear();
-        (after_folds, gain) = (None, None);
-    }
+    let base_error = base.model.inference.nmse.un_nudged;
     let identities = search.identities.as_deref();
-    let evidence = Evidence { frames, request: &base.request, identities, base_error };
-    let before = evidence.of(base.inference.clone(), before_folds.as_ref())?;
-    let (after, selection) = match &model {
-        None => (before.clone(), Selection::default()),
-        Some(model) => {
+    let evidence = Evidence { frames, request: &base.model.request, identities, base_error };
+    let before = evidence.of(base.model.inference.clone(), base.folds.as_ref())?;
+    let (after, selection, gain) = match &grown {
+        None => (before.clone(), Selection::default(), None),
+        Some(Tried { model, folds }) => {
             let evidence = Evidence { request: &model.request, ..evidence };
-            let after = evidence.of(model.inference.clone(), after_folds.as_ref())?;
-            (after, classes::selection(&setting, &base, model, &found, &mut watch)?)
+            let after = evidence.of(model.inference.clone(), folds.as_ref())?;
+            let gain = base.folds.as_ref().zip(folds.as_ref()).map(|(before, after)| before.gain(after));
+            (after, classes::selection(&setting, &base.model, model, &mut watch)?, gain)
         }
     };
-    ranking::settle(&mut ranking, &selection);
-    let description = describe(&setting, &base, blocks, &mut watch)?;
-    let left = verdict::Left::new(&setting, model.as_ref().unwrap_or(&base), &after)?;
-    let verdict = verdict::decide(testable, &selection, &left);
-    let single_p = ranking::single_p(&setting, &lineup);
+    ranking.settle(&selection);
+    let description = if testable { describe(&setting, &base.model, blocks, &mut watch)? } else { None };
+    let last = grown.as_ref().map_or(&base.model, |tried| &tried.model);
+    let verdict = verdict::decide(testable, &selection, &verdict::Left::new(&setting, last, &after)?);
     Ok(Discovery {
         verdict,
         before,
         after,
         share_of_excess: selection.share,
         selected: selection.selected,
-        ranking,
+        single_p: ranking.single_p,
+        ranking: ranking.candidates,
         description,
         gain,
-        single_p,
         null_sets,
     })
 }
 
-/// Adds what the model lacks, one effect after another, and takes back what others make superfluous.
+/// A model with its errors on velocities held out.
+struct Tried {
+    model: Model,
+    folds: Option<Folds>,
+}
+
+impl Tried {
+    /// Measures the errors, if they are not known.
+    fn hold_out(
+        &mut self,
+        frames: &[Observation],
+        blocks: usize,
+        watch: &mut Watch<'_>,
+    ) -> Result<(), Error> {
+        if self.folds.is_none() {
+            self.folds = folds(frames, &self.model, blocks, watch)?;
+        }
+        Ok(())
+    }
+}
+
+/// Adds what the model lacks, one effect after another, as long as the error on velocities held out falls, and takes back
+/// what others make superfluous.
 fn grow(
     setting: &Setting<'_>,
-    base: &Model,
+    base: &mut Tried,
+    blocks: usize,
+    ranking: &mut Ranking,
     watch: &mut Watch<'_>,
-) -> Result<(Option<Model>, Vec<steps::Lacking>), Error> {
-    let mut model: Option<Model> = None;
-    let mut found: Vec<steps::Lacking> = Vec::new();
-    while found.len() < setting.search.most_effects {
-        let current = model.as_ref().unwrap_or(base);
-        let Some(lacking) = setting.lacking(current, watch)? else { break };
-        let mut added = current.added.clone();
-        added.push(lacking.candidate);
-        found.push(lacking);
-        model = Some(setting.fit(added, watch)?);
+) -> Result<Option<Tried>, Error> {
+    let mut grown: Option<Tried> = None;
+    while grown.as_ref().map_or(0, |tried| tried.model.added.len()) < setting.search.most_effects {
+        let current = grown.as_mut().unwrap_or(base);
+        let Some(candidate) = setting.lacking(&current.model, watch)? else { break };
+        current.hold_out(setting.frames, blocks, watch)?;
+        let mut added = current.model.added.clone();
+        added.push(candidate);
+        let model = setting.fit(added, watch)?;
+        let folds = folds(setting.frames, &model, blocks, watch)?;
+        let gain = current.folds.as_ref().zip(folds.as_ref()).map(|(before, after)| before.gain(after));
+        if gain.is_some_and(|[value, error]| value <= error) {
+            ranking.refuse(
+                setting.candidates[candidate].effect,
+                "the error on velocities held out does not fall by more than its standard error",
+            );
+            break;
+        }
+        grown = Some(Tried { model, folds });
     }
-    while let Some(current) = &model {
-        let Some(superfluous) = classes::superfluous(setting, current)? else { break };
-        let added: Vec<usize> = current.added.iter().copied().filter(|own| *own != superfluous).collect();
-        found.retain(|lacking| lacking.candidate != superfluous);
-        model = if added.is_empty() { None } else { Some(setting.fit(added, watch)?) };
+    while let Some(current) = &grown {
+        let Some(superfluous) = classes::superfluous(setting, &current.model)? else { break };
+        ranking.refuse(setting.candidates[superfluous].effect, "other effects explain the same");
+        grown = without(setting, current, superfluous, blocks, watch)?;
     }
-    Ok((model, found))
+    Ok(grown)
+}
+
+/// Takes back effects as improbable as which synthetic data without an effect have them too.
+fn confirm(
+    setting: &Setting<'_>,
+    mut grown: Option<Tried>,
+    null_sets: &NullSets,
+    blocks: usize,
+    ranking: &mut Ranking,
+    watch: &mut Watch<'_>,
+) -> Result<Option<Tried>, Error> {
+    while let Some(current) = &grown {
+        let Some((candidate, p)) = classes::weakest(setting, &current.model)? else { break };
+        if null_data::probability(null_sets, p) < setting.search.level {
+            break;
+        }
+        ranking.refuse(
+            setting.candidates[candidate].effect,
+            "synthetic data without any effect, searched in the same way, lead to one as often",
+        );
+        grown = without(setting, current, candidate, blocks, watch)?;
+    }
+    Ok(grown)
+}
+
+/// A model without one of its effects; `None` if none is left.
+fn without(
+    setting: &Setting<'_>,
+    current: &Tried,
+    candidate: usize,
+    blocks: usize,
+    watch: &mut Watch<'_>,
+) -> Result<Option<Tried>, Error> {
+    let added: Vec<usize> = current.model.added.iter().copied().filter(|own| *own != candidate).collect();
+    if added.is_empty() {
+        return Ok(None);
+    }
+    let model = setting.fit(added, watch)?;
+    let folds = folds(setting.frames, &model, blocks, watch)?;
+    Ok(Some(Tried { model, folds }))
 }
 
 /// Blocks along each axis for data of this extent.

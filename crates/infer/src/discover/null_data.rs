@@ -7,8 +7,8 @@ use crate::uncertainty::synthetic;
 use crate::{Error, infer};
 use std::ops::ControlFlow;
 
-/// Sets refitted if nothing else is asked for: with 39, a result that none of them reaches has p = 1/40.
-const SETS: usize = 39;
+/// Sets refitted if nothing else is asked for: a result that none of 20 reaches has p = 1/21.
+const SETS: usize = 20;
 
 /// Velocities of all frames above which no set is refitted if nothing else is asked for.
 const LARGE: usize = 1000;

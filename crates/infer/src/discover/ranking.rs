@@ -1,21 +1,27 @@
 //! Every candidate against the base model, and what became of it.
 
+use super::candidate::Candidate;
 use super::chance::Chance;
 use super::classes::Selection;
 use super::lineup::Lineup;
 use super::result::{Fate, Ranked};
 use super::steps::Setting;
+use voronudge_model::Effect;
 
 /// All candidates, the smallest p first; those that cannot be tested at the end.
-pub(super) fn rank(setting: &Setting<'_>, lineup: &Lineup) -> Vec<Ranked> {
-    let projected = lineup.beyond(&[]);
-    let chance = Chance::new(&projected, &setting.named(&[]), setting.search.fit.seed);
-    let single_p = chance.single_p(setting.search.level);
-    let mut ranking: Vec<Ranked> = setting
-        .candidates
-        .iter()
-        .enumerate()
-        .map(|(k, candidate)| {
+pub(super) struct Ranking {
+    pub candidates: Vec<Ranked>,
+    /// The p that a single candidate needs.
+    pub single_p: f64,
+}
+
+impl Ranking {
+    /// Scores against the base model.
+    pub fn new(setting: &Setting<'_>, lineup: &Lineup) -> Self {
+        let projected = lineup.beyond(&[]);
+        let chance = Chance::new(&projected, &setting.named(&[]), setting.search.fit.seed);
+        let single_p = chance.single_p(setting.search.level);
+        let rank = |(k, candidate): (usize, &Candidate)| {
             let effect = candidate.effect;
             if let Err(reason) = candidate.columns {
                 return untested(effect, Fate::NotTestable(reason));
@@ -41,17 +47,45 @@ pub(super) fn rank(setting: &Setting<'_>, lineup: &Lineup) -> Vec<Ranked> {
                 interval: score.interval,
                 fate,
             }
-        })
-        .collect();
-    let key = |ranked: &Ranked| (ranked.p, -ranked.statistic / ranked.dimension.max(1) as f64);
-    ranking.sort_by(|a, b| {
-        let ((p, s), (q, t)) = (key(a), key(b));
-        p.total_cmp(&q).then(s.total_cmp(&t))
-    });
-    ranking
+        };
+        let mut candidates: Vec<Ranked> = setting.candidates.iter().enumerate().map(rank).collect();
+        let per_coefficient = |ranked: &Ranked| ranked.statistic / ranked.dimension.max(1) as f64;
+        candidates
+            .sort_by(|a, b| a.p.total_cmp(&b.p).then(per_coefficient(b).total_cmp(&per_coefficient(a))));
+        Self { candidates, single_p }
+    }
+
+    /// Marks a candidate that was tried and refused.
+    pub fn refuse(&mut self, effect: &Effect, reason: &'static str) {
+        for ranked in self.candidates.iter_mut().filter(|ranked| ranked.effect.id == effect.id) {
+            ranked.fate = Fate::NotConfirmed(reason);
+        }
+    }
+
+    /// Marks those selected and those that cannot be told from them. Where nothing was selected, what was better than
+    /// chance at first has not been confirmed.
+    pub fn settle(&mut self, selection: &Selection) {
+        for ranked in &mut self.candidates {
+            let is = |other: &Effect| other.id == ranked.effect.id;
+            let fate = if selection.selected.iter().any(|own| is(own.effect)) {
+                Some(Fate::Selected)
+            } else if let Some(own) =
+                selection.selected.iter().find(|own| own.class.iter().any(|other| is(other)))
+            {
+                Some(Fate::Alias(own.effect.id))
+            } else if selection.selected.is_empty() && ranked.fate == Fate::Explained {
+                Some(Fate::NotConfirmed(
+                    "it is not worth its coefficients, or less so than one that was refused",
+                ))
+            } else {
+                None
+            };
+            ranked.fate = fate.unwrap_or(ranked.fate);
+        }
+    }
 }
 
-fn untested(effect: &'static voronudge_model::Effect, fate: Fate) -> Ranked {
+fn untested(effect: &'static Effect, fate: Fate) -> Ranked {
     Ranked {
         effect,
         dimension: 0,
@@ -62,37 +96,5 @@ fn untested(effect: &'static voronudge_model::Effect, fate: Fate) -> Ranked {
         size: f64::NAN,
         interval: None,
         fate,
-    }
-}
-
-/// The p that a single candidate needs against the base model.
-pub(super) fn single_p(setting: &Setting<'_>, lineup: &Lineup) -> f64 {
-    let projected = lineup.beyond(&[]);
-    Chance::new(&projected, &setting.named(&[]), setting.search.fit.seed).single_p(setting.search.level)
-}
-
-/// Marks candidates that were added and then refused.
-pub(super) fn refuse(ranking: &mut [Ranked], setting: &Setting<'_>, added: &[usize], reason: &'static str) {
-    let ids: Vec<&str> = added.iter().map(|k| setting.candidates[*k].effect.id).collect();
-    for ranked in ranking.iter_mut().filter(|ranked| ids.contains(&ranked.effect.id)) {
-        ranked.fate = Fate::NotConfirmed(reason);
-    }
-}
-
-/// Marks those selected and those that cannot be told from them. Where nothing was selected, what was better than chance at
-/// first has not been confirmed.
-pub(super) fn settle(ranking: &mut [Ranked], selection: &Selection) {
-    for ranked in ranking {
-        let same = |other: &&'static voronudge_model::Effect| other.id == ranked.effect.id;
-        if selection.selected.iter().any(|own| own.effect.id == ranked.effect.id) {
-            ranked.fate = Fate::Selected;
-        } else if let Some(own) =
-            selection.selected.iter().find(|own| own.class.iter().any(|other| same(&other)))
-        {
-            ranked.fate = Fate::Alias(own.effect.id);
-        } else if selection.selected.is_empty() && ranked.fate == Fate::Explained {
-            ranked.fate =
-                Fate::NotConfirmed("it is not worth its coefficients, or went with one that was refused");
-        }
     }
 }

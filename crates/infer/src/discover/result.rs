@@ -9,7 +9,8 @@ use voronudge_model::{Column, Effect};
 /// What to search for, and how.
 #[derive(Debug, Clone)]
 pub struct Search {
-    /// The fit of the base model.
+    /// The fit of the base model. Without cross-validation the error of the base model on velocities held out is measured
+    /// only where an effect is to be judged by it.
     pub fit: Request,
     /// Candidates, descriptions among them.
     pub candidates: Vec<&'static Effect>,

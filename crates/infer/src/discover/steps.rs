@@ -36,13 +36,6 @@ pub(super) struct Model {
     pub inference: Inference,
 }
 
-/// A candidate that the model lacks.
-pub(super) struct Lacking {
-    pub candidate: usize,
-    pub adjusted_p: f64,
-    pub p: f64,
-}
-
 impl Setting<'_> {
     /// The request to fit the base model with candidates added.
     pub fn request(&self, added: &[usize]) -> Request {
@@ -78,7 +71,7 @@ impl Setting<'_> {
     }
 
     /// The candidate that a model lacks most; `None` if that is no more than chance.
-    pub fn lacking(&self, model: &Model, watch: &mut Watch<'_>) -> Result<Option<Lacking>, Error> {
+    pub fn lacking(&self, model: &Model, watch: &mut Watch<'_>) -> Result<Option<usize>, Error> {
         let lineup = self.lineup(model)?;
         let projected = lineup.beyond(&model.added);
         let on_offer = self.named(&model.added);
@@ -108,10 +101,8 @@ impl Setting<'_> {
         } else {
             0
         };
-        let lacking = scores.get(chosen).filter(|(_, score)| worth(score) > 0.0).map(|(candidate, score)| {
-            Lacking { candidate: *candidate, adjusted_p: chance.adjusted(score.p), p: score.p }
-        });
-        Ok(lacking)
+        let best = scores.get(chosen).filter(|(_, score)| worth(score) > 0.0);
+        Ok(best.map(|(candidate, _)| *candidate))
     }
 
     /// `−2 log L` at the noise levels of a fitted model, refitted from it with other candidates: of `kept` ones with their
