@@ -22,7 +22,8 @@ struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum Command {
-    Infer(command::infer::Arguments),
+    Infer(Box<command::infer::Arguments>),
+    Discover(Box<command::discover::Arguments>),
     Evaluate(command::evaluate::Arguments),
     Simulate(command::simulate::Arguments),
     CheckGradients(command::check_gradients::Arguments),
@@ -61,7 +62,8 @@ fn run() -> Result<Answer, Failure> {
         },
     };
     match arguments.command {
-        Command::Infer(arguments) => command::infer::run(arguments),
+        Command::Infer(arguments) => command::infer::run(*arguments),
+        Command::Discover(arguments) => command::discover::run(*arguments),
         Command::Evaluate(arguments) => command::evaluate::run(arguments),
         Command::Simulate(arguments) => command::simulate::run(arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),

@@ -56,6 +56,16 @@ impl Snapshot {
     }
 }
 
+/// Label of a cell without one.
+const NO_LABEL: i64 = -1;
+
+/// The measured labels of the cells of one frame, if there are any.
+pub(crate) fn labels(data: &DataSet, snapshot: &Snapshot, frame: usize) -> Option<Vec<Option<i64>>> {
+    let labels = data.labels.as_ref()?;
+    let label = |cell: &usize| labels.get((frame, *cell)).copied().filter(|label| *label != NO_LABEL);
+    Some(snapshot.cells.iter().map(label).collect())
+}
+
 /// Vectors of the cells of several frames, as an array (frames, cells, 2) with y as in the files, or (cells, 2) if the
 /// data set has a single frame. NaN where a cell is absent.
 pub(crate) fn to_array<'a>(

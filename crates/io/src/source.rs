@@ -190,6 +190,22 @@ impl Source {
     }
 }
 
+impl DataSet {
+    /// Reads a field of vectors in the plane of this data set, of one frame or of any number of them, with the
+    /// coordinates of its columns and rows, as [`Source`] reads a flow field. Its files count as inputs.
+    ///
+    /// # Errors
+    /// [`Error::File`], [`Error::Format`], [`Error::Shape`], and [`Error::Grid`] as for a flow field.
+    pub fn read_field(&mut self, field: &Path, x: &Path, y: &Path) -> Result<FlowField, Error> {
+        let [field, x, y] = [field, x, y].map(Path::to_path_buf);
+        let paths = FlowPaths { field, x, y };
+        let mut read = paths.read(&mut self.inputs)?;
+        read.check(paths.names(), self.boundary)?;
+        read.turn(self.y_axis);
+        Ok(read)
+    }
+}
+
 /// The files of a flow field.
 struct FlowPaths {
     field: PathBuf,

@@ -17,6 +17,9 @@ pub(crate) struct DataSetArguments {
     /// Velocities of the same shape.
     #[arg(long, value_name = "FILE")]
     pub velocities: Option<PathBuf>,
+    /// Labels of the cells (N,) or (frames, N), integers, .npy; -1 for none.
+    #[arg(long, value_name = "FILE")]
+    pub labels: Option<PathBuf>,
     /// Flow field on a grid (ny, nx, 2) or (frames, ny, nx, 2), .npy.
     #[arg(long, value_name = "FILE")]
     pub flow: Option<PathBuf>,
@@ -71,6 +74,7 @@ impl DataSetArguments {
             folder: self.dataset.clone(),
             positions: self.positions.clone(),
             velocities: self.velocities.clone(),
+            labels: self.labels.clone(),
             flow: self.flow.clone(),
             flow_x: self.flow_x.clone(),
             flow_y: self.flow_y.clone(),
@@ -82,7 +86,6 @@ impl DataSetArguments {
             unwrapped: self.unwrapped.then_some(true),
             position_noise: self.position_noise,
             velocity_noise: self.velocity_noise,
-            ..Source::default()
         };
         Ok(source.load()?)
     }

@@ -31,9 +31,7 @@ impl EffectArguments {
             let Some((id, values)) = text.split_once('=') else {
                 return Err(fault("no coefficient is given".into()).with_hint("write --effect ID=VALUE"));
             };
-            let Some(effect) = Effect::from_id(id) else {
-                return Err(fault(format!("there is no effect {id:?}")).with_hint(suggestion(id)));
-            };
+            let effect = effect(id).map_err(|failure| failure.at(format!("--effect {text}")))?;
             let values =
                 values.split(',').map(|value| value.trim().parse().ok().filter(|v: &f64| v.is_finite()));
             let values = values.collect::<Option<Vec<f64>>>().ok_or_else(|| {
@@ -113,6 +111,12 @@ pub(crate) fn environment(
             Domain::Periodic(_) => Ok(environment),
         })
         .map_err(|error| Failure::new(error.to_string()).with_hint("check the positions"))
+}
+
+/// The effect of an id.
+pub(crate) fn effect(id: &str) -> Result<&'static Effect, Failure> {
+    Effect::from_id(id)
+        .ok_or_else(|| Failure::new(format!("there is no effect {id:?}")).with_hint(suggestion(id)))
 }
 
 /// The id nearest to what was typed, and all.

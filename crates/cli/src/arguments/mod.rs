@@ -5,7 +5,7 @@ mod effects;
 mod parameters;
 
 pub(crate) use dataset::DataSetArguments;
-pub(crate) use effects::{ChosenEffects, EffectArguments, environment};
+pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
 pub(crate) use parameters::ParameterArguments;
 
 use crate::failure::Failure;

@@ -6,7 +6,7 @@ use crate::arguments::{
 };
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain, to_array, to_scalars};
+use crate::snapshot::{Snapshot, domain, labels, to_array, to_scalars};
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};
 use serde::Serialize;
@@ -125,10 +125,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
         let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
         let mut surroundings = environment(&tessellation, &snapshot.positions, &view)?;
-        if let Some(labels) = &data.labels {
-            let of_cells = snapshot.cells.iter().map(|&cell| labels.get((frame, cell)).copied()).collect();
+        if let Some(labels) = labels(&data, &snapshot, frame) {
             surroundings = surroundings
-                .with_labels(of_cells)
+                .with_labels(labels)
                 .map_err(|error| Failure::new(error.to_string()).at(place()))?;
         }
         let model = effects.add_to(base.clone(), surroundings, domain)?;

@@ -14,9 +14,12 @@ const TERMS: [&str; 6] = [
     "geometry",
 ];
 
-/// The built-in positions and every fixture.
+/// The built-in positions and every fixture that is a data set by itself.
 fn subjects() -> Vec<Vec<String>> {
-    let folders = names(&fixture("")).into_iter().map(|name| fixture(&name)).filter(|path| path.is_dir());
+    let folders = names(&fixture(""))
+        .into_iter()
+        .map(|name| fixture(&name))
+        .filter(|path| path.join("positions.npy").is_file());
     let subjects: Vec<Vec<String>> =
         std::iter::once(vec![]).chain(folders.map(|path| vec![path.to_str().unwrap().to_owned()])).collect();
     assert!(subjects.len() >= 6, "fixtures are missing");

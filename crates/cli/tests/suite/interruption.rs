@@ -1,6 +1,6 @@
 //! Ctrl-C: a long run ends soon, and leaves no half results.
 
-use crate::program::command;
+use crate::program::{command, fixture};
 use crate::scratch::{Folder, names};
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
@@ -32,6 +32,23 @@ fn interrupt(run: Child, out: &Path) -> (Option<i32>, String, String) {
     assert!(begun.elapsed() < Duration::from_secs(10));
     let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
     (output.status.code(), text(output.stdout), text(output.stderr))
+}
+
+#[test]
+fn an_interrupted_search_leaves_nothing() {
+    let parent = Folder::new();
+    let out = parent.file("results");
+    let mut command = command();
+    command
+        .args(["discover", "--null-sets", "10000"])
+        .arg(fixture("undeclared/set-05"))
+        .arg("--out")
+        .arg(&out);
+    let search = command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+    let (code, stdout, stderr) = interrupt(search, &out);
+    assert_eq!((code, stdout.as_str()), (Some(130), ""));
+    assert!(stderr.contains("error: interrupted"), "{stderr}");
+    assert_eq!(names(parent.path()), Vec::<String>::new());
 }
 
 #[test]

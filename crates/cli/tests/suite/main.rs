@@ -3,9 +3,11 @@
 
 mod bad_arguments;
 mod bad_arrays;
+mod bad_discoveries;
 mod bad_fits;
 mod bad_folders;
 mod bad_places;
+mod discoveries;
 mod evaluations;
 mod flow_imports;
 mod flow_inferences;

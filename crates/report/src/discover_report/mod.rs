@@ -57,7 +57,7 @@ pub struct DiscoverReport {
     pub description: Option<DescriptionFit>,
     /// The effects that were added, in the order of their selection.
     pub selected: Vec<SelectedEffect>,
-    /// Every candidate, the largest statistic first.
+    /// Every candidate, the smallest p first.
     pub ranking: Vec<RankedEffect>,
     /// What remains after the last fit.
     pub unexplained: Unexplained,
@@ -87,16 +87,10 @@ impl DiscoverReport {
         !self.selected.is_empty()
     }
 
-    /// Reasons not to trust the fits, each once.
+    /// Reasons not to trust the last fit. That the base model does not fit where it lacks something
+    /// is no doubt but the finding.
     #[must_use]
     pub fn doubts(&self) -> Vec<String> {
-        let mut doubts = Vec::new();
-        let fits = [&self.models.before, &self.models.after].into_iter().filter_map(|fit| fit.fit.as_ref());
-        for doubt in fits.flat_map(|fit| &fit.doubts) {
-            if !doubts.contains(doubt) {
-                doubts.push(doubt.clone());
-            }
-        }
-        doubts
+        self.models.after.fit.as_ref().map_or_else(Vec::new, |fit| fit.doubts.clone())
     }
 }

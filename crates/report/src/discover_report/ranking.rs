@@ -18,7 +18,7 @@ pub struct RankedEffect {
     pub p: f64,
     /// The same for the largest over all candidates, from refitted null data.
     pub p_adjusted: f64,
-    /// Smallest size that would be found with 80 % power, in percent of the velocity (rms).
+    /// Smallest size that would be found in 9 of 10 cases, in percent of the velocity (rms).
     pub detection_limit: f64,
     /// Estimated size when added alone, in percent of the velocity (rms).
     pub size: f64,

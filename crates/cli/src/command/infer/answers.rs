@@ -1,7 +1,7 @@
 //! Profiles, landscapes and the bootstrap in the units of the data, for the report and for figures.
 
 use super::questions::Answers;
-use super::scaling::{factor, symbol, unit};
+use crate::command::fit::scaling::{factor, symbol, unit};
 use std::collections::BTreeMap;
 use voronudge_infer::{Bootstrap, Inference, Landscape, Profile, Quantity, Scale};
 use voronudge_report::figure::{self, BootstrapHistogram, LandscapeAxis, ProfileCurve};

@@ -2,20 +2,17 @@
 
 use super::Arguments;
 use super::answers;
-use super::prepare::{Measured, Prepared};
 use super::questions::Answers;
-use super::scaling::symbol;
+use crate::command::fit::scaling::symbol;
+use crate::command::fit::{Measured, Prepared, views};
 use crate::failure::Failure;
-use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
+use voronudge_geometry::Domain;
 use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
 use voronudge_report::numbers::{as_given, significant};
-use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Segment};
-
-/// Frames drawn at most: the first, the middle and the last.
-const DRAWN: usize = 3;
+use voronudge_report::{FrameView, InferPage};
 
 pub(super) fn page(
     arguments: &Arguments,
@@ -25,23 +22,16 @@ pub(super) fn page(
     report: &InferReport,
     answers: &Answers,
 ) -> Result<String, Failure> {
-    let count = prepared.frames.len();
-    let mut drawn: Vec<usize> =
-        if count <= DRAWN { (0..count).collect() } else { vec![0, count / 2, count - 1] };
-    drawn.dedup();
-    let frames: Vec<FrameView> = drawn.iter().map(|&index| frame_view(prepared, result, index)).collect();
+    let drawn = views::drawn(prepared);
+    let frames: Vec<FrameView> =
+        drawn.iter().map(|&index| views::frame_view(prepared, result, index)).collect();
     let flows: Vec<FlowMap<'_>> = drawn
         .iter()
         .zip(&frames)
-        .filter_map(|(&index, frame)| flow_map(prepared, result, index, frame))
+        .filter_map(|(&index, frame)| views::flow_map(prepared, result, index, frame))
         .collect();
-    let title = match (&arguments.data.dataset, &arguments.data.positions) {
-        (Some(folder), _) => folder.file_name().map(|name| name.to_string_lossy().into_owned()),
-        (None, Some(file)) => file.file_name().map(|name| name.to_string_lossy().into_owned()),
-        (None, None) => None,
-    };
     let page = InferPage {
-        title: &title.unwrap_or_else(|| "data".into()),
+        title: &arguments.snapshots.title(),
         headline: &headline(report),
         summary: &paragraphs(data, prepared, report),
         report,
@@ -154,97 +144,4 @@ fn beforehand(report: &InferReport) -> Option<String> {
     });
     let all: Vec<String> = bounds.chain(priors).collect();
     (!all.is_empty()).then(|| format!("Known beforehand: {}.", all.join("; ")))
-}
-
-/// Velocities of one frame on their grid, if they are on one.
-fn flow_map<'f>(
-    prepared: &Prepared,
-    result: &Inference,
-    index: usize,
-    frame: &'f FrameView,
-) -> Option<FlowMap<'f>> {
-    let field = prepared.velocities.flow()?;
-    let observation = &prepared.observations[index];
-    let [x, y] = field.coordinates();
-    let velocity = |v: Vector<f64>| [v.x, v.y];
-    Some(FlowMap {
-        frame,
-        x,
-        y,
-        measured: (0..observation.velocities.values().len())
-            .map(|datum| observation.target(datum).map(|v| velocity(v * prepared.scale.velocity())))
-            .collect(),
-        predicted: prepared
-            .predicted_data(result, index)
-            .into_iter()
-            .map(|v| Some(velocity(v)).filter(|v| v[0].is_finite()))
-            .collect(),
-    })
-}
-
-fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameView {
-    let (observation, frame) = (&prepared.observations[index], &result.frames[index]);
-    let scale = &prepared.scale;
-    let wrapped = |r: Vector<f64>| match observation.tessellation.domain() {
-        Domain::Periodic(cell_box) => cell_box.wrap(r),
-        Domain::Open => r,
-    };
-    let length = |r: Vector<f64>| [r.x * scale.length, r.y * scale.length];
-    let velocity = |v: Vector<f64>| [v.x * scale.velocity(), v.y * scale.velocity()];
-    let on_grid = prepared.velocities.flow().is_some();
-    let mut polygon = CellPolygon::default();
-    let cells = (0..observation.positions.len())
-        .map(|cell| {
-            let centre = wrapped(observation.positions[cell]);
-            let closed = observation.tessellation.is_closed(cell);
-            let counted = observation.visibility[cell] == Visibility::Counted;
-            // On a grid, velocities are not of cells; those that the grid points stand for are used.
-            let target = if on_grid { None } else { observation.target(cell) };
-            let used = if on_grid { counted } else { target.is_some() };
-            if closed {
-                polygon.fill(&observation.tessellation, &observation.positions, cell);
-            }
-            let shape = polygon.shape();
-            CellView {
-                centre: length(centre),
-                polygon: if closed {
-                    polygon.vertices().map(|c| length(centre + c)).collect()
-                } else {
-                    Vec::new()
-                },
-                area: if closed { shape.area * scale.length * scale.length } else { f64::NAN },
-                perimeter: if closed { shape.perimeter * scale.length } else { f64::NAN },
-                status: if used { CellStatus::Used } else { CellStatus::LeftOut },
-                measured: target.map(velocity),
-                predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
-                nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
-            }
-        })
-        .collect();
-    let segments = |pairs: &[(u32, u32)]| -> Vec<Segment> {
-        pairs
-            .iter()
-            .map(|&(a, b)| {
-                let from = wrapped(observation.positions[a as usize]);
-                let domain = observation.tessellation.domain();
-                let across = observation.positions[b as usize] - observation.positions[a as usize];
-                [length(from), length(from + domain.shortest(across))]
-            })
-            .collect()
-    };
-    FrameView {
-        label: format!("frame {}", prepared.frames[index]),
-        cells,
-        changed_edges: ChangedEdges {
-            lost: segments(&frame.edges_lost),
-            gained: segments(&frame.edges_gained),
-        },
-        outline: match observation.tessellation.domain() {
-            Domain::Periodic(cell_box) => {
-                let [x, y] = cell_box.lengths();
-                Some([[0.0, 0.0], [x * scale.length, y * scale.length]])
-            }
-            Domain::Open => None,
-        },
-    }
 }

@@ -1,7 +1,6 @@
 //! What is asked beyond the fit: profiles, landscapes, the bootstrap.
 
-use super::fit_options::quantity;
-use super::prepare::Prepared;
+use crate::command::fit::{Prepared, quantity};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use clap::Args;

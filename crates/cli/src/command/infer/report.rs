@@ -1,27 +1,13 @@
 //! The result of `infer` as its report.
 
 use super::answers;
-use super::flow::OrderedField;
-use super::prepare::Prepared;
 use super::questions::Answers;
-use super::scaling::{factor, unit};
-use super::words;
+use crate::command::fit::scaling::factor;
+use crate::command::fit::{OrderedField, Prepared, outcome};
 use crate::run::Run;
-use std::collections::BTreeMap;
-use voronudge_geometry::Visibility;
-use voronudge_infer::{
-    Constraints, Inference, Method, NoiseSource as Source, Observation, Prior, Quantity as What, Status,
-    Velocities,
-};
+use voronudge_infer::{Inference, NoiseSource, Quantity as What};
 use voronudge_io::DataSet;
-use voronudge_report::Units;
-use voronudge_report::infer_report::{
-    CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, InferReport,
-    NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, Quantity, Transitions,
-};
-
-/// Names of the coefficients along which directions are given.
-const COEFFICIENTS: [&str; 4] = ["K_A", "K_P_P_0", "K_P", "K_P_alpha"];
+use voronudge_report::infer_report::{InferReport, NaiveParameters, Nmse, Quantity};
 
 pub(super) fn report(
     run: &Run,
@@ -30,16 +16,16 @@ pub(super) fn report(
     result: &Inference,
     answers: &Answers,
 ) -> InferReport {
-    let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
+    let units = outcome::units(data);
     let scale = &prepared.scale;
     let naive = &result.naive;
     InferReport {
         run: run.record(Some(data)),
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
-        cells: cell_counts(prepared, result),
+        cells: outcome::cell_counts(prepared, result),
         flow: prepared.velocities.flow().map(OrderedField::described),
-        constraints: given(&prepared.constraints),
-        parameters: parameters(prepared, result, &units),
+        constraints: outcome::given(&prepared.constraints),
+        parameters: outcome::parameters(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),
             K_P: naive.perimeter_elasticity * factor(scale, What::PerimeterElasticity),
@@ -54,157 +40,21 @@ pub(super) fn report(
             nudged: result.nmse.nudged,
             un_nudged: result.nmse.un_nudged,
             noise_floor: match result.noise_source {
-                Source::Given => result.nmse.noise_floor,
+                NoiseSource::Given => result.nmse.noise_floor,
                 // Estimated noise contains whatever the model misses: it would always explain everything.
-                Source::Estimated => f64::NAN,
+                NoiseSource::Estimated => f64::NAN,
             },
             cross_validated: result.nmse.cross_validated.map(|c| c[0]),
             cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
             mean_removed: prepared.mean_removed,
             background: prepared.background,
         },
-        noise: Noise {
-            sigma_r: result.noise.position * scale.length,
-            sigma_v: result.noise.velocity * scale.velocity(),
-            source: match result.noise_source {
-                Source::Given => prepared.stated_noise,
-                Source::Estimated => NoiseSource::Estimated,
-            },
-        },
-        nudge: nudge(prepared, result),
-        identifiability: identifiability(result),
+        noise: outcome::noise(prepared, result),
+        nudge: outcome::nudge(prepared, result),
+        identifiability: outcome::identifiability(result),
         profiles: answers.profiles.iter().map(|profile| answers::profile(profile, scale)).collect(),
         landscapes: answers.landscapes.iter().map(|slice| answers::landscape(slice, scale)).collect(),
         bootstrap: answers.bootstrap.as_ref().map(|all| answers::bootstrap(all, result, scale)),
-        fit: fit(prepared, result, answers),
-    }
-}
-
-fn parameters(prepared: &Prepared, result: &Inference, units: &Units) -> Parameters {
-    let scale = &prepared.scale;
-    let parameter = |quantity: What, factor: f64, unit: String| {
-        let estimate = result.parameters.get(quantity);
-        let [low, high] = estimate.interval;
-        let ends = [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)];
-        // What does not vary is held, by itself or by others together.
-        let fixed = estimate.standard_error == 0.0;
-        Parameter {
-            value: estimate.value * factor,
-            ci95: (!fixed).then(|| ends.map(|end| end * factor)),
-            fixed,
-            unit,
-            words: words::parameter(quantity, estimate),
-        }
-    };
-    let in_units = |quantity: What| {
-        let fitted = parameter(quantity, factor(scale, quantity), unit(quantity, units));
-        // What was given keeps its last digit.
-        let given = prepared.constraints.fixed.get(&quantity);
-        Parameter { value: given.copied().unwrap_or(fitted.value), ..fitted }
-    };
-    Parameters {
-        K_A: in_units(What::AreaElasticity),
-        K_P: in_units(What::PerimeterElasticity),
-        P_0: in_units(What::PreferredPerimeter),
-        A_0: Parameter {
-            value: scale.length * scale.length,
-            ci95: None,
-            fixed: true,
-            unit: format!("{}^2", units.length),
-            words: "A_0 is never fitted: no velocity depends on it".into(),
-        },
-        alpha: in_units(What::Chirality),
-        K_P_alpha: in_units(What::ChiralCoefficient),
-        shape_index: parameter(What::PreferredPerimeter, 1.0, String::new()),
-    }
-}
-
-/// Constraints by name.
-fn given(constraints: &Constraints) -> GivenConstraints {
-    let name = |quantity: &What| quantity.name().to_owned();
-    let prior = |prior: &Prior| GivenPrior { mean: prior.mean, standard_deviation: prior.standard_deviation };
-    GivenConstraints {
-        fixed: constraints.fixed.iter().map(|(q, value)| (name(q), *value)).collect(),
-        bounds: constraints.bounds.iter().map(|(q, ends)| (name(q), *ends)).collect(),
-        priors: constraints.priors.iter().map(|(q, known)| (name(q), prior(known))).collect(),
-    }
-}
-
-fn nudge(prepared: &Prepared, result: &Inference) -> Nudge {
-    let scale = &prepared.scale;
-    let left = 2.0 * result.used as f64 - result.degrees_of_freedom - result.directions.len() as f64;
-    Nudge {
-        k: result.noise.spring() / (scale.time * scale.time),
-        rms: result.nudge_rms * scale.length,
-        degrees_of_freedom: result.degrees_of_freedom,
-        contribution_ratio: result.contribution_ratio,
-        expected_contribution_ratio: if left > 0.0 { result.degrees_of_freedom / left } else { f64::NAN },
-        edges_changed: result.frames.iter().map(|f| f.edges_lost.len() + f.edges_gained.len()).sum(),
-    }
-}
-
-fn identifiability(result: &Inference) -> Vec<EigenDirection> {
-    let words = words::directions(&result.directions, &result.parameters);
-    let named = |components: [f64; 4]| {
-        COEFFICIENTS.iter().map(|name| name.to_string()).zip(components).collect::<BTreeMap<_, _>>()
-    };
-    let directions = result.directions.iter().zip(words);
-    directions
-        .map(|(direction, words)| EigenDirection {
-            eigenvalue: direction.eigenvalue,
-            direction: named(direction.components),
-            words,
-        })
-        .collect()
-}
-
-fn fit(prepared: &Prepared, result: &Inference, answers: &Answers) -> Fit {
-    let doubts = words::doubts(result, &answers.profiles, prepared.request.method);
-    let [tried, made] = result.transitions;
-    Fit {
-        method: match prepared.request.method {
-            Method::Search { .. } => FitMethod::Search,
-            Method::Descent { .. } => FitMethod::Descent,
-        },
-        status: match result.status {
-            Status::Converged => FitStatus::Converged,
-            Status::StepLimit => FitStatus::IterationLimit,
-            Status::Stalled => FitStatus::Stalled,
-        },
-        trustworthy: doubts.is_empty(),
-        doubts,
-        iterations: result.steps as usize,
-        objective: result.objective,
-        expected_objective: result.expected_objective,
-        trace: result.trace.clone(),
-        starts: result.starts.clone(),
-        transitions: Transitions { tried, made },
-    }
-}
-
-fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts {
-    let mut left_out = BTreeMap::new();
-    for observation in &prepared.observations {
-        for datum in 0..observation.velocities.values().len() {
-            if let Some(reason) = reason_to_leave_out(observation, datum) {
-                *left_out.entry(reason.to_owned()).or_insert(0) += 1;
-            }
-        }
-    }
-    CellCounts { frames: prepared.frames.clone(), used: result.used, left_out }
-}
-
-/// Why the velocity of a cell or at a grid point was not used, if it was not.
-fn reason_to_leave_out(observation: &Observation, datum: usize) -> Option<&'static str> {
-    let missing = observation.velocities.values()[datum].is_none();
-    match &observation.velocities {
-        Velocities::OfCells(_) => match observation.visibility[datum] {
-            Visibility::OnHull => Some("polygon_not_closed"),
-            Visibility::TooLarge => Some("polygon_too_large"),
-            Visibility::NextToRim => Some("next_to_rim"),
-            Visibility::Counted => missing.then_some("no_velocity"),
-        },
-        Velocities::OnGrid(_) if missing => Some("missing"),
-        Velocities::OnGrid(_) => (!observation.is_in_reach(datum)).then_some("window_not_filled"),
+        fit: outcome::fit(prepared, result, &answers.profiles),
     }
 }

@@ -1,6 +1,6 @@
 //! The result of `infer` as a summary on stdout.
 
-use super::words;
+use crate::command::fit::words;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_infer::Quantity;

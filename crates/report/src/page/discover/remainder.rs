@@ -23,6 +23,11 @@ struct TestRow {
     p: String,
 }
 
+/// The share left; noise is known with an error, so it may explain a little too much.
+fn left(share: f64) -> String {
+    if share > 0.0 { percent(share) + " of the squared velocities" } else { "nothing".into() }
+}
+
 impl Remainder {
     pub(super) fn new(report: &DiscoverReport, correlations: &[CorrelationFunction]) -> Self {
         let rest = &report.unexplained;
@@ -32,11 +37,7 @@ impl Remainder {
             format!("{length} {}, {cells} cell sizes ℓ_0", report.units.length_text())
         };
         let facts = [
-            (
-                "unexplained by model and noise",
-                rest.share,
-                percent(rest.share) + " of the squared velocities",
-            ),
+            ("unexplained by model and noise", rest.share, left(rest.share)),
             ("it stays correlated over", rest.correlation_length, lengths()),
             (
                 "of its smooth part, sources and sinks (free of curl)",

@@ -4,7 +4,7 @@ use voronudge_infer::{Constraints, Prior, Quantity, Scale};
 use voronudge_report::Units;
 
 /// A quantity in the units of the data, per unit of the fit.
-pub(super) fn factor(scale: &Scale, quantity: Quantity) -> f64 {
+pub(crate) fn factor(scale: &Scale, quantity: Quantity) -> f64 {
     let coefficients = scale.coefficients();
     match quantity {
         Quantity::AreaElasticity => coefficients[0],
@@ -16,7 +16,7 @@ pub(super) fn factor(scale: &Scale, quantity: Quantity) -> f64 {
 }
 
 /// The unit of a quantity in the data.
-pub(super) fn unit(quantity: Quantity, units: &Units) -> String {
+pub(crate) fn unit(quantity: Quantity, units: &Units) -> String {
     let Units { length, time } = units;
     match quantity {
         Quantity::AreaElasticity => format!("1/({length}^2*{time})"),
@@ -27,7 +27,7 @@ pub(super) fn unit(quantity: Quantity, units: &Units) -> String {
 }
 
 /// A quantity as it is printed.
-pub(super) fn symbol(quantity: Quantity) -> &'static str {
+pub(crate) fn symbol(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::Chirality => "α",
         Quantity::ChiralCoefficient => "K_P α",
@@ -36,7 +36,7 @@ pub(super) fn symbol(quantity: Quantity) -> &'static str {
 }
 
 /// What is known of the parameters in the units of the data, in those of the fit.
-pub(super) fn scaled(constraints: &Constraints, scale: &Scale) -> Constraints {
+pub(crate) fn scaled(constraints: &Constraints, scale: &Scale) -> Constraints {
     let unit = |quantity: &Quantity| factor(scale, *quantity);
     Constraints {
         fixed: constraints.fixed.iter().map(|(q, value)| (*q, value / unit(q))).collect(),

@@ -19,7 +19,7 @@ const COEFFICIENTS: [&str; 4] = ["K_A", "K_P P_0", "K_P", "K_P alpha"];
 const DENOMINATOR: usize = 2;
 
 /// A quantity as it is spoken of.
-pub(super) fn spoken(quantity: Quantity) -> &'static str {
+pub(crate) fn spoken(quantity: Quantity) -> &'static str {
     match quantity {
         Quantity::ChiralCoefficient => "K_P alpha",
         other => other.name(),
@@ -50,7 +50,7 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
 }
 
 /// Every reason not to trust a fit: its own, and profiles that are lower elsewhere.
-pub(super) fn doubts(result: &Inference, profiles: &[Profile], method: Method) -> Vec<String> {
+pub(crate) fn doubts(result: &Inference, profiles: &[Profile], method: Method) -> Vec<String> {
     let missed = profiles.iter().filter_map(|profile| {
         let estimate = result.parameters.get(profile.quantity).value;
         let (_, rise) = profile.points.iter().find(|(value, _)| *value == estimate)?;
@@ -66,7 +66,7 @@ pub(super) fn doubts(result: &Inference, profiles: &[Profile], method: Method) -
 }
 
 /// How well a quantity is known.
-pub(super) fn parameter(quantity: Quantity, estimate: &Estimate) -> String {
+pub(crate) fn parameter(quantity: Quantity, estimate: &Estimate) -> String {
     let name = spoken(quantity);
     let Estimate { value, standard_error, interval } = estimate;
     if *standard_error == 0.0 {
@@ -105,7 +105,7 @@ fn percent(share: f64) -> String {
 }
 
 /// Every direction in words, in their order.
-pub(super) fn directions(directions: &[Direction], estimates: &ParameterEstimates) -> Vec<String> {
+pub(crate) fn directions(directions: &[Direction], estimates: &ParameterEstimates) -> Vec<String> {
     let count = directions.len();
     let rank = |index: usize| match index {
         0 if count == 1 => "the only free combination".to_owned(),
@@ -121,7 +121,7 @@ pub(super) fn directions(directions: &[Direction], estimates: &ParameterEstimate
 }
 
 /// The stiffest and the sloppiest direction in one sentence.
-pub(super) fn in_short(directions: &[String]) -> String {
+pub(crate) fn in_short(directions: &[String]) -> String {
     match directions {
         [] => String::new(),
         [only] => only.clone(),

@@ -1,16 +1,13 @@
-//! What is said of the parameters, and how the objective is made small.
+//! What is said of the parameters before a fit.
 
 use crate::failure::Failure;
-use clap::{Args, ValueEnum};
+use clap::Args;
 use std::collections::BTreeMap;
-use voronudge_infer::{CoefficientSpace, Constraints, Loss, Method, Prior, Quantity};
-
-/// Steps of a descent, which needs many more than a search.
-const DESCENT_STEPS: u64 = 2000;
+use voronudge_infer::{CoefficientSpace, Constraints, Prior, Quantity};
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Fit")]
-pub(super) struct FitArguments {
+pub(crate) struct ConstraintArguments {
     /// Hold a parameter: `--fix K_A=0.1` (repeatable), in the units of the data.
     #[arg(long, value_name = "NAME=VALUE", value_parser = fixed, allow_hyphen_values = true)]
     fix: Vec<(Quantity, f64)>,
@@ -23,38 +20,10 @@ pub(super) struct FitArguments {
     /// Stiffnesses are not negative: short for `--bounds K_A=0.. --bounds K_P=0..`.
     #[arg(long)]
     stable: bool,
-    /// How the objective is made small: by the program's own search, or by the first-order descent of the paper.
-    #[arg(long, value_enum, default_value_t = Optimiser::Search)]
-    method: Optimiser,
-    /// What `--method descent` descends [default: norms].
-    #[arg(long, value_enum)]
-    loss: Option<DescendedLoss>,
-    /// Starts of the search, 1 to 64: more find a lower minimum if there is one [default: 1].
-    #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=64))]
-    starts: Option<u64>,
-    /// Steps of the optimiser at each stage [default: 60; 2000 for descent].
-    #[arg(long, value_name = "N", allow_negative_numbers = true)]
-    max_steps: Option<u64>,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Optimiser {
-    /// Levenberg–Marquardt by continuation, with flips of contacts.
-    Search,
-    /// Gradient descent, for comparison.
-    Descent,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum DescendedLoss {
-    /// Sum of the norms of residual and nudges, as the paper prints it.
-    Norms,
-    /// Sum of their squares, the likelihood.
-    Squares,
 }
 
 /// The quantity of a name.
-pub(super) fn quantity(name: &str) -> Result<Quantity, String> {
+pub(crate) fn quantity(name: &str) -> Result<Quantity, String> {
     Quantity::from_name(name)
         .ok_or_else(|| format!("{name} is not a parameter; there are K_A, K_P, P_0, alpha and K_P_alpha"))
 }
@@ -113,7 +82,7 @@ fn once<T: Copy>(
     Ok(table)
 }
 
-impl FitArguments {
+impl ConstraintArguments {
     /// What is known of the parameters, in the units of the data.
     pub fn constraints(&self) -> Result<Constraints, Failure> {
         let positive = [Quantity::AreaElasticity, Quantity::PerimeterElasticity];
@@ -130,34 +99,6 @@ impl FitArguments {
         }
         CoefficientSpace::new(&constraints)?;
         Ok(constraints)
-    }
-
-    /// How the objective is made small.
-    pub fn method(&self) -> Result<Method, Failure> {
-        let refuse = |option: &str, method: &str, other: &str| {
-            Err(Failure::new(format!("{option} is for --method {method}, but the method is {other}"))
-                .with_hint(format!("leave out {option}, or give --method {method}")))
-        };
-        match self.method {
-            Optimiser::Search if self.loss.is_some() => refuse("--loss", "descent", "search"),
-            Optimiser::Search => {
-                let Method::Search { max_steps, starts } = Method::default() else {
-                    return Ok(Method::default());
-                };
-                Ok(Method::Search {
-                    max_steps: self.max_steps.unwrap_or(max_steps),
-                    starts: self.starts.map_or(starts, |starts| starts as usize),
-                })
-            }
-            Optimiser::Descent if self.starts.is_some() => refuse("--starts", "search", "descent"),
-            Optimiser::Descent => Ok(Method::Descent {
-                max_steps: self.max_steps.unwrap_or(DESCENT_STEPS),
-                loss: match self.loss {
-                    None | Some(DescendedLoss::Norms) => Loss::Norms,
-                    Some(DescendedLoss::Squares) => Loss::Squares,
-                },
-            }),
-        }
     }
 }
 

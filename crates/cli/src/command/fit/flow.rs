@@ -12,7 +12,7 @@ use voronudge_report::infer_report::{FlowGrid, FlowWindow};
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Velocities")]
-pub(super) struct FlowArguments {
+pub(crate) struct FlowArguments {
     /// Velocities to explain: those of cells, or a flow field on a grid [default: flow if there is a flow field and no
     /// velocities of cells].
     #[arg(long, value_enum)]
@@ -102,7 +102,8 @@ pub(crate) struct OrderedField {
 }
 
 impl OrderedField {
-    fn new(field: &FlowField, window: Window) -> Result<Self, Failure> {
+    /// The field with what each of its points stands for.
+    pub fn new(field: &FlowField, window: Window) -> Result<Self, Failure> {
         let mut velocities = field.velocities.clone();
         let axes = [&field.x, &field.y];
         let descends = axes.map(|coordinates| coordinates.first() > coordinates.last());
@@ -167,7 +168,7 @@ impl OrderedField {
 }
 
 /// A flow field in the units of a fit.
-pub(super) fn scaled(flow: &Flow, scale: &Scale) -> Result<Flow, Failure> {
+pub(crate) fn scaled(flow: &Flow, scale: &Scale) -> Result<Flow, Failure> {
     let lengths = |lengths: [f64; 2]| lengths.map(|length| length / scale.length);
     let origin = flow.grid.centre(0);
     Ok(Flow {

@@ -1,0 +1,76 @@
+//! What is searched for, and how.
+
+use crate::arguments::effect;
+use crate::failure::Failure;
+use clap::Args;
+use voronudge_infer::Request;
+use voronudge_infer::discover::Search;
+use voronudge_model::Effect;
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Search")]
+pub(super) struct SearchOptions {
+    /// Only these effects are candidates: `--effects persistence,drift`. The ids are listed in docs/effects.md.
+    #[arg(long, value_name = "ID,…", value_delimiter = ',')]
+    effects: Vec<String>,
+    /// These effects are no candidates.
+    #[arg(long, value_name = "ID,…", value_delimiter = ',')]
+    without: Vec<String>,
+    /// Probability that data in which nothing is missing lead to an effect.
+    #[arg(long, value_name = "P", default_value_t = 0.05, value_parser = level, allow_negative_numbers = true)]
+    level: f64,
+    /// Made-up data without an effect that are fitted before one is believed, 0 to 10000 [default: as many as a
+    /// moderate time allows].
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=10_000), allow_negative_numbers = true)]
+    null_sets: Option<u64>,
+    /// Effects added at most, 1 to 16.
+    #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=16), allow_negative_numbers = true)]
+    most_effects: u64,
+}
+
+fn level(text: &str) -> Result<f64, String> {
+    let value: f64 = text.trim().parse().map_err(|_| format!("{text} is not a number"))?;
+    if value > 0.0 && value < 1.0 { Ok(value) } else { Err(format!("{text} is not between 0 and 1")) }
+}
+
+/// The effects of some ids.
+fn named(option: &str, ids: &[String]) -> Result<Vec<&'static Effect>, Failure> {
+    ids.iter().map(|id| effect(id.trim()).map_err(|failure| failure.at(option))).collect()
+}
+
+impl SearchOptions {
+    /// The candidates: those asked for, or all, less those not wanted.
+    pub fn candidates(&self) -> Result<Vec<&'static Effect>, Failure> {
+        let wanted = named("--effects", &self.effects)?;
+        let unwanted = named("--without", &self.without)?;
+        let is_in =
+            |list: &[&'static Effect], effect: &Effect| list.iter().any(|other| other.id == effect.id);
+        let candidates: Vec<&'static Effect> = Effect::all()
+            .iter()
+            .filter(|effect| wanted.is_empty() || is_in(&wanted, effect))
+            .filter(|effect| !is_in(&unwanted, effect))
+            .collect();
+        if candidates.is_empty() {
+            return Err(Failure::new("no candidate is left")
+                .with_hint("name more under --effects, or fewer under --without"));
+        }
+        Ok(candidates)
+    }
+
+    /// The search for `candidates` after a fit.
+    pub fn search(
+        &self,
+        candidates: Vec<&'static Effect>,
+        fit: Request,
+        identities: Option<Vec<Vec<i64>>>,
+    ) -> Search {
+        Search {
+            candidates,
+            level: self.level,
+            null_sets: self.null_sets.map(|sets| sets as usize),
+            most_effects: self.most_effects as usize,
+            identities,
+            ..Search::new(fit)
+        }
+    }
+}

@@ -1,0 +1,222 @@
+//! Effects as the report tells them.
+
+use super::sentences::{listed, percent, probability, told_apart_by};
+use crate::command::fit::Prepared;
+use voronudge_infer::discover::{Discovery, Fate, Ranked, Selected};
+use voronudge_infer::{Estimate, Scale};
+use voronudge_model::effect::{Effect, Kind, Unit};
+use voronudge_report::Units;
+use voronudge_report::discover_report::{
+    CandidateStatus, EffectCoefficient, EffectKind, Gain, RankedEffect, SelectedEffect,
+};
+
+/// The family of an effect.
+pub(super) fn family(effect: &Effect) -> EffectKind {
+    match effect.id {
+        "drift" | "expansion" | "rotation" | "shear" | "quadratic_distortion" => EffectKind::Motion,
+        "p0_gradient"
+        | "kp_gradient"
+        | "alpha_gradient"
+        | "friction_gradient"
+        | "size_friction"
+        | "alpha_area"
+        | "coordination_tension" => EffectKind::Gradient,
+        "persistence" | "alignment" => EffectKind::History,
+        "label_parameter" | "external_field" => EffectKind::Measured,
+        "boundary_tension" | "boundary_torque" => EffectKind::Boundary,
+        _ => match effect.kind {
+            Kind::Mechanism => EffectKind::Force,
+            Kind::Observation => EffectKind::Observation,
+            Kind::Description => EffectKind::Description,
+        },
+    }
+}
+
+/// A coefficient in the units of the data, per unit of the fit.
+fn factor(unit: Unit, scale: &Scale) -> f64 {
+    scale.length.powi(unit.length.into()) * scale.time.powi(unit.time.into())
+}
+
+/// The unit of a coefficient in the data; empty if it has none.
+fn unit_name(unit: Unit, units: &Units) -> String {
+    let power = |name: &str, exponent: i8| match exponent {
+        1 => name.to_owned(),
+        exponent => format!("{name}^{exponent}"),
+    };
+    let both = [(&units.length, unit.length), (&units.time, unit.time)];
+    let product = |sign: i8| -> Vec<String> {
+        let chosen = both.iter().filter(|(_, exponent)| exponent.signum() == sign);
+        chosen.map(|(name, exponent)| power(name, exponent.abs())).collect()
+    };
+    match (product(1).join("*"), product(-1)) {
+        (above, below) if below.is_empty() => above,
+        (above, below) => {
+            let above = if above.is_empty() { "1".into() } else { above };
+            match below.as_slice() {
+                [only] => format!("{above}/{only}"),
+                several => format!("{above}/({})", several.join("*")),
+            }
+        }
+    }
+}
+
+/// Names of the coefficients, in the order of the columns; empty for the only one.
+fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
+    let count = selected.columns.len().max(selected.coefficients.len());
+    let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
+    match (selected.effect.id, count) {
+        (_, 1) => vec![String::new()],
+        ("drift", 2) => owned(&["along x", "along y"]),
+        ("shear", 2) => owned(&["along the axes", "along the diagonals"]),
+        ("quadratic_distortion", 6) => {
+            owned(&["x^2 to x", "x^2 to y", "xy to x", "xy to y", "y^2 to x", "y^2 to y"])
+        }
+        ("p0_gradient" | "kp_gradient" | "alpha_gradient" | "friction_gradient", 2) => {
+            owned(&["along x", "along y"])
+        }
+        ("p0_gradient" | "kp_gradient" | "alpha_gradient" | "friction_gradient", 4) => {
+            owned(&["sine along x", "cosine along x", "sine along y", "cosine along y"])
+        }
+        ("label_parameter", _) => {
+            let environments = prepared.observations.iter().map(|observation| observation.environment());
+            let labels = environments.map(|environment| environment.other_labels());
+            let labels = labels.max_by_key(Vec::len).unwrap_or_default();
+            let parameters = ["adhesion", "contractility", "chirality"];
+            let names =
+                labels.iter().flat_map(|label| parameters.map(|what| format!("{what} of label {label}")));
+            names.chain((1..).map(|number| number.to_string())).take(count).collect()
+        }
+        _ => (1..=count).map(|number| number.to_string()).collect(),
+    }
+}
+
+/// An effect that was added.
+pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) -> SelectedEffect {
+    let effect = selected.effect;
+    let factor = factor(effect.unit, &prepared.scale);
+    let names = coefficient_names(selected, prepared);
+    let ends = |estimate: &Estimate| {
+        let [low, high] = estimate.interval;
+        [low.unwrap_or(f64::NEG_INFINITY) * factor, high.unwrap_or(f64::INFINITY) * factor]
+    };
+    let others = || selected.class.iter().filter(|other| other.id != effect.id);
+    SelectedEffect {
+        effect: effect.id.into(),
+        formula: effect.formula.into(),
+        meaning: effect.meaning.into(),
+        kind: family(effect),
+        coefficients: names
+            .into_iter()
+            .zip(&selected.coefficients)
+            .map(|(name, estimate)| EffectCoefficient {
+                name,
+                value: estimate.value * factor,
+                unit: unit_name(effect.unit, units),
+            })
+            .collect(),
+        ci95: selected.coefficients.iter().map(ends).collect(),
+        p_adjusted: selected.adjusted_p,
+        share_of_excess: selected.share_of_excess,
+        class: others().map(|other| other.id.to_owned()).collect(),
+        told_apart_by: others().map(|other| (other.id.to_owned(), told_apart_by(effect, other))).collect(),
+    }
+}
+
+/// What became of a candidate.
+pub(super) fn ranked(candidate: &Ranked, discovery: &Discovery) -> RankedEffect {
+    let percentage = |share: f64| 100.0 * share;
+    let only = matches!(discovery.selected.as_slice(), [only] if only.effect.id == candidate.effect.id);
+    let gain = discovery.gain.filter(|_| only);
+    let (status, reason) = verdict(candidate, discovery);
+    // What could not be tested has no statistic.
+    let tested = |number: f64| if candidate.dimension == 0 { f64::NAN } else { number };
+    RankedEffect {
+        effect: candidate.effect.id.into(),
+        kind: family(candidate.effect),
+        dimension: candidate.dimension,
+        statistic: tested(candidate.statistic),
+        p: tested(candidate.p),
+        p_adjusted: tested(candidate.adjusted_p),
+        detection_limit: percentage(candidate.detection_limit),
+        size: percentage(candidate.size),
+        size_ci95: candidate.interval.map(|ends| ends.map(percentage)),
+        gain: gain.map(|[value, standard_error]| Gain { value, standard_error }),
+        status,
+        reason,
+    }
+}
+
+/// Why a candidate was taken or not.
+fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, String) {
+    let p = probability(candidate.adjusted_p);
+    match candidate.fate {
+        Fate::Selected => {
+            let found = discovery.selected.iter().find(|selected| selected.effect.id == candidate.effect.id);
+            let share = found.map_or(String::new(), |selected| {
+                format!(", explains {} of what is missing without it", percent(selected.share_of_excess))
+            });
+            (CandidateStatus::Selected, format!("stands out against chance{share}"))
+        }
+        Fate::Alias(id) => (CandidateStatus::Alias, format!("these data cannot tell it from {id}")),
+        Fate::Absorbed => (
+            CandidateStatus::NotTestable,
+            "a change of the parameters of the base model does the same".into(),
+        ),
+        Fate::BelowThreshold => {
+            (CandidateStatus::BelowThreshold, format!("no more than chance (adjusted p {p})"))
+        }
+        Fate::Explained => {
+            let added: Vec<&str> = discovery.selected.iter().map(|selected| selected.effect.id).collect();
+            (
+                CandidateStatus::BelowThreshold,
+                format!("explains nothing more beside {}", listed(&added, "and")),
+            )
+        }
+        Fate::NotConfirmed(why) => {
+            (CandidateStatus::BelowThreshold, format!("better than chance (adjusted p {p}), but {why}"))
+        }
+        Fate::NotTestable(why) => (CandidateStatus::NotTestable, why.to_owned()),
+        Fate::Description => {
+            (CandidateStatus::Description, "a description, which is never named as a cause".into())
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn coefficients_are_scaled_by_their_unit() {
+        // A cell of size 20 µm and a time of 5 min: scaled velocities are multiples of 4 µm/min.
+        let scale = Scale { length: 20.0, time: 5.0 };
+        assert!((factor(Unit { length: 1, time: -1 }, &scale) - 4.0).abs() < 1e-12);
+        assert!((factor(Unit { length: -2, time: -1 }, &scale) - 1.0 / 2000.0).abs() < 1e-15);
+        assert!((factor(Unit { length: 0, time: 1 }, &scale) - 5.0).abs() < 1e-12);
+        assert_eq!(factor(Unit { length: 0, time: 0 }, &scale), 1.0);
+    }
+
+    #[test]
+    fn units_are_written_as_fractions() {
+        let units = Units { length: "um".into(), time: "min".into() };
+        let name = |length, time| unit_name(Unit { length, time }, &units);
+        assert_eq!(name(1, -1), "um/min");
+        assert_eq!(name(-2, -1), "1/(um^2*min)");
+        assert_eq!(name(0, 1), "min");
+        assert_eq!(name(0, -1), "1/min");
+        assert_eq!(name(0, 0), "");
+    }
+
+    #[test]
+    fn every_effect_belongs_to_a_family() {
+        let of = |id: &str| Effect::from_id(id).map(family);
+        assert_eq!(of("drift"), Some(EffectKind::Motion));
+        assert_eq!(of("nematic_stress"), Some(EffectKind::Force));
+        assert_eq!(of("flow_gain"), Some(EffectKind::Observation));
+        assert_eq!(of("smooth_field"), Some(EffectKind::Description));
+        for effect in Effect::all() {
+            let is_description = family(effect) == EffectKind::Description;
+            assert_eq!(is_description, effect.kind == Kind::Description, "{}", effect.id);
+        }
+    }
+}

@@ -1,0 +1,142 @@
+//! `voronudge discover`: what the base model leaves unexplained, and which effect explains it.
+
+mod candidates;
+mod effects;
+mod history;
+mod page;
+mod report;
+mod sentences;
+mod summary;
+mod surroundings;
+
+use super::fit::{
+    ConstraintArguments, Measured, Prepared, Question, SearchArguments, SnapshotArguments, arrays, browser,
+    is_acceptable, words,
+};
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use candidates::SearchOptions;
+use clap::Args;
+use history::{GivenDifference, History};
+use report::Asked;
+use surroundings::FieldArguments;
+use voronudge_infer::discover::discover;
+use voronudge_io::{DataSet, Difference, OutputDirectory};
+
+/// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
+/// after on data that the fit has not seen.
+///
+/// Writes report.json, report.html and, each beginning with before_ and after_, nudged_positions.npy,
+/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy).
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    snapshots: SnapshotArguments,
+    #[command(flatten)]
+    field: FieldArguments,
+    /// How velocities are derived from positions where none are given.
+    #[arg(long, value_name = "central|forward|backward", default_value_t = Difference::Forward)]
+    difference: Difference,
+    /// What given velocities are, which decides which earlier ones may predict them [default: instantaneous].
+    #[arg(long, value_enum)]
+    given_difference: Option<GivenDifference>,
+    /// Open report.html when done.
+    #[arg(long)]
+    open_report: bool,
+    #[command(flatten)]
+    options: SearchOptions,
+    #[command(flatten)]
+    known: ConstraintArguments,
+    #[command(flatten)]
+    method: SearchArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("discover", &arguments.common)?;
+    let snapshots = &arguments.snapshots;
+    snapshots.check()?;
+    let constraints = arguments.known.constraints()?;
+    let candidates = arguments.options.candidates()?;
+    let mut data = snapshots.data.load()?;
+    let map = arguments.field.load(&mut data)?;
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let velocities = Measured::new(snapshots, &data, arguments.difference)?;
+    let mut warnings: Vec<String> =
+        shared_errors(&velocities).into_iter().chain(unknown_noise(&data)).collect();
+    let history = History::new(&data, &velocities, arguments.given_difference)?;
+    let frames = velocities.frames(snapshots, &data)?;
+    let kept = history::keep_frames(history.as_ref(), &data, frames, &candidates);
+    warnings.extend(kept.warning);
+    let question = Question {
+        arguments: snapshots,
+        data: &data,
+        constraints,
+        method: arguments.method.method(),
+        seed: arguments.common.seed,
+    };
+    let mut prepared = question.prepare(velocities, kept.frames, &mut run)?;
+    surroundings::surround(&mut prepared, (snapshots, &data), map.as_ref(), history.as_ref())?;
+    warnings.iter().for_each(|warning| run.warn(warning));
+    let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let searched = discover(&prepared.observations, &search, &mut |state| {
+        progress.step(state.stage, state.step.0, state.step.1)
+    });
+    progress.finish();
+    let discovery = searched.map_err(|error| prepared.place(error, snapshots))?;
+    let last = &discovery.after.inference;
+    words::doubts(last, &[], prepared.request.method).iter().for_each(|doubt| run.warn(doubt));
+    for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
+        arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
+    }
+    let asked = Asked { data: &data, prepared: &prepared, search: &search, predictors: kept.predictors };
+    let report = report::report(&run, &asked, &discovery);
+    let json = report.to_json()?;
+    out.write_text("report.json", &json)?;
+    out.write_text("report.html", &page::page(&snapshots.title(), &asked, &discovery, &report)?)?;
+    let folder = out.path().to_owned();
+    run.finish(Some(out), &json, &summary::summary(&report, &folder))?;
+    if arguments.open_report {
+        browser::open(&folder.join("report.html"));
+    }
+    Ok(if is_acceptable(last) { Answer::Positive } else { Answer::Negative })
+}
+
+/// What the error of a shared position does to differences.
+fn shared_errors(velocities: &Measured) -> Option<String> {
+    let (kind, force) = match velocities.derived()? {
+        Difference::Forward => ("forward", "start at: it acts as a spurious restoring force"),
+        Difference::Backward => ("backward", "end at: it acts as a spurious repelling force"),
+        Difference::Central => return None,
+    };
+    Some(format!(
+        "velocities are {kind} differences, which share the error of the position they {force}; --difference central does not, \
+         but needs more frames for earlier velocities"
+    ))
+}
+
+/// What an estimate of the noise contains.
+fn unknown_noise(data: &DataSet) -> Option<String> {
+    let what = match (data.position_noise, data.velocity_noise) {
+        (Some(_), Some(_)) => return None,
+        (None, Some(_)) => "position noise",
+        (Some(_), None) => "velocity noise",
+        (None, None) => "noise of positions and velocities",
+    };
+    Some(format!(
+        "the {what} is not given, so it is estimated from what the fit leaves: an effect that is missing inflates the estimate, \
+         which is an upper bound; state position_noise and velocity_noise where they are known"
+    ))
+}
+
+/// The tracks of the cells of each frame, where there are several frames.
+fn identities(prepared: &Prepared) -> Option<Vec<Vec<i64>>> {
+    let tracked = prepared.frames.len() > 1 && prepared.velocities.flow().is_none();
+    let of_frame = |cells: &Vec<usize>| cells.iter().map(|&cell| cell as i64).collect();
+    tracked.then(|| prepared.snapshots.iter().map(|snapshot| of_frame(&snapshot.cells)).collect())
+}

@@ -1,0 +1,191 @@
+//! The result of `discover` as its report.
+
+use super::sentences::probability;
+use super::{effects, sentences};
+use crate::command::fit::{OrderedField, Prepared, outcome};
+use crate::run::Run;
+use voronudge_infer::diagnostics::Kind;
+use voronudge_infer::discover::{
+    Budget, Described, Discovery, Fitted, HeldOut, HeldOutUnit, Search, Verdict as Answer,
+};
+use voronudge_infer::{Inference, NoiseSource};
+use voronudge_io::DataSet;
+use voronudge_report::discover_report::{
+    Calibration, DescriptionFit, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Predictors,
+    StructureTest, Unexplained, Verdict,
+};
+use voronudge_report::infer_report::Quantity;
+use voronudge_report::{BeforeAfter, DiscoverReport, Units};
+
+/// What was searched, and in which data.
+pub(super) struct Asked<'a> {
+    pub data: &'a DataSet,
+    pub prepared: &'a Prepared,
+    pub search: &'a Search,
+    pub predictors: Option<Predictors>,
+}
+
+pub(super) fn report(run: &Run, asked: &Asked<'_>, discovery: &Discovery) -> DiscoverReport {
+    let Asked { data, prepared, search, predictors } = asked;
+    let units = outcome::units(data);
+    let fits = BeforeAfter {
+        before: model_fit(prepared, &discovery.before, &units),
+        after: model_fit(prepared, &discovery.after, &units),
+    };
+    DiscoverReport {
+        run: run.record(Some(data)),
+        length_scale: Quantity { value: prepared.scale.length, unit: units.length.clone() },
+        cells: outcome::cell_counts(prepared, &discovery.before.inference),
+        flow: prepared.velocities.flow().map(OrderedField::described),
+        constraints: outcome::given(&prepared.constraints),
+        verdict: verdict(discovery.verdict),
+        sentence: sentences::sentence(discovery, prepared),
+        caveat: sentences::caveat(discovery, search),
+        measure_next: sentences::measure_next(discovery, search, prepared),
+        models: fits,
+        description: discovery.description.as_ref().map(|described| description(prepared, described)),
+        selected: discovery.selected.iter().map(|one| effects::selected(one, prepared, &units)).collect(),
+        ranking: discovery.ranking.iter().map(|one| effects::ranked(one, discovery)).collect(),
+        unexplained: unexplained(prepared, &discovery.after),
+        noise_budget: BeforeAfter {
+            before: budget(prepared, &discovery.before.budget),
+            after: budget(prepared, &discovery.after.budget),
+        },
+        predictors: predictors.clone(),
+        null_sets: NullSets {
+            refitted: discovery.null_sets.smallest_p.len(),
+            seeds: discovery.null_sets.seeds.clone(),
+        },
+        calibration: Some(calibration(discovery, search.level)),
+        units,
+    }
+}
+
+fn verdict(answer: Answer) -> Verdict {
+    match answer {
+        Answer::NothingMissing => Verdict::NothingMissing,
+        Answer::Attributed => Verdict::Attributed,
+        Answer::Partial => Verdict::Partial,
+        Answer::UnexplainedStructured => Verdict::UnexplainedStructured,
+        Answer::UnexplainedWhite => Verdict::UnexplainedWhite,
+        Answer::NotTestable => Verdict::NotTestable,
+    }
+}
+
+fn model_fit(prepared: &Prepared, fitted: &Fitted, units: &Units) -> ModelFit {
+    let result = &fitted.inference;
+    ModelFit {
+        parameters: outcome::parameters(prepared, result, units),
+        nmse: nmse(prepared, result, fitted.held_out),
+        noise_floor_nmse: result.nmse.noise_floor,
+        noise: outcome::noise(prepared, result),
+        nudge: outcome::nudge(prepared, result),
+        identifiability: outcome::identifiability(result),
+        chi_square_per_dof: result.objective / result.expected_objective,
+        fit: Some(outcome::fit(prepared, result, &[])),
+    }
+}
+
+fn nmse(prepared: &Prepared, result: &Inference, held_out: Option<HeldOut>) -> ModelNmse {
+    let of = |unit: HeldOutUnit| {
+        held_out.filter(|error| error.unit == unit).map(|error| HeldOutError {
+            value: error.value,
+            standard_error: error.standard_error,
+            folds: error.folds,
+        })
+    };
+    ModelNmse {
+        naive: result.nmse.naive,
+        nudged: result.nmse.nudged,
+        un_nudged: result.nmse.un_nudged,
+        cross_validated: of(HeldOutUnit::Blocks),
+        held_out_frames: of(HeldOutUnit::Frames),
+        mean_removed: prepared.mean_removed,
+        background: prepared.background,
+    }
+}
+
+fn description(prepared: &Prepared, described: &Described) -> DescriptionFit {
+    let result = &described.inference;
+    DescriptionFit {
+        effect: described.effect.id.into(),
+        dimension: described.dimension as f64,
+        nmse: nmse(prepared, result, described.held_out),
+        noise_floor_nmse: result.nmse.noise_floor,
+        chi_square_per_dof: result.objective / result.expected_objective,
+    }
+}
+
+fn unexplained(prepared: &Prepared, fitted: &Fitted) -> Unexplained {
+    let diagnostics = &fitted.diagnostics;
+    let shares = diagnostics.split.shares;
+    Unexplained {
+        share: fitted.budget.unexplained,
+        correlation_length: diagnostics
+            .correlations
+            .length
+            .value()
+            .map_or(f64::NAN, |length| length * prepared.scale.length),
+        divergence_share: shares.map_or(f64::NAN, |shares| shares.divergence),
+        curl_share: shares.map_or(f64::NAN, |shares| shares.curl),
+        tests: diagnostics
+            .structure
+            .tests
+            .iter()
+            .map(|test| StructureTest {
+                name: tested(test.kind).into(),
+                statistic: test.statistic,
+                p: test.p,
+            })
+            .collect(),
+    }
+}
+
+/// What a test for structure looks at.
+fn tested(kind: Kind) -> &'static str {
+    match kind {
+        Kind::Neighbours => "neighbours are alike",
+        Kind::LowModes => "a smooth pattern across the field",
+        Kind::Successive => "the same cell in successive frames",
+    }
+}
+
+fn budget(prepared: &Prepared, shares: &Budget) -> NoiseBudget {
+    let squares = |v: &voronudge_geometry::Vector<f64>| v.norm_squared();
+    let of_frame =
+        |frame: &voronudge_infer::Observation| frame.explainable().iter().map(squares).sum::<f64>();
+    let total: f64 = prepared.observations.iter().map(of_frame).sum();
+    NoiseBudget {
+        total: total * prepared.scale.velocity().powi(2),
+        position_noise: shares.position_noise,
+        velocity_noise: shares.velocity_noise,
+        base: shares.base,
+        effects: shares.effects,
+        unexplained: shares.unexplained,
+    }
+}
+
+fn calibration(discovery: &Discovery, level: f64) -> Calibration {
+    let smallest = &discovery.null_sets.smallest_p;
+    let share = |limit: f64| match smallest.len() {
+        0 => f64::NAN,
+        count => smallest.iter().filter(|p| **p < limit).count() as f64 / count as f64,
+    };
+    let noise = match discovery.before.inference.noise_source {
+        NoiseSource::Given => "the noise given",
+        NoiseSource::Estimated => "the noise estimated",
+    };
+    Calibration {
+        level,
+        single_p: discovery.single_p,
+        unadjusted_false_positives: share(level),
+        words: match smallest.as_slice() {
+            [] => "No made-up data were fitted: the level rests on the number of candidates alone.".into(),
+            [least, ..] => format!(
+                "{} made-up data sets of the base model with {noise} were fitted and searched; their smallest p of any candidate is {}.",
+                smallest.len(),
+                probability(*least)
+            ),
+        },
+    }
+}

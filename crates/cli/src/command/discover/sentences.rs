@@ -1,0 +1,260 @@
+//! The answer in words: what was found, what that does not say, and what to measure next.
+
+use super::history::has_memory;
+use crate::command::fit::Prepared;
+use voronudge_infer::NoiseSource;
+use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Search, Selected, Verdict};
+use voronudge_model::Effect;
+use voronudge_report::numbers::significant;
+
+/// How meanings tell which sign of the coefficient is meant.
+const POSITIVE: &str = "(c > 0)";
+
+/// Names of effects as a list, with a word before the last.
+pub(super) fn listed(names: &[&str], joint: &str) -> String {
+    match names {
+        [others @ .., last] if !others.is_empty() => format!("{} {joint} {last}", others.join(", ")),
+        _ => names.concat(),
+    }
+}
+
+/// A share in percent.
+pub(super) fn percent(share: f64) -> String {
+    format!("{} %", significant(100.0 * share, 2))
+}
+
+/// A probability; the very small ones are not told apart.
+pub(super) fn probability(p: f64) -> String {
+    if (0.0..1e-4).contains(&p) { "<0.0001".into() } else { significant(p, 2) }
+}
+
+/// The measurement that tells two effects apart.
+pub(super) fn told_apart_by(effect: &Effect, other: &Effect) -> String {
+    let known = |one: &Effect, two: &Effect| {
+        one.aliases.iter().find(|alias| alias.of == two.id).map(|alias| alias.told_apart_by.to_owned())
+    };
+    known(effect, other).or_else(|| known(other, effect)).unwrap_or_else(|| {
+        format!(
+            "more cells or frames, or a tissue in which only one of the two can act. {} stands for: {}",
+            other.id, other.meaning
+        )
+    })
+}
+
+/// An effect with those that the data cannot tell from it.
+fn name(selected: &Selected) -> String {
+    let others: Vec<&str> = others(selected).map(|other| other.id).collect();
+    match others.as_slice() {
+        [] => selected.effect.id.into(),
+        others => format!("{} or, not to be told from it, {}", selected.effect.id, listed(others, "or")),
+    }
+}
+
+fn others(selected: &Selected) -> impl Iterator<Item = &'static Effect> {
+    selected.class.iter().copied().filter(|other| other.id != selected.effect.id)
+}
+
+/// What an effect means, without the full stop; with its sign here, where that decides on the meaning.
+fn meaning(selected: &Selected) -> String {
+    let text = selected.effect.meaning.trim_end_matches('.');
+    match selected.coefficients.as_slice() {
+        [only] if text.contains(POSITIVE) => {
+            format!("{text}; here c {} 0", if only.value > 0.0 { ">" } else { "<" })
+        }
+        _ => text.to_owned(),
+    }
+}
+
+/// The error on data that the fit has not seen, before and after.
+fn errors(discovery: &Discovery) -> String {
+    let (Some(before), Some(after)) = (discovery.before.held_out, discovery.after.held_out) else {
+        return "no error on data held out could be computed".into();
+    };
+    let unit = match before.unit {
+        HeldOutUnit::Frames => "on held-out frames",
+        HeldOutUnit::Blocks => "on held-out blocks of cells",
+    };
+    let [from, to] = [before, after].map(|error| significant(error.value, 3));
+    let course = match discovery.selected.is_empty() {
+        true => format!("is {from}"),
+        false if after.value < before.value => format!("falls from {from} to {to}"),
+        false => format!("goes from {from} to {to}"),
+    };
+    let floor = discovery.after.inference.nmse.noise_floor;
+    let estimated = discovery.after.inference.noise_source == NoiseSource::Estimated;
+    let alone = match (floor.is_finite(), estimated) {
+        (false, _) => String::new(),
+        (true, false) => format!(", where noise alone leaves {}", significant(floor, 3)),
+        (true, true) => format!(", where noise alone leaves at most {}", significant(floor, 3)),
+    };
+    format!("the error {unit} {course}{alone}")
+}
+
+/// The answer in a sentence.
+pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
+    let errors = errors(discovery);
+    let share = percent(discovery.share_of_excess);
+    let names: Vec<String> = discovery.selected.iter().map(name).collect();
+    let names: Vec<&str> = names.iter().map(String::as_str).collect();
+    let meanings: Vec<String> = discovery.selected.iter().map(meaning).collect();
+    match (discovery.verdict, meanings.as_slice()) {
+        (Verdict::NothingMissing, _) => {
+            format!("Nothing is missing: the base model leaves no more than noise; {errors}.")
+        }
+        (Verdict::Attributed, [meaning]) => {
+            format!(
+                "{meaning} ({}). This explains {share} of what the base model lacks; {errors}.",
+                names.concat()
+            )
+        }
+        (Verdict::Attributed, meanings) => format!(
+            "{} effects are missing, {}: {}. Together they explain {share} of what the base model lacks; {errors}.",
+            meanings.len(),
+            listed(&names, "and"),
+            meanings.join("; ")
+        ),
+        (Verdict::Partial, [meaning]) => format!(
+            "{meaning} ({}): the data are consistent with that, and it explains {share} of what the base model lacks; the \
+             rest is unidentified; {errors}.",
+            names.concat()
+        ),
+        (Verdict::Partial, _) => format!(
+            "The data are consistent with {}, which together explain {share} of what the base model lacks; the rest is \
+             unidentified; {errors}.",
+            listed(&names, "and")
+        ),
+        (Verdict::UnexplainedStructured, _) => {
+            let length =
+                discovery.after.diagnostics.correlations.length.value().map_or(String::new(), |length| {
+                    format!(", correlated over {} cell sizes", significant(length, 2))
+                });
+            format!(
+                "Something with a structure{length} is missing, {} of the squared velocities, and no candidate explains it; \
+                 {errors}.",
+                percent(discovery.after.budget.unexplained)
+            )
+        }
+        (Verdict::UnexplainedWhite, _) => format!(
+            "The base model leaves more than noise explains, {} of the squared velocities, but without structure; {errors}.",
+            percent(discovery.after.budget.unexplained)
+        ),
+        (Verdict::NotTestable, _) => {
+            let used = discovery.before.inference.used;
+            let frames = prepared.frames.len();
+            format!(
+                "These data cannot tell whether something is missing: {used} velocities in {frames} frame{} are too few, or \
+                 the parameters of the base model do what the candidates do; {errors}.",
+                if frames == 1 { "" } else { "s" }
+            )
+        }
+    }
+}
+
+/// What the answer does not say.
+pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
+    let mut sentences = Vec::new();
+    for selected in &discovery.selected {
+        let others: Vec<&str> = others(selected).map(|other| other.id).collect();
+        if !others.is_empty() {
+            sentences.push(format!(
+                "These data cannot tell {} from {}: read it as one of them.",
+                selected.effect.id,
+                listed(&others, "or")
+            ));
+        }
+        let parameters = selected.effect.aliases.iter().filter(|alias| Effect::from_id(alias.of).is_none());
+        sentences.extend(parameters.map(|alias| {
+            format!("{} acts much like the base model's own term ({}).", selected.effect.id, alias.of)
+        }));
+    }
+    if discovery.verdict == Verdict::Partial {
+        sentences.push(format!(
+            "A rest of {} of the squared velocities has no name.",
+            percent(discovery.after.budget.unexplained.max(0.0))
+        ));
+    }
+    if !discovery.selected.is_empty() {
+        sentences.push(format!(
+            "This is an association, not a mechanism shown: {} candidates were compared, and something that is not among them may \
+             do the same.",
+            search.candidates.len()
+        ));
+    }
+    if matches!(discovery.verdict, Verdict::NothingMissing | Verdict::UnexplainedWhite) {
+        sentences.extend(limits(discovery));
+    }
+    if discovery.before.inference.noise_source == NoiseSource::Estimated {
+        sentences.push(
+            "Noise was estimated, not given: whatever is missing counts as noise in the estimate, which is an upper bound, \
+             so small effects are missed."
+                .into(),
+        );
+    }
+    sentences.join(" ")
+}
+
+/// What would have been missed.
+fn limits(discovery: &Discovery) -> Option<String> {
+    let testable = discovery.ranking.iter().filter(|candidate| {
+        !matches!(candidate.fate, Fate::Absorbed | Fate::NotTestable(_) | Fate::Description)
+    });
+    let mut limits: Vec<f64> =
+        testable.map(|candidate| candidate.detection_limit).filter(|limit| limit.is_finite()).collect();
+    limits.sort_unstable_by(f64::total_cmp);
+    let (least, middle) = (limits.first()?, limits.get(limits.len() / 2)?);
+    Some(format!(
+        "Effects below their detection limits would have been missed: the limits start at {} of the velocity, and half of the \
+         candidates have one above {}.",
+        percent(*least),
+        percent(*middle)
+    ))
+}
+
+/// What to measure next.
+pub(super) fn measure_next(discovery: &Discovery, search: &Search, prepared: &Prepared) -> String {
+    let mut advice = Vec::new();
+    for selected in &discovery.selected {
+        for other in others(selected) {
+            let by = told_apart_by(selected.effect, other);
+            advice.push(format!(
+                "To tell {} from {}: {}.",
+                selected.effect.id,
+                other.id,
+                by.trim_end_matches('.')
+            ));
+        }
+    }
+    let untold = search.candidates.iter().filter(|effect| has_memory(effect)).any(|effect| {
+        let is_it = |fate: &Fate| matches!(fate, Fate::NotTestable(_));
+        discovery.ranking.iter().any(|candidate| candidate.effect.id == effect.id && is_it(&candidate.fate))
+    });
+    let open = !matches!(discovery.verdict, Verdict::NothingMissing | Verdict::Attributed);
+    if open && untold && prepared.velocities.flow().is_none() {
+        advice.push("Tracks over three frames or more, which make effects with a memory testable.".into());
+    }
+    match discovery.verdict {
+        Verdict::UnexplainedStructured => advice.push(
+            "Whatever else varies across the tissue as the residual does: a marker as labels of cells, or a field to compare \
+             with (--field)."
+                .into(),
+        ),
+        Verdict::Partial => {
+            advice.push("More frames of the same tissue, to find what the rest is.".into());
+        }
+        Verdict::NothingMissing | Verdict::NotTestable => advice.push(
+            "More cells or frames, if smaller effects matter: detection limits fall with the root of the number of velocities."
+                .into(),
+        ),
+        Verdict::UnexplainedWhite | Verdict::Attributed => {}
+    }
+    if discovery.before.inference.noise_source == NoiseSource::Estimated
+        || discovery.verdict == Verdict::UnexplainedWhite
+    {
+        advice.push(
+            "The noise by itself, for example cells tracked twice or fixed tissue, to be stated as position_noise and \
+             velocity_noise."
+                .into(),
+        );
+    }
+    advice.join(" ")
+}

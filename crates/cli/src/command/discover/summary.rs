@@ -1,0 +1,105 @@
+//! The result of `discover` as a summary on stdout.
+
+use super::sentences::probability;
+use std::fmt::Write as _;
+use std::path::Path;
+use voronudge_report::DiscoverReport;
+use voronudge_report::discover_report::{HeldOutError, ModelFit};
+use voronudge_report::numbers::{interval_text, significant, unit_text};
+
+/// Candidates shown; the report has all.
+const SHOWN: usize = 5;
+
+/// What the terminal shows.
+pub(super) fn summary(report: &DiscoverReport, folder: &Path) -> String {
+    let mut text = String::new();
+    let _ = writeln!(text, "{}: {}\n", report.verdict.name(), report.sentence);
+    for sentence in [&report.caveat, &report.measure_next] {
+        if !sentence.is_empty() {
+            let _ = writeln!(text, "{sentence}\n");
+        }
+    }
+    text.push_str(&errors(report));
+    text.push_str(&selected(report));
+    text.push_str(&ranking(report));
+    let _ = writeln!(text, "\nfigures in {}", folder.join("report.html").display());
+    text
+}
+
+fn errors(report: &DiscoverReport) -> String {
+    let mut text = String::new();
+    let held_out = |error: Option<HeldOutError>| match error {
+        Some(error) => format!("{} ± {}", significant(error.value, 3), significant(error.standard_error, 1)),
+        None => "–".into(),
+    };
+    let _ = writeln!(
+        text,
+        "{:<13} {:>16}  {:>11}  {:>12}  {:>12}",
+        "error (NMSE)", "held out", "noise alone", "un-nudged", "chi²/dof"
+    );
+    let mut row = |name: &str, fit: &ModelFit| {
+        let _ = writeln!(
+            text,
+            "{name:<13} {:>16}  {:>11}  {:>12}  {:>12}",
+            held_out(fit.nmse.held_out()),
+            significant(fit.noise_floor_nmse, 3),
+            significant(fit.nmse.un_nudged, 3),
+            significant(fit.chi_square_per_dof, 3)
+        );
+    };
+    row("base", &report.models.before);
+    if report.is_extended() {
+        row("with effects", &report.models.after);
+    }
+    text
+}
+
+fn selected(report: &DiscoverReport) -> String {
+    let mut text = String::new();
+    for effect in &report.selected {
+        let _ = writeln!(
+            text,
+            "\n{}: adjusted p {}, {} % of what is missing",
+            effect.effect,
+            probability(effect.p_adjusted),
+            significant(100.0 * effect.share_of_excess, 2)
+        );
+        for (name, parameter) in effect.parameters() {
+            let [value, interval] = match parameter.interval() {
+                Some(ends) => interval_text(parameter.value, ends),
+                None => [significant(parameter.value, 4), "–".into()],
+            };
+            let _ = writeln!(
+                text,
+                "  {}",
+                format!("{name:<28} {value:>12}  {interval:<26} {}", unit_text(&parameter.unit)).trim_end()
+            );
+        }
+    }
+    text
+}
+
+fn ranking(report: &DiscoverReport) -> String {
+    let mut text = String::new();
+    if report.ranking.is_empty() {
+        return text;
+    }
+    let _ =
+        writeln!(text, "\n{:<24} {:>7} {:>10} {:>10}  why", "candidate", "size %", "limit %", "adjusted p");
+    for effect in report.ranking.iter().take(SHOWN) {
+        let _ = writeln!(
+            text,
+            "{:<24} {:>7} {:>10} {:>10}  {}",
+            effect.effect,
+            significant(effect.size, 2),
+            significant(effect.detection_limit, 2),
+            probability(effect.p_adjusted),
+            effect.reason
+        );
+    }
+    let more = report.ranking.len().saturating_sub(SHOWN);
+    if more > 0 {
+        let _ = writeln!(text, "and {more} more in the report");
+    }
+    text
+}

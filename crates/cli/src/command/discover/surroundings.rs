@@ -1,0 +1,126 @@
+//! What surrounds and preceded the cells of each frame, in the units of the fit.
+
+use super::history::History;
+use crate::command::fit::{OrderedField, Prepared, SnapshotArguments, scaled_flow};
+use crate::failure::Failure;
+use crate::snapshot::labels;
+use clap::Args;
+use std::path::PathBuf;
+use std::sync::Arc;
+use voronudge_geometry::{Domain, Vector, Visibility};
+use voronudge_infer::Window;
+use voronudge_io::DataSet;
+use voronudge_model::{Environment, EnvironmentError, VectorMap};
+
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Data")]
+pub(super) struct FieldArguments {
+    /// External field that cells may follow, (ny, nx, 2) or (frames, ny, nx, 2), .npy: vectors, in any unit.
+    #[arg(long, value_name = "FILE", requires = "field_x", requires = "field_y")]
+    field: Option<PathBuf>,
+    /// x of the columns of the external field, .npy.
+    #[arg(long, value_name = "FILE", requires = "field")]
+    field_x: Option<PathBuf>,
+    /// y of the rows of the external field, .npy.
+    #[arg(long, value_name = "FILE", requires = "field")]
+    field_y: Option<PathBuf>,
+}
+
+/// An external field: one map, or one for each frame.
+pub(super) struct ExternalMap {
+    field: OrderedField,
+    frames: usize,
+}
+
+impl FieldArguments {
+    /// The external field, if one is given; its files count as inputs of the data set.
+    pub fn load(&self, data: &mut DataSet) -> Result<Option<ExternalMap>, Failure> {
+        let (Some(file), Some(x), Some(y)) = (&self.field, &self.field_x, &self.field_y) else {
+            return Ok(None);
+        };
+        let field = data.read_field(file, x, y)?;
+        let missing = field.missing();
+        if missing > 0 {
+            return Err(Failure::new(format!(
+                "{missing} vectors are missing, but the field must be known everywhere"
+            ))
+            .with_hint("fill the gaps, or cut the field down to where it is known")
+            .at(file.display()));
+        }
+        let frames = field.frames();
+        if frames != 1 && frames != data.frames() {
+            return Err(Failure::new(format!(
+                "the field has {frames} frames, but the data set has {}",
+                data.frames()
+            ))
+            .with_hint("give one field for all frames, (ny, nx, 2), or one for each")
+            .at(file.display()));
+        }
+        Ok(Some(ExternalMap { field: OrderedField::new(&field, Window::Square)?, frames }))
+    }
+}
+
+impl ExternalMap {
+    /// The map of a frame.
+    fn of(&self, frame: usize, prepared: &Prepared) -> Result<VectorMap, Failure> {
+        let flow = self.field.frame(if self.frames == 1 { 0 } else { frame });
+        let flow = scaled_flow(&flow, &prepared.scale)?;
+        let vectors =
+            flow.velocities.into_iter().map(|vector| vector.unwrap_or_else(Vector::zeros)).collect();
+        VectorMap::new(flow.grid, vectors).map_err(fault)
+    }
+}
+
+fn fault(error: EnvironmentError) -> Failure {
+    Failure::new(error.to_string()).with_hint("check the data")
+}
+
+/// The middle of the box, or the mean position of the cells that count, over all frames.
+fn origin(prepared: &Prepared) -> Vector<f64> {
+    let (mut sum, mut count) = (Vector::zeros(), 0usize);
+    for observation in &prepared.observations {
+        if let Domain::Periodic(cell_box) = observation.tessellation.domain() {
+            let [x, y] = cell_box.lengths();
+            return Vector::new(0.5 * x, 0.5 * y);
+        }
+        let cells = observation.positions.iter().zip(&observation.visibility);
+        for (r, _) in cells.filter(|(_, visibility)| **visibility == Visibility::Counted) {
+            sum += r;
+            count += 1;
+        }
+    }
+    sum / count.max(1) as f64
+}
+
+/// Puts the observations into their environments.
+pub(super) fn surround(
+    prepared: &mut Prepared,
+    (arguments, data): (&SnapshotArguments, &DataSet),
+    map: Option<&ExternalMap>,
+    history: Option<&History>,
+) -> Result<(), Failure> {
+    let origin = origin(prepared);
+    let mut surrounded = Vec::new();
+    for (index, observation) in prepared.observations.iter().enumerate() {
+        let (snapshot, frame) = (&prepared.snapshots[index], prepared.frames[index]);
+        let mut environment = Environment::default().about(origin);
+        if let Some(labels) = labels(data, snapshot, frame) {
+            environment = environment.with_labels(labels).map_err(fault)?;
+        }
+        if matches!(observation.tessellation.domain(), Domain::Open) {
+            let beyond = observation.visibility.iter().map(|v| *v != Visibility::Counted).collect();
+            environment = environment.with_beyond_edge(beyond).map_err(fault)?;
+        }
+        if let Some(map) = map {
+            environment = environment.with_map(map.of(frame, prepared)?);
+        }
+        if let Some(history) = history {
+            let earlier = history.earlier((arguments, data), (snapshot, frame), prepared.mean_removed)?;
+            let scaled = earlier.into_iter().map(|v| v.map(|v| v / prepared.scale.velocity())).collect();
+            environment = environment.with_earlier(scaled).map_err(fault)?;
+        }
+        surrounded.push(observation.clone().within(Arc::new(environment)));
+    }
+    prepared.observations = surrounded;
+    Ok(())
+}

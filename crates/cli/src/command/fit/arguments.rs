@@ -1,0 +1,56 @@
+//! Which snapshots are explained.
+
+use super::flow::FlowArguments;
+use crate::arguments::DataSetArguments;
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use voronudge_io::FrameSelection;
+
+#[derive(Debug, Args)]
+pub(crate) struct SnapshotArguments {
+    #[command(flatten)]
+    pub data: DataSetArguments,
+    /// Frames to fit together: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all that have velocities].
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
+    pub frames: Option<FrameSelection>,
+    /// Which mean velocity to remove first: drift of the stage shows as one.
+    #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
+    pub remove_mean: MeanToRemove,
+    /// Let a smooth flow be no concern of the model: polynomials of the position up to this degree, in each frame.
+    #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u32).range(0..=6), allow_negative_numbers = true)]
+    pub background: Option<u32>,
+    /// In an open field of view, polygons larger than this multiple of the median area, or reaching farther than a
+    /// regular hexagon of that size, are taken for the rim.
+    #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
+    pub largest_area: f64,
+    #[command(flatten)]
+    pub flow: FlowArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum MeanToRemove {
+    /// The median of each frame in an open field, unless velocities of cells are given; none otherwise.
+    Auto,
+    /// None.
+    None,
+    /// The median of the velocities used in each frame.
+    PerFrame,
+}
+
+impl SnapshotArguments {
+    /// Refuses what needs no data to be seen wrong.
+    pub fn check(&self) -> Result<(), Failure> {
+        if self.largest_area.is_finite() && self.largest_area > 0.0 {
+            return Ok(());
+        }
+        let text = format!("--largest-area is {}, but it must be finite and above zero", self.largest_area);
+        Err(Failure::new(text).with_hint("leave it out for 3 times the median area"))
+    }
+
+    /// What the data are called: the name of their folder or file.
+    pub fn title(&self) -> String {
+        let named = self.data.dataset.as_ref().or(self.data.positions.as_ref());
+        let name = named.and_then(|path| path.file_name());
+        name.map_or_else(|| "data".into(), |name| name.to_string_lossy().into_owned())
+    }
+}

@@ -1,0 +1,38 @@
+//! What the commands share that fit the model to snapshots.
+//!
+//! | file | what |
+//! |---|---|
+//! | `arguments`, `constraints`, `flow`, `search` | options: which data, what is known of the parameters, velocities on a grid, how long to search |
+//! | `measured`, `prepare`, `scaling` | from the data set to the problem in scaled units, and back |
+//! | `outcome`, `words` | a fitted model as reports tell it |
+//! | `arrays`, `views`, `browser` | arrays, frames to be drawn, the page on the screen |
+
+mod arguments;
+pub(crate) mod arrays;
+pub(crate) mod browser;
+mod constraints;
+mod flow;
+mod measured;
+pub(crate) mod outcome;
+mod prepare;
+pub(crate) mod scaling;
+mod search;
+pub(crate) mod views;
+pub(crate) mod words;
+
+pub(crate) use arguments::SnapshotArguments;
+pub(crate) use constraints::{ConstraintArguments, quantity};
+pub(crate) use flow::{OrderedField, scaled as scaled_flow};
+pub(crate) use measured::Measured;
+pub(crate) use prepare::{Prepared, Question, observe, remove_median};
+pub(crate) use search::SearchArguments;
+
+use voronudge_infer::Inference;
+
+/// An objective this many times its expected value is no fit: the noise levels given, or the model, are wrong.
+const UNACCEPTABLE: f64 = 3.0;
+
+/// Whether a fit is one.
+pub(crate) fn is_acceptable(result: &Inference) -> bool {
+    result.objective <= UNACCEPTABLE * result.expected_objective
+}

@@ -1,0 +1,271 @@
+//! From a data set to the scaled problem, and back.
+
+use super::arguments::{MeanToRemove, SnapshotArguments};
+use super::measured::Measured;
+use super::{flow, scaling};
+use crate::failure::Failure;
+use crate::run::Run;
+use crate::snapshot::{Snapshot, domain};
+use voronudge_geometry::{Domain, PeriodicBox, Vector, Visibility, areas};
+use voronudge_infer::{
+    Constraints, Error, Inference, KnownNoise, Method, Observation, Request, Scale, Velocities,
+};
+use voronudge_io::{DataSet, Noise};
+use voronudge_report::infer_report::{MeanRemoved, NoiseSource};
+
+/// What is asked of the data.
+pub(crate) struct Question<'a> {
+    pub arguments: &'a SnapshotArguments,
+    pub data: &'a DataSet,
+    /// What is known of the parameters, in the units of the data.
+    pub constraints: Constraints,
+    pub method: Method,
+    pub seed: u64,
+}
+
+/// The problem in scaled units, and what is needed to translate its solution.
+pub(crate) struct Prepared {
+    pub frames: Vec<usize>,
+    pub snapshots: Vec<Snapshot>,
+    pub observations: Vec<Observation>,
+    pub request: Request,
+    pub scale: Scale,
+    pub mean_removed: MeanRemoved,
+    /// Degree of the background, if one is allowed.
+    pub background: Option<u32>,
+    /// Where the noise levels come from if both were stated.
+    pub stated_noise: NoiseSource,
+    pub velocities: Measured,
+    /// What is known of the parameters, in the units of the data.
+    pub constraints: Constraints,
+}
+
+impl Prepared {
+    /// Nudged positions of one frame in the units of the data.
+    pub fn nudged_positions(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        result.frames[index].nudged_positions.iter().map(|r| r * self.scale.length).collect()
+    }
+
+    /// Predicted velocities of the cells of one frame.
+    pub fn predicted(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        result.frames[index].predicted.iter().map(|v| v * self.scale.velocity()).collect()
+    }
+
+    /// The data of one frame as the model predicts them, of cells or on the grid; NaN out of its reach.
+    pub fn predicted_data(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        let observation = &self.observations[index];
+        let predicted = result.frames[index].predicted_data.iter().enumerate();
+        predicted
+            .map(
+                |(datum, v)| if observation.is_in_reach(datum) { v * self.scale.velocity() } else { NOWHERE },
+            )
+            .collect()
+    }
+
+    /// Measured minus predicted data of one frame; NaN where there is no measurement to be explained.
+    pub fn residual_data(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        let (observation, predicted) = (&self.observations[index], &result.frames[index].predicted_data);
+        let mut rests: Vec<Vector<f64>> =
+            observation.targets().map(|(datum, v)| (v - predicted[datum]) * self.scale.velocity()).collect();
+        observation.remove_background(&mut rests);
+        let mut field = vec![NOWHERE; predicted.len()];
+        for ((datum, _), rest) in observation.targets().zip(rests) {
+            field[datum] = rest;
+        }
+        field
+    }
+
+    /// Says in which file and frame a fault lies, with the cell as the file numbers it.
+    pub fn place(&self, error: Error, arguments: &SnapshotArguments) -> Failure {
+        let file = arguments.data.positions_file();
+        match error {
+            Error::Geometry { frame, source } => {
+                let place = format!("{}, frame {}", file.display(), self.frames[frame]);
+                Failure::from(source).at(place)
+            }
+            other => faulty_data(other, &self.velocities, arguments),
+        }
+    }
+}
+
+/// No vector.
+const NOWHERE: Vector<f64> = Vector::new(f64::NAN, f64::NAN);
+
+/// A fault of the data as a whole.
+fn faulty_data(error: Error, velocities: &Measured, arguments: &SnapshotArguments) -> Failure {
+    let flow = velocities.flow().is_some();
+    match error {
+        Error::TooFewVelocities { used, required } if flow => Failure::new(format!(
+            "{used} grid points have a velocity and a window filled by cells with a trusted neighbourhood, but a fit needs \
+             at least {required}"
+        ))
+        .with_hint("check that grid and cells are in one frame of reference and unit, or give more frames")
+        .at(velocities.file(arguments).display()),
+        Error::NothingMoves if flow => Failure::from(error).at(velocities.file(arguments).display()),
+        Error::Constraint(_) | Error::Interrupted => error.into(),
+        other => Failure::from(other).at(arguments.data.positions_file().display()),
+    }
+}
+
+impl Question<'_> {
+    /// The velocities of some frames as a problem in scaled units.
+    pub fn prepare(
+        self,
+        velocities: Measured,
+        frames: Vec<usize>,
+        run: &mut Run,
+    ) -> Result<Prepared, Failure> {
+        let Self { arguments, data, .. } = self;
+        let domain = domain(data)?;
+        let mut snapshots = Vec::new();
+        let mut observations = Vec::new();
+        for &frame in &frames {
+            let (snapshot, observation) = observe(arguments, data, &velocities, frame)?;
+            snapshots.push(snapshot);
+            observations.push(observation);
+        }
+        let absent: usize = snapshots.iter().map(|snapshot| data.cells() - snapshot.cells.len()).sum();
+        if absent > 0 && matches!(domain, Domain::Periodic(_)) {
+            run.warn(format!(
+            "{absent} cells are absent from frames of the periodic box: if they were there and not seen, the polygons around \
+             the holes are wrong"
+        ));
+        }
+        // Drift of the stage shows in tracks and in a flow field; given velocities may have been freed from it.
+        let drifts = !matches!(velocities, Measured::Given(_)) && matches!(domain, Domain::Open);
+        let mean_removed = match arguments.remove_mean {
+            MeanToRemove::PerFrame => MeanRemoved::PerFrame,
+            MeanToRemove::Auto if drifts => MeanRemoved::PerFrame,
+            _ => MeanRemoved::None,
+        };
+        if mean_removed == MeanRemoved::PerFrame {
+            observations.iter_mut().for_each(remove_median);
+        }
+        let scale = scale_of(&observations).map_err(|error| faulty_data(error, &velocities, arguments))?;
+        let (request, stated_noise) = self.request(&scale);
+        let observations = observations
+            .iter()
+            .enumerate()
+            .map(|(index, observation)| {
+                Ok(scaled(index, observation, &scale)?.with_background(arguments.background))
+            })
+            .collect::<Result<Vec<_>, Failure>>()?;
+        Ok(Prepared {
+            frames,
+            snapshots,
+            observations,
+            request,
+            scale,
+            mean_removed,
+            background: arguments.background,
+            stated_noise,
+            velocities,
+            constraints: self.constraints,
+        })
+    }
+
+    /// What is asked of the fit, and where the noise levels come from.
+    fn request(&self, scale: &Scale) -> (Request, NoiseSource) {
+        let Self { arguments, data, constraints, .. } = self;
+        let level = |noise: Option<Noise>, unit: f64| {
+            noise.map(|noise| match noise {
+                Noise::Absolute(value) => value / unit,
+                // Relative to ℓ₀ and to the root mean square velocity, which are one here.
+                Noise::Relative(share) => share,
+            })
+        };
+        let from_flags = arguments.data.position_noise.is_some() || arguments.data.velocity_noise.is_some();
+        (
+            Request {
+                noise: KnownNoise {
+                    position: level(data.position_noise, scale.length),
+                    velocity: level(data.velocity_noise, scale.velocity()),
+                },
+                method: self.method,
+                seed: self.seed,
+                ..Request::new(scaling::scaled(constraints, scale))
+            },
+            if from_flags { NoiseSource::Given } else { NoiseSource::DataSet },
+        )
+    }
+}
+
+/// The cells of one frame with their velocities, in the units of the data.
+pub(crate) fn observe(
+    arguments: &SnapshotArguments,
+    data: &DataSet,
+    velocities: &Measured,
+    frame: usize,
+) -> Result<(Snapshot, Observation), Failure> {
+    let snapshot = Snapshot::new(data, frame);
+    let targets = velocities.of(&snapshot, frame);
+    let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
+    let domain = domain(data)?;
+    let observation =
+        Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.largest_area)
+            .map_err(|error| match error {
+                Error::Geometry { source, .. } => Failure::from(snapshot.in_file_numbers(source)).at(place()),
+                other => Failure::from(other).at(place()),
+            })?;
+    Ok((snapshot, observation))
+}
+
+/// Removes the median velocity of the cells used: the median does not follow a few fast ones.
+pub(crate) fn remove_median(observation: &mut Observation) {
+    let targets: Vec<Vector<f64>> = observation.targets().map(|(_, v)| v).collect();
+    if targets.is_empty() {
+        return;
+    }
+    let median = |axis: usize| {
+        let mut values: Vec<f64> = targets.iter().map(|v| v[axis]).collect();
+        values.sort_unstable_by(f64::total_cmp);
+        let middle = values.len() / 2;
+        if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
+    };
+    let drift = Vector::new(median(0), median(1));
+    observation.velocities.values_mut().iter_mut().flatten().for_each(|v| *v -= drift);
+}
+
+/// ℓ₀² is the mean area of the cells that count; τ makes the root mean square velocity one.
+fn scale_of(observations: &[Observation]) -> Result<Scale, Error> {
+    let (mut area, mut cells, mut squares, mut used) = (0.0, 0.0, 0.0, 0usize);
+    for observation in observations {
+        let areas = areas(&observation.tessellation, &observation.positions);
+        for (a, visibility) in areas.iter().zip(&observation.visibility) {
+            if *visibility == Visibility::Counted {
+                area += a;
+                cells += 1.0;
+            }
+        }
+        for (_, v) in observation.targets() {
+            squares += v.norm_squared();
+            used += 1;
+        }
+    }
+    if used == 0 || cells == 0.0 {
+        return Err(Error::TooFewVelocities { used, required: 4 });
+    }
+    if squares == 0.0 {
+        return Err(Error::NothingMoves);
+    }
+    let length = (area / cells).sqrt();
+    Ok(Scale { length, time: length / (squares / used as f64).sqrt() })
+}
+
+fn scaled(index: usize, observation: &Observation, scale: &Scale) -> Result<Observation, Failure> {
+    let domain = match observation.tessellation.domain() {
+        Domain::Periodic(cell_box) => {
+            let lengths = cell_box.lengths().map(|l| l / scale.length);
+            Domain::Periodic(PeriodicBox::sheared(lengths, cell_box.offset() / scale.length)?)
+        }
+        Domain::Open => Domain::Open,
+    };
+    let positions = observation.positions.iter().map(|r| r / scale.length).collect();
+    let velocities = match &observation.velocities {
+        Velocities::OfCells(all) => {
+            Velocities::OfCells(all.iter().map(|v| v.map(|v| v / scale.velocity())).collect())
+        }
+        Velocities::OnGrid(flow) => Velocities::OnGrid(flow::scaled(flow, scale)?),
+    };
+    Ok(Observation::new(index, positions, velocities, domain, observation.largest_area)?)
+}
