@@ -91,9 +91,14 @@ pub fn infer(
             naive: residual_at(&naive) / total,
             nudged: parts.residual / total,
             un_nudged: residual_at(free) / total,
-            noise_floor: (objective.components() as f64 * variance
-                + equations.sensitivity() * levels.position.powi(2))
-                / total,
+            noise_floor: match at_limit(&levels, &request.noise) {
+                // Nudges as large as that are beyond the linear range.
+                true => f64::NAN,
+                false => {
+                    let positions = equations.sensitivity() * levels.position.powi(2);
+                    (objective.components() as f64 * variance + positions) / total
+                }
+            },
             cross_validated,
         },
         coefficients,

@@ -39,6 +39,9 @@ use voronudge_model::effect::Kind;
 /// Least width of a block of cells that is held out, in units of ℓ₀.
 const BLOCK: f64 = 3.0;
 
+/// Effects refused because of the held-out error before the search ends.
+const MOST_REFUSED: usize = 3;
+
 /// Blocks along each axis at most.
 const MOST_BLOCKS: usize = 3;
 
@@ -84,7 +87,7 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
         }
     };
     ranking.settle(&selection);
-    let description = if testable { describe(&setting, &base.model, blocks, &mut watch)? } else { None };
+    let description = if testable { describe(&setting, &base, blocks, &mut watch)? } else { None };
     let last = grown.as_ref().map_or(&base.model, |tried| &tried.model);
     let verdict = verdict::decide(testable, &selection, &verdict::Left::new(&setting, last, &after)?);
     Ok(Discovery {
@@ -132,9 +135,12 @@ fn grow(
     watch: &mut Watch<'_>,
 ) -> Result<Option<Tried>, Error> {
     let mut grown: Option<Tried> = None;
-    while grown.as_ref().map_or(0, |tried| tried.model.added.len()) < setting.search.most_effects {
+    let mut refused: Vec<usize> = Vec::new();
+    while refused.len() < MOST_REFUSED
+        && grown.as_ref().map_or(0, |tried| tried.model.added.len()) < setting.search.most_effects
+    {
         let current = grown.as_mut().unwrap_or(base);
-        let Some(candidate) = setting.lacking(&current.model, watch)? else { break };
+        let Some(candidate) = setting.lacking(&current.model, &refused, watch)? else { break };
         current.hold_out(setting.frames, blocks, watch)?;
         let mut added = current.model.added.clone();
         added.push(candidate);
@@ -146,7 +152,8 @@ fn grow(
                 setting.candidates[candidate].effect,
                 "the error on velocities held out does not fall by more than its standard error",
             );
-            break;
+            refused.push(candidate);
+            continue;
         }
         grown = Some(Tried { model, folds });
     }
@@ -221,11 +228,11 @@ fn folds(
 /// The generic description that says most beyond chance, fitted.
 fn describe(
     setting: &Setting<'_>,
-    base: &Model,
+    base: &Tried,
     blocks: usize,
     watch: &mut Watch<'_>,
 ) -> Result<Option<Described>, Error> {
-    let lineup = setting.lineup(base)?;
+    let lineup = setting.lineup(&base.model)?;
     let projected = lineup.beyond(&[]);
     let is_description = |c: &Candidate| c.effect.kind == Kind::Description && c.columns.is_ok();
     let best = (0..setting.candidates.len())
@@ -236,6 +243,10 @@ fn describe(
     let Some((candidate, score)) = best else { return Ok(None) };
     let model = setting.fit(vec![candidate], watch)?;
     let folds = folds(setting.frames, &model, blocks, watch)?;
+    // One that predicts worse than the base model describes nothing.
+    if base.folds.as_ref().zip(folds.as_ref()).is_some_and(|(base, own)| base.gain(own)[0] <= 0.0) {
+        return Ok(None);
+    }
     Ok(Some(Described {
         effect: setting.candidates[candidate].effect,
         dimension: score.dimension,

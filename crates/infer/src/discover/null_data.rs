@@ -35,7 +35,8 @@ pub(super) fn searched(
 }
 
 fn smallest_p(setting: &Setting<'_>, base: &Model, number: u64) -> Result<f64, Error> {
-    let (frames, request) = synthetic(setting.frames, &base.request, &base.inference, number)?;
+    let (frames, request) =
+        synthetic(setting.frames, &base.request, &base.inference, base.inference.noise.velocity, number)?;
     let inference = infer(&frames, &request, &mut |_| ControlFlow::Continue(()))?;
     let setting = Setting { frames: &frames, ..*setting };
     let model = Model { added: Vec::new(), request, inference };
@@ -44,11 +45,11 @@ fn smallest_p(setting: &Setting<'_>, base: &Model, number: u64) -> Result<f64, E
     Ok(setting.named(&[]).into_iter().map(|k| projected.score(k).p).fold(1.0, f64::min))
 }
 
-/// Probability of so small a p of any candidate, from the sets; zero if there are none.
+/// Probability of so small a p of any candidate, from the sets. It is zero where no set has reached it, since a few sets
+/// cannot say more.
 pub(super) fn probability(sets: &NullSets, p: f64) -> f64 {
-    if sets.smallest_p.is_empty() {
-        return 0.0;
+    match sets.smallest_p.partition_point(|own| *own <= p) {
+        0 => 0.0,
+        reached => (reached + 1) as f64 / (sets.smallest_p.len() + 1) as f64,
     }
-    let reached = sets.smallest_p.partition_point(|own| *own <= p);
-    (reached + 1) as f64 / (sets.smallest_p.len() + 1) as f64
 }

@@ -70,14 +70,20 @@ impl Setting<'_> {
         if coefficients == 0 { 0.0 } else { 2.0 * p * (offered / p).ln().max(1.0) }
     }
 
-    /// The candidate that a model lacks most; `None` if that is no more than chance.
-    pub fn lacking(&self, model: &Model, watch: &mut Watch<'_>) -> Result<Option<usize>, Error> {
+    /// The candidate that a model lacks most, apart from some refused; `None` if that is no more than chance.
+    pub fn lacking(
+        &self,
+        model: &Model,
+        refused: &[usize],
+        watch: &mut Watch<'_>,
+    ) -> Result<Option<usize>, Error> {
         let lineup = self.lineup(model)?;
         let projected = lineup.beyond(&model.added);
         let on_offer = self.named(&model.added);
         let mut scores: Vec<(usize, Score)> =
             on_offer.iter().map(|k| (*k, projected.score(*k))).filter(|(_, s)| s.dimension > 0).collect();
         let chance = Chance::new(&projected, &on_offer, self.search.fit.seed);
+        scores.retain(|(candidate, _)| !refused.contains(candidate));
         let smallest = scores.iter().map(|(_, score)| score.p).fold(1.0, f64::min);
         if chance.adjusted(smallest) >= self.search.level {
             return Ok(None);

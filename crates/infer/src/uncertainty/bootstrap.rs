@@ -70,24 +70,26 @@ fn replicate(
     result: &Inference,
     number: u64,
 ) -> Result<[f64; 5], Error> {
-    let (synthetic, request) = synthetic(frames, request, result, number)?;
+    // Where the model misses more than the noise explains, the misfit counts as noise of the velocities.
+    let scatter = result.noise.velocity * result.excess().sqrt();
+    let (synthetic, request) = synthetic(frames, request, result, scatter, number)?;
     let refit = infer(&synthetic, &request, &mut |_| ControlFlow::Continue(()))?;
     Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))
 }
 
-/// Data that a fit could have made, and the request to fit them in the same way; another set for every number.
+/// Data that a fit could have made, with noise of the velocities as given, and the request to fit them in the same way; another set for every number.
 pub(crate) fn synthetic(
     frames: &[Observation],
     request: &Request,
     result: &Inference,
+    velocity_noise: f64,
     number: u64,
 ) -> Result<(Vec<Observation>, Request), Error> {
     let mut rng = Pcg64::seed_from_u64(request.seed.wrapping_mul(0x9E37_79B9_7F4A_7C15).wrapping_add(number));
     let level =
         |sigma: f64| Normal::new(0.0, sigma).map_err(|_| Error::Noise { name: "position", value: sigma });
-    // Where the model misses more than the noise explains, the misfit counts as noise of the velocities.
     let on_positions = level(result.noise.position)?;
-    let on_velocities = level(result.noise.velocity * result.excess().sqrt())?;
+    let on_velocities = level(velocity_noise)?;
     let mut noisy = |v: &Vector<f64>, normal: &Normal<f64>| {
         Vector::new(v.x + normal.sample(&mut rng), v.y + normal.sample(&mut rng))
     };
