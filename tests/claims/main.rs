@@ -1,5 +1,6 @@
-//! Claims of the product as a whole: what is put into a simulation comes out of a fit.
+//! Claims of the product as a whole: what is put into a simulation comes out of a fit, and the model does what theory says.
 
 #![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
 
+mod mean_field;
 mod recovery;

@@ -16,6 +16,7 @@ enum Imports {
 const LAYERS: &[(&str, Imports)] = &[
     ("geometry", Imports::Only(&[], &[])),
     ("linalg", Imports::Only(&[], &[])),
+    ("theory", Imports::Only(&[], &[])),
     ("model", Imports::Only(&["geometry"], &[])),
     ("simulate", Imports::Only(&["geometry", "model", "linalg"], &[])),
     ("infer", Imports::Only(&["geometry", "model", "linalg"], &["simulate"])),

@@ -1,0 +1,27 @@
+use thiserror::Error;
+
+/// Why there is no mean-field theory for what was asked.
+#[derive(Debug, Clone, Copy, PartialEq, Error)]
+#[non_exhaustive]
+pub enum Error {
+    /// A parameter is infinite or not a number.
+    #[error("{name} is {value}, not a finite number")]
+    Parameter {
+        /// Symbol of the parameter.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// The perimeter elasticity sets the unit of time and must be positive.
+    #[error("K_P is {value}, not a positive number")]
+    PerimeterElasticity {
+        /// What was given.
+        value: f64,
+    },
+    /// A wave vector has a component that is infinite or not a number.
+    #[error("the wave vector ({x}, {y}) is not finite", x = q[0], y = q[1])]
+    WaveVector {
+        /// What was given.
+        q: [f64; 2],
+    },
+}
