@@ -10,6 +10,9 @@ use crate::uncertainty::nudges;
 use crate::{Error, Inference, Observation, Request, Velocities};
 use voronudge_geometry::{Vector, areas};
 
+/// Areas and velocities of cells.
+type Moving = (Vec<f64>, Vec<Vector<f64>>);
+
 /// A fit with what it leaves.
 #[derive(Clone, Copy)]
 pub(super) struct Evidence<'a> {
@@ -28,7 +31,7 @@ impl Evidence<'_> {
             .iter()
             .map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect())
             .collect();
-        let cells: Vec<Option<(Vec<f64>, Vec<Vector<f64>>)>> = frames.iter().map(cell_data).collect();
+        let cells: Vec<Option<Moving>> = frames.iter().map(cell_data).collect();
         let fields = (0..frames.len())
             .map(|k| {
                 let domain = frames[k].tessellation.domain();
@@ -92,7 +95,7 @@ impl Evidence<'_> {
 }
 
 /// Areas and velocities of the cells with a target; nothing for velocities on a grid.
-fn cell_data(frame: &Observation) -> Option<(Vec<f64>, Vec<Vector<f64>>)> {
+fn cell_data(frame: &Observation) -> Option<Moving> {
     match &frame.velocities {
         Velocities::OnGrid(_) => None,
         Velocities::OfCells(_) => {

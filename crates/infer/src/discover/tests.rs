@@ -1,1 +1,100 @@
 //! Tests of the search on a small tissue.
+
+use super::candidate::candidates;
+use super::lineup::Lineup;
+use super::steps::Setting;
+use super::{Search, Verdict, discover};
+use crate::coefficients::PREFERRED_AREA;
+use crate::sample::observation;
+use crate::search::Watch;
+use crate::{Constraints, CrossValidation, KnownNoise, Observation, Quantity, Request};
+use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
+use voronudge_geometry::Vector;
+use voronudge_model::{Effect, Structure};
+
+fn search(effects: &[&str]) -> Search {
+    let fit = Request {
+        noise: KnownNoise { position: Some(0.02), velocity: Some(0.05) },
+        cross_validation: CrossValidation::Skipped,
+        structure: Structure::base(PREFERRED_AREA),
+        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.1)]))
+    };
+    let candidates = effects.iter().filter_map(|id| Effect::from_id(id)).collect();
+    Search { candidates, null_sets: Some(0), ..Search::new(fit) }
+}
+
+fn drifting(seed: u64) -> Observation {
+    let mut frame = observation(0.02, 0.05, seed);
+    frame.velocities.values_mut().iter_mut().flatten().for_each(|v| *v += Vector::new(0.3, -0.2));
+    frame
+}
+
+#[test]
+fn a_drift_is_named_and_its_absence_is_not() {
+    let search = search(&["drift", "alpha_area", "size_friction"]);
+    let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+    let found = discover(&[drifting(8)], &search, &mut silent).unwrap();
+    assert_eq!(found.verdict, Verdict::Attributed);
+    assert_eq!(found.selected.len(), 1);
+    let drift = &found.selected[0];
+    assert_eq!(drift.effect.id, "drift");
+    assert!(drift.coefficients[0].covers(0.3) && drift.coefficients[1].covers(-0.2), "{drift:?}");
+    assert!(found.gain.is_some_and(|[gain, error]| gain > error));
+    let nothing = discover(&[observation(0.02, 0.05, 8)], &search, &mut silent).unwrap();
+    assert_eq!(nothing.verdict, Verdict::NothingMissing);
+    assert!(nothing.selected.is_empty());
+}
+
+/// The score is by how much the objective, linearised and dense, falls if the candidate's columns are added.
+#[test]
+fn the_score_is_that_of_the_dense_problem() {
+    let search = search(&["alpha_area", "shear", "drift", "size_friction"]);
+    let frames = [drifting(9)];
+    let offered = candidates(&frames, &search.candidates);
+    let setting = Setting { frames: &frames, search: &search, candidates: &offered };
+    let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+    let base = setting.fit(Vec::new(), &mut Watch { observe: &mut silent }).unwrap();
+    let lineup: Lineup = setting.lineup(&base).unwrap();
+    let projected = lineup.beyond(&[]);
+    // The same from the definition, W dense.
+    let space = base.request.space().unwrap();
+    let levels = base.inference.noise;
+    let objective = crate::objective::Objective {
+        frames: &frames,
+        structure: &base.request.structure,
+        space: &space,
+        levels,
+    };
+    let nudges = &crate::uncertainty::nudges(&frames, &base.inference)[0];
+    let placed = objective.place(0, nudges).unwrap();
+    let c = base.inference.coefficients.as_slice();
+    let evaluated = placed.evaluate(c);
+    let n = 2 * frames[0].positions.len();
+    let j = DMatrix::from_row_slice(n, n, &placed.jacobian(c, &evaluated).to_dense());
+    let rest = crate::least_squares::residuals(&frames[0], &evaluated.predicted);
+    let e = DVector::from_iterator(n, rest.iter().flat_map(|(_, rest)| [rest.x, rest.y]));
+    let y = e + &j * DVector::from_column_slice(nudges);
+    let w = (DMatrix::identity(n, n) + &j * j.transpose() / levels.spring()).try_inverse().unwrap();
+    let flat = |column: &[Vector<f64>]| DVector::from_iterator(n, column.iter().flat_map(|v| [v.x, v.y]));
+    let x = DMatrix::from_columns(&[1, 2, 3].map(|k| flat(&evaluated.by_coefficient[k])));
+    let misfit = |x: &DMatrix<f64>| {
+        let beta = (x.transpose() * &w * x).try_inverse().unwrap() * x.transpose() * &w * &y;
+        let rest = &y - x * beta;
+        (rest.transpose() * &w * rest).sum() / levels.velocity.powi(2)
+    };
+    for (k, candidate) in offered.iter().enumerate() {
+        let Ok(columns) = &candidate.columns else { continue };
+        let structure = base.request.structure.with(columns);
+        let mut coefficients = c.to_vec();
+        coefficients.resize(structure.dimension(), 0.0);
+        let with = crate::objective::Objective { structure: &structure, ..objective };
+        let evaluated = with.place(0, nudges).unwrap().evaluate(&coefficients);
+        let mut wide: Vec<DVector<f64>> = x.column_iter().map(|column| column.into_owned()).collect();
+        wide.extend((4..structure.dimension()).map(|k| flat(&evaluated.by_coefficient[k])));
+        let expected = misfit(&x) - misfit(&DMatrix::from_columns(&wide));
+        let score = projected.score(k);
+        assert!((score.statistic - expected).abs() < 1e-7 * expected.max(1.0), "{}", candidate.effect.id);
+        assert_eq!(score.dimension, columns.len());
+    }
+}
