@@ -1,0 +1,124 @@
+//! The search for missing effects: how often it finds one that is not there, and how often one that is.
+
+mod added;
+mod found;
+mod null;
+mod outside;
+mod power;
+mod table;
+
+use super::seeds::on_one_core_each;
+use crate::Outcome;
+use added::Sample;
+use claims::{Noise, Tissue};
+use clap::ValueEnum;
+use found::Found;
+use std::collections::BTreeMap;
+use std::error::Error;
+use std::sync::Mutex;
+use std::time::Instant;
+use voronudge_infer::KnownNoise;
+
+/// What of the search is studied.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// Data that lack nothing.
+    Null,
+    /// One effect.
+    Power,
+    /// Something that no effect describes.
+    Outside,
+    /// Effects that look like others.
+    Aliases,
+    /// Two effects.
+    Pairs,
+}
+
+/// How large the study is.
+#[derive(Debug)]
+pub struct Plan {
+    pub seeds: u64,
+    pub cells: usize,
+    /// All parts if none is named.
+    pub part: Option<Part>,
+    /// Settings whose name contains one of these; all if there are none.
+    pub only: Vec<String>,
+    /// Whether the noise levels are estimated instead of given.
+    pub estimated: bool,
+    /// Synthetic data without an effect for each search; as many as the search takes by itself if none.
+    pub null_sets: Option<usize>,
+    /// The tissues made so far, by seed: settings share them.
+    pub tissues: Mutex<BTreeMap<u64, Tissue>>,
+}
+
+/// Position noise that a search is told where there is none: springs need some.
+const LEAST_POSITION_NOISE: f64 = 1e-3;
+
+/// Runs the parts asked for.
+pub fn run(plan: &Plan) -> Outcome {
+    let parts: [(Part, fn(&Plan) -> Outcome); 5] = [
+        (Part::Null, null::run),
+        (Part::Power, power::single),
+        (Part::Outside, outside::run),
+        (Part::Aliases, power::aliases),
+        (Part::Pairs, power::pairs),
+    ];
+    parts
+        .iter()
+        .filter(|(part, _)| plan.part.is_none_or(|only| only == *part))
+        .try_for_each(|(_, study)| study(plan))
+}
+
+impl Plan {
+    /// Whether a setting of this name is asked for.
+    fn includes(&self, name: &str) -> bool {
+        self.only.is_empty() || self.only.iter().any(|part| name.contains(part.as_str()))
+    }
+
+    /// What the tables of a part have in common.
+    fn describe(&self) -> String {
+        let noise = if self.estimated { "estimated" } else { "given" };
+        format!("{} cells, {} seeds, noise {noise}", self.cells, self.seeds)
+    }
+
+    /// The tissue of a seed.
+    fn tissue(&self, seed: u64) -> Result<Tissue, Box<dyn Error>> {
+        let known = |tissues: &BTreeMap<u64, Tissue>| tissues.get(&seed).cloned();
+        if let Some(tissue) = self.tissues.lock().ok().and_then(|tissues| known(&tissues)) {
+            return Ok(tissue);
+        }
+        let tissue = Tissue::new(self.cells, seed)?;
+        if let Ok(mut tissues) = self.tissues.lock() {
+            tissues.insert(seed, tissue.clone());
+        }
+        Ok(tissue)
+    }
+
+    /// What a search is told of the noise.
+    fn told(&self, noise: Noise) -> KnownNoise {
+        if self.estimated {
+            KnownNoise::default()
+        } else {
+            Noise { position: noise.position.max(LEAST_POSITION_NOISE), ..noise }.known()
+        }
+    }
+
+    /// Searches a data set of each seed, and tells of those that a setting calls failures.
+    fn search(
+        &self,
+        name: &str,
+        noise: Noise,
+        sample: impl Fn(u64) -> Result<Sample, Box<dyn Error>> + Sync,
+        failed: impl Fn(&Found) -> bool,
+    ) -> Result<Vec<Found>, Box<dyn Error>> {
+        let begun = Instant::now();
+        let found = on_one_core_each(self.seeds, |seed| {
+            Found::search(&sample(seed)?, self.told(noise), self.null_sets, seed)
+        })?;
+        for found in found.iter().filter(|found| failed(found)) {
+            eprintln!("{name}: {found}");
+        }
+        eprintln!("{name}: {} sets, {:.0} s", found.len(), begun.elapsed().as_secs_f64());
+        Ok(found)
+    }
+}
