@@ -54,19 +54,22 @@ pub struct Plan {
 /// Position noise that a search is told where there is none: springs need some.
 const LEAST_POSITION_NOISE: f64 = 1e-3;
 
+impl Part {
+    fn run(self, plan: &Plan) -> Outcome {
+        match self {
+            Self::Null => null::run(plan),
+            Self::Power => power::single(plan),
+            Self::Outside => outside::run(plan),
+            Self::Aliases => power::aliases(plan),
+            Self::Pairs => power::pairs(plan),
+        }
+    }
+}
+
 /// Runs the parts asked for.
 pub fn run(plan: &Plan) -> Outcome {
-    let parts: [(Part, fn(&Plan) -> Outcome); 5] = [
-        (Part::Null, null::run),
-        (Part::Power, power::single),
-        (Part::Outside, outside::run),
-        (Part::Aliases, power::aliases),
-        (Part::Pairs, power::pairs),
-    ];
-    parts
-        .iter()
-        .filter(|(part, _)| plan.part.is_none_or(|only| only == *part))
-        .try_for_each(|(_, study)| study(plan))
+    let parts = Part::value_variants().iter().filter(|own| plan.part.is_none_or(|only| only == **own));
+    parts.copied().try_for_each(|part| part.run(plan))
 }
 
 impl Plan {
