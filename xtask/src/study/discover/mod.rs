@@ -106,17 +106,17 @@ impl Plan {
         }
     }
 
-    /// Searches a data set of each seed, and tells of those that a setting calls failures.
+    /// Searches a data set of each seed, made from the seed of a tissue and that of what is drawn for it, and tells of those that a setting calls failures.
     fn search(
         &self,
         name: &str,
         noise: Noise,
-        sample: impl Fn(u64) -> Result<Sample, Box<dyn Error>> + Sync,
+        sample: impl Fn(u64, u64) -> Result<Sample, Box<dyn Error>> + Sync,
         failed: impl Fn(&Found) -> bool,
     ) -> Result<Vec<Found>, Box<dyn Error>> {
         let begun = Instant::now();
         let found = on_one_core_each(self.seeds, |seed| {
-            Found::search(&sample(seed)?, self.told(noise), self.null_sets, seed)
+            Found::search(&sample(seed, drawn(name, seed))?, self.told(noise), self.null_sets, seed)
         })?;
         for found in found.iter().filter(|found| failed(found)) {
             eprintln!("{name}: {found}");
@@ -124,4 +124,12 @@ impl Plan {
         eprintln!("{name}: {} sets, {:.0} s", found.len(), begun.elapsed().as_secs_f64());
         Ok(found)
     }
+}
+
+/// A seed for the noise in a setting: settings share tissues, but nothing else that is random.
+fn drawn(name: &str, seed: u64) -> u64 {
+    let mix = |hash: u64, byte: u8| (hash ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3);
+    let hash = name.bytes().chain(seed.to_le_bytes()).fold(0xcbf2_9ce4_8422_2325, mix);
+    // Small enough to be added to.
+    hash >> 8
 }

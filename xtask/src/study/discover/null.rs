@@ -34,14 +34,14 @@ pub fn run(plan: &Plan) -> Outcome {
             for velocity in VELOCITY_NOISE {
                 let noise = Noise { position, velocity };
                 let name = format!(
-                    "null, {frames} frames, σ_r {} %, σ_v {} %",
+                    "null, frames {frames}, σ_r {} %, σ_v {} %",
                     percent(position),
                     percent(velocity)
                 );
                 if !plan.includes(&name) {
                     continue;
                 }
-                let sample = |seed| sample(plan, seed, frames, noise);
+                let sample = |seed, drawn| sample(plan, [seed, drawn], frames, noise);
                 let failed = |found: &Found| !found.verdict_is(Verdict::NothingMissing);
                 let found = plan.search(&name, noise, sample, failed)?;
                 row(&[
@@ -63,14 +63,19 @@ pub fn run(plan: &Plan) -> Outcome {
 }
 
 /// One frame, or several of one trajectory, each with the velocities that were measured a frame before.
-fn sample(plan: &Plan, seed: u64, frames: usize, noise: Noise) -> Result<Sample, Box<dyn Error>> {
+fn sample(
+    plan: &Plan,
+    [seed, drawn]: [u64; 2],
+    frames: usize,
+    noise: Noise,
+) -> Result<Sample, Box<dyn Error>> {
     if frames == 1 {
-        return once(&plan.tissue(seed)?, noise, seed);
+        return once(&plan.tissue(seed)?, noise, drawn);
     }
     let tissues = Tissue::trajectory(plan.cells, seed, frames + 1, INTERVAL)?;
     let mut measured = Vec::with_capacity(tissues.len());
     for (time, tissue) in tissues.iter().enumerate() {
-        measured.push(tissue.measured(noise, seed + 100_000 * time as u64)?);
+        measured.push(tissue.measured(noise, drawn + 100_000 * time as u64)?);
     }
     let earlier: Vec<_> = measured.iter().map(|frame| frame.velocities.values().to_vec()).collect();
     let mut observations = Vec::with_capacity(frames);

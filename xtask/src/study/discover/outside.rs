@@ -56,7 +56,7 @@ pub fn run(plan: &Plan) -> Outcome {
             if !plan.includes(&name) {
                 continue;
             }
-            let sample = |seed| sample(&plan.tissue(seed)?, seed, unknown, size);
+            let sample = |seed, drawn| sample(&plan.tissue(seed)?, drawn, unknown, size);
             let found = plan.search(&name, NOISE, sample, |found| found.verdict_is(Verdict::Attributed))?;
             row(&[
                 what.to_owned(),
