@@ -116,7 +116,9 @@ impl Plan {
     ) -> Result<Vec<Found>, Box<dyn Error>> {
         let begun = Instant::now();
         let found = on_one_core_each(self.seeds, |seed| {
-            Found::search(&sample(seed, drawn(name, seed))?, self.told(noise), self.null_sets, seed)
+            let searched = sample(seed, drawn(name, seed))
+                .and_then(|sample| Found::search(&sample, self.told(noise), self.null_sets, seed));
+            searched.map_err(|error| format!("{name}, seed {seed}: {error}").into())
         })?;
         for found in found.iter().filter(|found| failed(found)) {
             eprintln!("{name}: {found}");

@@ -23,9 +23,16 @@ const EFFECTS: [&str; 9] = [
     "p0_gradient",
 ];
 
-/// Effects that others resemble.
-const ALIASES: [&str; 6] =
-    ["p0_gradient", "kp_gradient", "edge_tension", "internal_drag", "flow_blur", "chiral_edge_tension"];
+/// Effects that others resemble. Those that slow all cells are hardly more than another unit of velocity and need to be
+/// large.
+const ALIASES: [(&str, Size); 6] = [
+    ("p0_gradient", Size::Beyond(0.1)),
+    ("kp_gradient", Size::Beyond(0.1)),
+    ("edge_tension", Size::Beyond(0.1)),
+    ("chiral_edge_tension", Size::Beyond(0.1)),
+    ("internal_drag", Size::Whole(0.4)),
+    ("flow_blur", Size::Whole(0.4)),
+];
 
 const PAIRS: [[&str; 2]; 5] = [
     ["drift", "alpha_area"],
@@ -85,13 +92,22 @@ pub fn single(plan: &Plan) -> Outcome {
     Ok(())
 }
 
-/// Effects that others resemble, of 10 % beyond what the base model says.
+/// Effects that others resemble.
 pub fn aliases(plan: &Plan) -> Outcome {
-    println!("### Aliases, 10 % beyond the base model, σ_r 1 %, σ_v 10 % ({})\n", plan.describe());
-    head(&["effect", "selected", "in class", "of those selected", "another one alone", "usual class", "s"]);
-    for effect in ALIASES {
+    println!("### Aliases, σ_r 1 %, σ_v 10 % ({})\n", plan.describe());
+    head(&[
+        "effect",
+        "beyond the base %",
+        "selected",
+        "in class",
+        "of those selected",
+        "another one alone",
+        "usual class",
+        "s",
+    ]);
+    for (effect, size) in ALIASES {
         let name = format!("aliases, {effect}");
-        let settings = [(effect, Size::Beyond(0.1))];
+        let settings = [(effect, size)];
         let Some(found) = searched(plan, &name, POSITION_NOISE[0], &settings, Found::in_classes)? else {
             continue;
         };
@@ -101,6 +117,7 @@ pub fn aliases(plan: &Plan) -> Outcome {
         );
         row(&[
             format!("`{effect}`"),
+            beyond(&found),
             count(&found, Found::selected),
             count(&found, Found::in_classes),
             format!("{:.2} ({hits}/{all})", hits as f64 / all.max(1) as f64),
