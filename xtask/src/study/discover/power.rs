@@ -38,8 +38,8 @@ const PAIRS: [[&str; 2]; 5] = [
     ["drift", "alpha_area"],
     ["size_friction", "nonlinear_area"],
     ["short_range_repulsion", "cell_centre_chirality"],
-    ["internal_drag", "p0_gradient"],
-    ["nematic_stress", "odd_diffusion"],
+    ["p0_gradient", "size_friction"],
+    ["nematic_stress", "drift"],
 ];
 
 /// One effect of several sizes.
