@@ -57,19 +57,55 @@ impl Tissue {
     /// # Errors
     /// Those of the placement and the simulation.
     pub fn new(cells: usize, seed: u64) -> Result<Self, Box<dyn Error>> {
-        let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
-        let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(1000 + seed))?;
-        let mut simulation =
-            Simulation::new(start, Domain::Periodic(cell_box), Model::chiral_voronoi(&TRUTH))?;
-        for _ in 0..2000 {
-            simulation.step(0.005)?;
+        Self::of(&steady(cells, seed)?)
+    }
+
+    /// The same tissue at several times, these far apart, velocities in units of their common root mean square.
+    ///
+    /// # Errors
+    /// Those of the placement and the simulation.
+    pub fn trajectory(
+        cells: usize,
+        seed: u64,
+        times: usize,
+        interval: f64,
+    ) -> Result<Vec<Self>, Box<dyn Error>> {
+        let mut simulation = steady(cells, seed)?;
+        let mut all = Vec::with_capacity(times);
+        for time in 0..times {
+            if time > 0 {
+                advance(&mut simulation, interval)?;
+            }
+            all.push(Self::of(&simulation)?);
         }
-        let v = simulation.velocities();
-        let rms = (v.iter().map(|v| v.norm_squared()).sum::<f64>() / cells as f64).sqrt();
+        let squares: f64 = all.iter().map(|tissue| tissue.rms.powi(2)).sum();
+        let common = (squares / times as f64).sqrt();
+        Ok(all.into_iter().map(|tissue| tissue.in_units_of(common)).collect())
+    }
+
+    fn of(simulation: &Simulation) -> Result<Self, Box<dyn Error>> {
         let positions = simulation.positions().to_vec();
-        let tessellation = Tessellation::new(&positions, Domain::Periodic(cell_box))?;
-        let velocities = v.iter().map(|v| v / rms).collect();
-        Ok(Self { edges: tessellation.edges(), positions, velocities, tessellation, rms })
+        let tessellation = Tessellation::new(&positions, simulation.tessellation().domain())?;
+        let velocities = simulation.velocities().to_vec();
+        let own = Self { edges: tessellation.edges(), positions, velocities, tessellation, rms: 1.0 };
+        Ok(own.normalised())
+    }
+
+    /// The same cells with other velocities, given in the units of these.
+    #[must_use]
+    pub fn moving(&self, velocities: Vec<Vector<f64>>) -> Self {
+        Self { velocities, ..self.clone() }.normalised()
+    }
+
+    fn normalised(self) -> Self {
+        let squares: f64 = self.velocities.iter().map(Vector::norm_squared).sum();
+        let unit = self.rms * (squares / self.velocities.len() as f64).sqrt();
+        self.in_units_of(unit)
+    }
+
+    fn in_units_of(mut self, rms: f64) -> Self {
+        self.velocities.iter_mut().for_each(|v| *v = *v * self.rms / rms);
+        Self { rms, ..self }
     }
 
     /// What would be measured of each cell, with Gaussian noise on every component.
@@ -158,6 +194,23 @@ impl Tissue {
         let squares: f64 = positions.iter().zip(&self.positions).map(|(a, b)| (a - b).norm_squared()).sum();
         (squares / positions.len() as f64).sqrt()
     }
+}
+
+/// A tissue that has come to its steady state.
+fn steady(cells: usize, seed: u64) -> Result<Simulation, Box<dyn Error>> {
+    let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
+    let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(1000 + seed))?;
+    let mut simulation = Simulation::new(start, Domain::Periodic(cell_box), Model::chiral_voronoi(&TRUTH))?;
+    advance(&mut simulation, 10.0)?;
+    Ok(simulation)
+}
+
+fn advance(simulation: &mut Simulation, time: f64) -> Result<(), Box<dyn Error>> {
+    const STEP: f64 = 0.005;
+    for _ in 0..(time / STEP).round() as usize {
+        simulation.step(STEP)?;
+    }
+    Ok(())
 }
 
 /// Adds Gaussian noise to one field after another.

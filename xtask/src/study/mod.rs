@@ -1,5 +1,6 @@
 //! Statistical studies: longer than tests, with tables for the documentation.
 
+mod discover;
 mod nada;
 mod noise;
 mod recovery;
@@ -18,12 +19,24 @@ pub struct Arguments {
     /// Number of seeds.
     #[arg(long, default_value_t = 10)]
     seeds: u64,
-    /// Only tissues of this many cells (nada).
+    /// Only tissues of this many cells (nada, discover).
     #[arg(long)]
     cells: Option<usize>,
     /// Folder for figures (nada).
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
+    /// Only this part (discover).
+    #[arg(long, value_enum)]
+    part: Option<discover::Part>,
+    /// Only settings whose name contains one of these (discover).
+    #[arg(long, value_name = "TEXT")]
+    only: Vec<String>,
+    /// Noise levels are estimated, not given (discover).
+    #[arg(long)]
+    estimated: bool,
+    /// Synthetic data without an effect for each search (discover).
+    #[arg(long, value_name = "COUNT")]
+    null_sets: Option<usize>,
 }
 
 /// The studies there are.
@@ -37,6 +50,8 @@ enum Study {
     Noise,
     /// How often intervals cover.
     Coverage,
+    /// Missing effects: found where there are none, found where there are some.
+    Discover,
 }
 
 /// Runs a study.
@@ -46,5 +61,21 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Nada => nada::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
         Study::Noise => noise::levels(arguments.seeds),
         Study::Coverage => noise::coverage(arguments.seeds),
+        Study::Discover => discover::run(&arguments.plan()),
+    }
+}
+
+impl Arguments {
+    /// The study of the search for missing effects.
+    fn plan(&self) -> discover::Plan {
+        discover::Plan {
+            seeds: self.seeds,
+            cells: self.cells.unwrap_or(100),
+            part: self.part,
+            only: self.only.clone(),
+            estimated: self.estimated,
+            null_sets: self.null_sets,
+            tissues: std::sync::Mutex::default(),
+        }
     }
 }
