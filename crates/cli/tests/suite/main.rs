@@ -23,4 +23,3 @@ mod scratch;
 mod simulations;
 mod stdout;
 mod uncertainties;
-mod undeclared;

@@ -13,6 +13,11 @@ pub(super) struct Candidate {
 }
 
 impl Candidate {
+    /// Whether its columns are there whatever the coefficients are.
+    pub fn is_linear(&self) -> bool {
+        self.columns.iter().flatten().all(|column| matches!(column, Column::Term(_)))
+    }
+
     /// Whether it may be named as what is missing.
     pub fn is_named(&self) -> bool {
         self.effect.kind != Kind::Description

@@ -31,15 +31,26 @@ pub(super) struct Selection {
 }
 
 /// The effect added that is least beyond chance given the others, if any is not beyond it.
-pub(super) fn superfluous(setting: &Setting<'_>, model: &Model) -> Result<Option<usize>, Error> {
-    let weakest =
-        without_each(setting, model)?.into_iter().max_by(|a, b| a.adjusted_p.total_cmp(&b.adjusted_p));
+pub(super) fn superfluous(
+    setting: &Setting<'_>,
+    base: &Model,
+    model: &Model,
+    watch: &mut Watch<'_>,
+) -> Result<Option<usize>, Error> {
+    let weakest = without_each(setting, base, model, watch)?
+        .into_iter()
+        .max_by(|a, b| a.adjusted_p.total_cmp(&b.adjusted_p));
     Ok(weakest.filter(|own| own.adjusted_p >= setting.search.level).map(|own| own.candidate))
 }
 
 /// The effect added whose p is largest given the others, and that p.
-pub(super) fn weakest(setting: &Setting<'_>, model: &Model) -> Result<Option<(usize, f64)>, Error> {
-    let weakest = without_each(setting, model)?.into_iter().max_by(|a, b| a.p.total_cmp(&b.p));
+pub(super) fn weakest(
+    setting: &Setting<'_>,
+    base: &Model,
+    model: &Model,
+    watch: &mut Watch<'_>,
+) -> Result<Option<(usize, f64)>, Error> {
+    let weakest = without_each(setting, base, model, watch)?.into_iter().max_by(|a, b| a.p.total_cmp(&b.p));
     Ok(weakest.map(|own| (own.candidate, own.p)))
 }
 
@@ -54,14 +65,27 @@ struct Tested {
     others: Vec<(usize, f64, Vec<f64>)>,
 }
 
-fn without_each(setting: &Setting<'_>, model: &Model) -> Result<Vec<Tested>, Error> {
+fn without_each(
+    setting: &Setting<'_>,
+    base: &Model,
+    model: &Model,
+    watch: &mut Watch<'_>,
+) -> Result<Vec<Tested>, Error> {
     let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
     let mut all = Vec::with_capacity(model.added.len());
     for (candidate, places) in model.added.iter().zip(&places.effects) {
-        let mut lineup = setting.lineup(model)?;
-        let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
-        lineup.restore(*candidate, &own);
         let others: Vec<usize> = model.added.iter().copied().filter(|k| k != candidate).collect();
+        let lineup = if others.is_empty() {
+            setting.lineup(base)?
+        } else if setting.candidates[*candidate].is_linear() {
+            let mut lineup = setting.lineup(model)?;
+            let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
+            lineup.restore(*candidate, &own);
+            lineup
+        } else {
+            // With a response in the model the columns of the terms are not their own: only a fit without it tells.
+            setting.lineup(&setting.fit(others.clone(), watch)?)?
+        };
         let projected = lineup.beyond(&others);
         let on_offer = setting.named(&others);
         let chance = Chance::new(&projected, &on_offer, setting.search.fit.seed);
@@ -98,7 +122,7 @@ pub(super) fn selection(
     watch: &mut Watch<'_>,
 ) -> Result<Selection, Error> {
     let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
-    let tested = without_each(setting, model)?;
+    let tested = without_each(setting, base, model, watch)?;
     let excess = Excess::new(setting, base, model)?;
     let mut selected = Vec::with_capacity(tested.len());
     for (tested, places) in tested.into_iter().zip(&places.effects) {

@@ -252,7 +252,12 @@ impl Projected<'_> {
         let gain = s.dot(&coefficients).max(0.0);
         let d = dimension.max(1) as f64;
         let (statistic, p, variance) = match self.lineup.variance {
-            Some(variance) => (gain / variance, upper_chi_squared(gain / variance, d), variance),
+            Some(variance) => {
+                // What is left may scatter more than the noise given: an effect must stand out against that.
+                let found = ((rest - gain) / (self.left - d).max(1.0)).max(0.0);
+                let statistic = gain / variance.max(found);
+                (statistic, upper_chi_squared(statistic, d), variance.max(found))
+            }
             None => {
                 let left = (self.left - d).max(1.0);
                 let variance = ((rest - gain) / left).max(f64::MIN_POSITIVE);

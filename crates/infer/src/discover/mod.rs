@@ -70,7 +70,7 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
         grown = grow(&setting, &mut base, blocks, &mut ranking, &mut watch)?;
         if grown.is_some() {
             null_sets = null_data::searched(&setting, &base.model, &mut watch)?;
-            grown = confirm(&setting, grown, &null_sets, blocks, &mut ranking, &mut watch)?;
+            grown = confirm(&setting, &base.model, grown, &null_sets, blocks, &mut ranking, &mut watch)?;
         }
     }
     let base_error = base.model.inference.nmse.un_nudged;
@@ -158,8 +158,13 @@ fn grow(
         grown = Some(Tried { model, folds });
     }
     while let Some(current) = &grown {
-        let Some(superfluous) = classes::superfluous(setting, &current.model)? else { break };
-        ranking.refuse(setting.candidates[superfluous].effect, "other effects explain the same");
+        let Some(superfluous) = classes::superfluous(setting, &base.model, &current.model, watch)? else {
+            break;
+        };
+        ranking.refuse(
+            setting.candidates[superfluous].effect,
+            "with all else in the model it is no more than chance",
+        );
         grown = without(setting, current, superfluous, blocks, watch)?;
     }
     Ok(grown)
@@ -168,6 +173,7 @@ fn grow(
 /// Takes back effects as improbable as which synthetic data without an effect have them too.
 fn confirm(
     setting: &Setting<'_>,
+    base: &Model,
     mut grown: Option<Tried>,
     null_sets: &NullSets,
     blocks: usize,
@@ -175,7 +181,7 @@ fn confirm(
     watch: &mut Watch<'_>,
 ) -> Result<Option<Tried>, Error> {
     while let Some(current) = &grown {
-        let Some((candidate, p)) = classes::weakest(setting, &current.model)? else { break };
+        let Some((candidate, p)) = classes::weakest(setting, base, &current.model, watch)? else { break };
         if null_data::probability(null_sets, p) < setting.search.level {
             break;
         }

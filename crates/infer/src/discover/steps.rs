@@ -92,7 +92,7 @@ impl Setting<'_> {
         scores.sort_by(|a, b| worth(&b.1).total_cmp(&worth(&a.1)));
         let best = scores.first().map_or(0.0, |(_, score)| worth(score));
         scores.retain(|(_, score)| {
-            worth(score) > best - CONTENDERS && chance.adjusted(score.p) < self.search.level
+            worth(score) > (best - CONTENDERS).max(0.0) && chance.adjusted(score.p) < self.search.level
         });
         scores.truncate(MOST_CONTENDERS);
         let cells: usize = self.frames.iter().map(|frame| frame.positions.len()).sum();
@@ -107,8 +107,7 @@ impl Setting<'_> {
         } else {
             0
         };
-        let best = scores.get(chosen).filter(|(_, score)| worth(score) > 0.0);
-        Ok(best.map(|(candidate, _)| *candidate))
+        Ok(scores.get(chosen).map(|(candidate, _)| *candidate))
     }
 
     /// `−2 log L` at the noise levels of a fitted model, refitted from it with other candidates: of `kept` ones with their
