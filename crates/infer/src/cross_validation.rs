@@ -46,42 +46,60 @@ fn ratio(folds: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 2] {
     [pooled, (n / (n - 1.0) * spread).sqrt() / total]
 }
 
-/// Holds out whole frames in turn where there are three or more, contiguous blocks of cells otherwise. `None` if too few
-/// velocities are left to fit, or to hold out.
+/// What is held out together.
+#[derive(Debug, Clone)]
+pub(crate) struct Split {
+    /// Whether whole frames, or contiguous blocks of cells.
+    pub of_frames: bool,
+    /// For each fold and frame, which velocities are held out.
+    pub folds: Vec<Vec<Vec<bool>>>,
+}
+
+impl Split {
+    /// Whole frames in turn where there are three or more; otherwise blocks, so many along each axis.
+    pub fn new(frames: &[Observation], blocks: usize) -> Self {
+        let of_frames = frames.len() >= 3;
+        let count = if of_frames { frames.len() } else { blocks * blocks };
+        let folds = (0..count)
+            .map(|fold| {
+                let held_out = |(index, frame): (usize, &Observation)| match of_frames {
+                    true => vec![index == fold; frame.velocities.values().len()],
+                    false => in_block(frame, fold, blocks),
+                };
+                frames.iter().enumerate().map(held_out).collect()
+            })
+            .collect();
+        Self { of_frames, folds }
+    }
+}
+
+/// The frames without velocities held out, each with its index; those without any velocity left are not among them.
+pub(crate) fn training(frames: &[Observation], held_out: &[Vec<bool>]) -> Vec<(usize, Observation)> {
+    let pairs = frames.iter().zip(held_out).enumerate();
+    pairs
+        .map(|(index, (frame, out))| (index, without(frame, out)))
+        .filter(|(_, frame)| frame.targets().next().is_some())
+        .collect()
+}
+
+/// Fits without the velocities of each fold. `None` if too few velocities are left to fit, or to hold out.
 pub(crate) fn cross_validate(
     whole: &Objective<'_>,
-    blocks: usize,
+    split: &Split,
     watch: &mut Watch<'_>,
 ) -> Result<Option<Folds>, Error> {
-    let frames = whole.frames;
-    let of_frames = frames.len() >= 3;
-    let count = if of_frames { frames.len() } else { blocks * blocks };
-    let folds: Vec<Vec<Vec<bool>>> = (0..count)
-        .map(|fold| {
-            let held_out = |(index, frame): (usize, &Observation)| match of_frames {
-                true => vec![index == fold; frame.velocities.values().len()],
-                false => in_block(frame, fold, blocks),
-            };
-            frames.iter().enumerate().map(held_out).collect()
-        })
-        .collect();
-    let tested = watch.each("cross-validation", &folds, 1.0, |held_out| test(whole, held_out))?;
+    let tested = watch.each("cross-validation", &split.folds, 1.0, |held_out| test(whole, held_out))?;
     let Some(folds) = tested.into_iter().collect::<Option<Vec<(f64, f64)>>>() else {
         return Ok(None);
     };
     let folds: Vec<(f64, f64)> = folds.into_iter().filter(|(_, total)| *total > 0.0).collect();
-    Ok((folds.len() >= 2).then_some(Folds { of_frames, folds }))
+    Ok((folds.len() >= 2).then_some(Folds { of_frames: split.of_frames, folds }))
 }
 
 /// Fits without some velocities: the squared error on them and their sum of squares. `None` if too few are left.
 fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f64)>, Error> {
     let Objective { frames, structure, space, .. } = *whole;
-    let training: Vec<Observation> = frames
-        .iter()
-        .zip(held_out)
-        .filter(|(_, out)| !out.iter().all(|out| *out))
-        .map(|(frame, out)| without(frame, out))
-        .collect();
+    let training: Vec<Observation> = training(frames, held_out).into_iter().map(|(_, frame)| frame).collect();
     let used: usize = training.iter().map(|frame| frame.targets().count()).sum();
     if used < 2 * space.dimension() + 2 {
         return Ok(None);

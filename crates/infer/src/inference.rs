@@ -1,7 +1,7 @@
 //! The fit: naive, then nudged, with noise levels, intervals and errors.
 
 use crate::coefficients::parameters;
-use crate::cross_validation::{BLOCKS, cross_validate};
+use crate::cross_validation::{BLOCKS, Split, cross_validate};
 use crate::estimates::Fitted;
 use crate::least_squares::{self, residuals_as_measured};
 use crate::noisy_fit::{at_limit, fit};
@@ -49,7 +49,9 @@ pub fn infer(
     let objective = objective;
     let levels = objective.levels;
     let cross_validated = match request.cross_validation {
-        CrossValidation::Done => cross_validate(&objective, BLOCKS, &mut watch)?.map(|folds| folds.error()),
+        CrossValidation::Done => {
+            cross_validate(&objective, &Split::new(frames, BLOCKS), &mut watch)?.map(|folds| folds.error())
+        }
         CrossValidation::Skipped => None,
     };
     let (free, nudges) = objective.split(&found.parameters);

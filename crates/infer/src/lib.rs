@@ -30,6 +30,7 @@ mod noisy_fit;
 mod normal_equations;
 mod objective;
 mod observation;
+mod predictive;
 mod quadratic;
 mod quantity;
 mod request;

@@ -10,11 +10,10 @@
 //! For given k the best σ_v² is `yᵀPy / (n − p)`, which leaves a function of k alone.
 
 use crate::Error;
-use crate::least_squares::invert;
+use crate::linearisation::{Leftover, Whitened};
 use crate::normal_equations::NormalEquations;
 use argmin::core::{CostFunction, Error as ArgminError, Executor, State};
 use argmin::solver::brent::BrentOpt;
-use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Where noise levels come from.
@@ -104,7 +103,7 @@ impl Restricted<'_> {
         let velocity = match self.known {
             KnownNoise { velocity: Some(velocity), .. } => velocity,
             KnownNoise { position: Some(position), .. } => position * root,
-            _ => (self.summed(log_k)?.misfit / self.left()).sqrt(),
+            _ => (self.leftover(log_k)?.misfit / self.left()).sqrt(),
         }
         .max(self.known.velocity.unwrap_or(SMALLEST_VELOCITY_NOISE));
         let position = self
@@ -121,41 +120,21 @@ impl Restricted<'_> {
 
     /// −2 log L, up to a constant.
     pub fn criterion(&self, log_k: f64) -> Result<f64, Error> {
-        let summed = self.summed(log_k)?;
+        let leftover = self.leftover(log_k)?;
         let left = self.left();
         let variance = match self.known {
             KnownNoise { velocity: Some(velocity), .. } => velocity * velocity,
             KnownNoise { position: Some(position), .. } => position * position * log_k.exp(),
-            _ => summed.misfit / left,
+            _ => leftover.misfit / left,
         };
-        Ok(left * variance.ln() + summed.log_determinant + summed.misfit / variance)
+        Ok(left * variance.ln() + leftover.log_determinant + leftover.misfit / variance)
     }
 
-    fn summed(&self, log_k: f64) -> Result<Summed, Error> {
-        let p = self.equations.dimension();
-        let spring = log_k.exp();
-        let parts = self.equations.frames.par_iter().map(|frame| frame.whiten(spring)).collect::<Vec<_>>();
-        let (mut free, mut mixed) = (DMatrix::zeros(p, p), DVector::zeros(p));
-        let (mut data, mut log_determinant) = (0.0, 0.0);
-        for part in parts {
-            let part = part?;
-            free += part.free;
-            mixed += part.mixed;
-            data += part.data;
-            log_determinant += part.log_determinant;
-        }
-        let inverse = invert(free.clone())?;
-        let factor = free.cholesky().ok_or(Error::Degenerate)?;
-        log_determinant += 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
-        let misfit = data - (mixed.transpose() * inverse * &mixed).sum();
-        Ok(Summed { misfit, log_determinant })
+    fn leftover(&self, log_k: f64) -> Result<Leftover, Error> {
+        let frames = self.equations.frames.par_iter();
+        let parts = frames.map(|frame| frame.whiten(log_k.exp())).collect::<Result<Vec<_>, _>>()?;
+        Whitened::sum(&parts, self.equations.dimension()).restricted()
     }
-}
-
-/// yᵀPy, and log det W + log det XᵀW⁻¹X.
-struct Summed {
-    misfit: f64,
-    log_determinant: f64,
 }
 
 impl CostFunction for &Restricted<'_> {
@@ -173,6 +152,7 @@ mod tests {
     use crate::least_squares::residuals;
     use crate::objective::Objective;
     use crate::{CoefficientSpace, Constraints};
+    use nalgebra::{DMatrix, DVector};
     use voronudge_model::Structure;
 
     /// −2 log L with dense matrices, from the definition: the likelihood of the data projected on what no coefficient

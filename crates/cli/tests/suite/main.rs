@@ -23,3 +23,4 @@ mod scratch;
 mod simulations;
 mod stdout;
 mod uncertainties;
+mod undeclared;

@@ -3,12 +3,11 @@
 use super::chance::Chance;
 use super::lineup::added_places;
 use super::result::Selected;
-use super::steps::{LARGE, Model, Setting};
+use super::steps::{Model, Setting};
 use crate::least_squares::residuals;
-use crate::objective::Objective;
 use crate::search::Watch;
 use crate::uncertainty::nudges;
-use crate::{Error, NoiseLevels, Quantity};
+use crate::{Error, Quantity};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Vector;
 use voronudge_model::Effect;
@@ -30,42 +29,19 @@ pub(super) struct Selection {
     pub largest_share: f64,
 }
 
-/// The effect added that is least beyond chance given the others, if any is not beyond it.
-pub(super) fn superfluous(
-    setting: &Setting<'_>,
-    base: &Model,
-    model: &Model,
-    watch: &mut Watch<'_>,
-) -> Result<Option<usize>, Error> {
-    let weakest = without_each(setting, base, model, watch)?
-        .into_iter()
-        .max_by(|a, b| a.adjusted_p.total_cmp(&b.adjusted_p));
-    Ok(weakest.filter(|own| own.adjusted_p >= setting.search.level).map(|own| own.candidate))
-}
-
-/// The effect added whose p is largest given the others, and that p.
-pub(super) fn weakest(
-    setting: &Setting<'_>,
-    base: &Model,
-    model: &Model,
-    watch: &mut Watch<'_>,
-) -> Result<Option<(usize, f64)>, Error> {
-    let weakest = without_each(setting, base, model, watch)?.into_iter().max_by(|a, b| a.p.total_cmp(&b.p));
-    Ok(weakest.map(|own| (own.candidate, own.p)))
-}
-
 /// One effect added, tested with all others in the model.
-struct Tested {
-    candidate: usize,
-    p: f64,
-    adjusted_p: f64,
+pub(super) struct Tested {
+    pub candidate: usize,
+    pub p: f64,
+    pub adjusted_p: f64,
     statistic: f64,
     size: f64,
     /// Other candidates in its place: lead over them in the linear problem, and their coefficients.
     others: Vec<(usize, f64, Vec<f64>)>,
 }
 
-fn without_each(
+/// Tests each effect added, with all others in the model.
+pub(super) fn without_each(
     setting: &Setting<'_>,
     base: &Model,
     model: &Model,
@@ -75,22 +51,23 @@ fn without_each(
     let mut all = Vec::with_capacity(model.added.len());
     for (candidate, places) in model.added.iter().zip(&places.effects) {
         let others: Vec<usize> = model.added.iter().copied().filter(|k| k != candidate).collect();
+        let own_lineup;
         let lineup = if others.is_empty() {
-            setting.lineup(base)?
+            &base.lineup
         } else if setting.candidates[*candidate].is_linear() {
-            let mut lineup = setting.lineup(model)?;
             let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
-            lineup.restore(*candidate, &own);
-            lineup
+            own_lineup = model.lineup.restored(*candidate, &own);
+            &own_lineup
         } else {
             // With a response in the model the columns of the terms are not their own: only a fit without it tells.
-            setting.lineup(&setting.fit(others.clone(), watch)?)?
+            own_lineup = setting.fit(others.clone(), watch)?.lineup;
+            &own_lineup
         };
         let projected = lineup.beyond(&others);
         let on_offer = setting.named(&others);
         let chance = Chance::new(&projected, &on_offer, setting.search.fit.seed);
         let score = projected.score(*candidate);
-        let worth = |statistic: f64, dimension: usize| statistic - setting.price(&lineup, dimension);
+        let worth = |statistic: f64, dimension: usize| statistic - setting.price(lineup, dimension);
         let mine = worth(score.statistic, score.dimension);
         // What another explains is measured with the same noise.
         let unit = score.statistic / projected.gain(*candidate).max(f64::MIN_POSITIVE);
@@ -119,13 +96,13 @@ pub(super) fn selection(
     setting: &Setting<'_>,
     base: &Model,
     model: &Model,
+    tested: &[Tested],
     watch: &mut Watch<'_>,
 ) -> Result<Selection, Error> {
     let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
-    let tested = without_each(setting, base, model, watch)?;
     let excess = Excess::new(setting, base, model)?;
     let mut selected = Vec::with_capacity(tested.len());
-    for (tested, places) in tested.into_iter().zip(&places.effects) {
+    for (tested, places) in tested.iter().zip(&places.effects) {
         let candidate = &setting.candidates[tested.candidate];
         selected.push(Selected {
             effect: candidate.effect,
@@ -137,7 +114,7 @@ pub(super) fn selection(
             adjusted_p: tested.adjusted_p,
             share_of_excess: (tested.statistic / excess.before).clamp(0.0, 1.0),
             size: tested.size,
-            class: class(setting, model, &tested, watch)?,
+            class: class(setting, model, tested, watch)?,
             partial: partial(setting, model, places)?,
         });
     }
@@ -154,31 +131,26 @@ fn class(
     let mut rivals: Vec<&(usize, f64, Vec<f64>)> =
         tested.others.iter().filter(|own| own.1 < UNSURE).collect();
     rivals.sort_by(|a, b| a.1.total_cmp(&b.1));
-    let cells: usize = setting.frames.iter().map(|frame| frame.positions.len()).sum();
-    let leads = if cells > LARGE {
-        rivals.iter().map(|rival| rival.1).collect()
-    } else {
-        let kept: Vec<usize> = model.added.iter().copied().filter(|k| *k != tested.candidate).collect();
-        let lineup = setting.lineup(model)?;
-        let price = |k: usize| setting.price(&lineup, lineup.group(k).len());
-        let mine = model.inference.objective + price(tested.candidate);
-        watch.each("classes", &rivals, 1.0, |(candidate, _, coefficients)| {
-            let mut added = kept.clone();
-            added.push(*candidate);
-            let value = setting.refined(model, &kept, &added, coefficients)?;
-            Ok(value + price(*candidate) - mine)
-        })?
-    };
+    let kept: Vec<usize> = model.added.iter().copied().filter(|k| *k != tested.candidate).collect();
+    let price = |k: usize| setting.price(&model.lineup, model.lineup.group(k).len());
+    let mine = model.inference.objective + price(tested.candidate);
+    let leads = watch.each("classes", &rivals, 1.0, |(candidate, lead, coefficients)| {
+        // The columns of a response depend on all else in the model: only a refit tells.
+        if setting.is_large() && setting.candidates[*candidate].is_linear() {
+            return Ok(*lead);
+        }
+        let new = Some((*candidate, coefficients.as_slice()));
+        let value = setting.refined(model, model.inference.noise, &kept, new)?;
+        Ok(value + price(*candidate) - mine)
+    })?;
     let close = rivals.iter().zip(leads).filter(|(_, lead)| *lead < LEAD);
     Ok(close.map(|((candidate, ..), _)| setting.candidates[*candidate].effect).collect())
 }
 
 /// What an effect predicts beyond the terms of the base model, and that with what the whole model leaves, in each target.
 fn partial(setting: &Setting<'_>, model: &Model, places: &[usize]) -> Result<Vec<[Vector<f64>; 2]>, Error> {
-    let (frames, request) = (setting.frames, &model.request);
-    let space = request.space()?;
-    let levels: NoiseLevels = model.inference.noise;
-    let objective = Objective { frames, structure: &request.structure, space: &space, levels };
+    let frames = setting.frames;
+    let objective = model.objective(frames);
     let coefficients = model.inference.coefficients.as_slice();
     let base = Quantity::COEFFICIENTS;
     let (mut rows, mut targets) = (Vec::new(), Vec::new());
@@ -209,13 +181,8 @@ struct Excess {
 
 impl Excess {
     fn new(setting: &Setting<'_>, base: &Model, model: &Model) -> Result<Self, Error> {
-        let levels = model.inference.noise;
-        let at_levels = Model {
-            added: Vec::new(),
-            request: base.request.clone(),
-            inference: crate::Inference { noise: levels, ..base.inference.clone() },
-        };
-        let before = setting.refined(&at_levels, &[], &[], &[])? - base.inference.expected_objective;
+        let before =
+            setting.refined(base, model.inference.noise, &[], None)? - base.inference.expected_objective;
         let after = model.inference.objective - model.inference.expected_objective;
         let deviation = (2.0 * model.inference.expected_objective).sqrt();
         Ok(Self { before: before.max(before - after).max(f64::MIN_POSITIVE), after, deviation })

@@ -1,13 +1,13 @@
 //! What is known of a model after its fit: error on data it has not seen, budget, whitened residual.
 
 use super::result::{Budget, Fitted, HeldOut};
+use super::steps::Model;
 use super::whitening::whitened;
 use crate::cross_validation::Folds;
 use crate::diagnostics::{CellData, ResidualField, diagnose};
 use crate::least_squares::residuals;
-use crate::objective::Objective;
 use crate::uncertainty::nudges;
-use crate::{Error, Inference, Observation, Request, Velocities};
+use crate::{Error, Inference, Observation, Velocities};
 use voronudge_geometry::{Vector, areas};
 
 /// Areas and velocities of cells.
@@ -17,15 +17,15 @@ type Moving = (Vec<f64>, Vec<Vector<f64>>);
 #[derive(Clone, Copy)]
 pub(super) struct Evidence<'a> {
     pub frames: &'a [Observation],
-    pub request: &'a Request,
     pub identities: Option<&'a [Vec<i64>]>,
     /// Error of the base model at the measured positions.
     pub base_error: f64,
 }
 
 impl Evidence<'_> {
-    pub fn of(&self, inference: Inference, folds: Option<&Folds>) -> Result<Fitted, Error> {
-        let residuals = self.whitened(&inference)?;
+    pub fn of(&self, model: &Model, folds: Option<&Folds>) -> Result<Fitted, Error> {
+        let residuals = self.whitened(model)?;
+        let inference = model.inference.clone();
         let frames = self.frames;
         let places: Vec<Vec<Vector<f64>>> = frames
             .iter()
@@ -48,7 +48,7 @@ impl Evidence<'_> {
             };
             frames.iter().zip(all).map(own).collect()
         });
-        let diagnostics = diagnose(&fields, identities.as_deref(), self.request.seed);
+        let diagnostics = diagnose(&fields, identities.as_deref(), model.request.seed);
         let held_out = folds.map(HeldOut::of);
         Ok(Fitted { budget: self.budget(&inference), held_out, residuals, diagnostics, inference })
     }
@@ -66,11 +66,9 @@ impl Evidence<'_> {
     }
 
     /// The residual linearised back to the measured positions and freed from the correlations that their errors make.
-    fn whitened(&self, inference: &Inference) -> Result<Vec<Vec<Vector<f64>>>, Error> {
-        let space = self.request.space()?;
-        let Self { frames, request, .. } = *self;
-        let objective =
-            Objective { frames, structure: &request.structure, space: &space, levels: inference.noise };
+    fn whitened(&self, model: &Model) -> Result<Vec<Vec<Vector<f64>>>, Error> {
+        let (frames, inference) = (self.frames, &model.inference);
+        let objective = model.objective(frames);
         let coefficients = inference.coefficients.as_slice();
         let mut fields = Vec::with_capacity(frames.len());
         for (index, nudges) in nudges(frames, inference).iter().enumerate() {

@@ -25,7 +25,7 @@ use voronudge_model::{Column, Structure};
 const ABSORBED: f64 = 1e-7;
 
 /// A fitted model with candidates beside it.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Lineup {
     /// XᵀW⁻¹X over the columns of the model and of all candidates.
     information: DMatrix<f64>,
@@ -137,39 +137,33 @@ impl Lineup {
         let spring = objective.spring();
         let parts: Vec<Result<Whitened, Error>> =
             equations.frames.par_iter().map(|frame| frame.whiten(spring)).collect();
+        let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         let p = space.dimension();
-        let mut lineup = Self {
-            information: DMatrix::zeros(p, p),
-            score: DVector::zeros(p),
-            data: 0.0,
-            sizes: DMatrix::zeros(p, p),
-            // Free directions of the base model come first; each effect has one of its own.
-            model: Vec::new(),
-            groups: Vec::new(),
-            components: objective.components() as f64,
-            variance: (result.noise_source == NoiseSource::Given).then(|| result.noise.velocity.powi(2)),
-        };
+        let Whitened { free: information, mixed: score, data, .. } = Whitened::sum(&parts, p);
+        // Free directions of the base model come first; each effect has one of its own.
         let base = space.base_dimension();
         let free = |coefficient: &usize| base + coefficient - BASE;
-        lineup.model = (0..base).chain(own.iter().filter(|c| **c >= BASE).map(free)).collect();
-        lineup.groups = groups.iter().map(|group: &Vec<usize>| group.iter().map(free).collect()).collect();
-        for (frame, part) in equations.frames.iter().zip(parts) {
-            let part = part?;
-            lineup.information += part.free;
-            lineup.score += part.mixed;
-            lineup.data += part.data;
-            lineup.sizes += frame.free_normal() / result.total;
-        }
-        Ok(lineup)
+        Ok(Self {
+            information,
+            score,
+            data,
+            sizes: equations.frames.iter().map(|f| f.free_normal() / result.total).sum(),
+            model: (0..base).chain(own.iter().filter(|c| **c >= BASE).map(free)).collect(),
+            groups: groups.iter().map(|group: &Vec<usize>| group.iter().map(free).collect()).collect(),
+            components: objective.components() as f64,
+            variance: (result.noise_source == NoiseSource::Given).then(|| result.noise.velocity.powi(2)),
+        })
     }
 
-    /// Gives the data back what candidates with some coefficients explain, so that others can be put in their place.
-    pub fn restore(&mut self, candidate: usize, coefficients: &[f64]) {
-        let group = self.groups[candidate].clone();
-        for (k, c) in group.iter().zip(coefficients) {
-            self.data += 2.0 * c * self.score[*k] + c * c * self.information[(*k, *k)];
-            self.score += self.information.column(*k) * *c;
+    /// The same with data that have back what a candidate with some coefficients explains, so that others can be put in
+    /// its place.
+    pub fn restored(&self, candidate: usize, coefficients: &[f64]) -> Self {
+        let mut with = self.clone();
+        for (k, c) in self.groups[candidate].iter().zip(coefficients) {
+            with.data += 2.0 * c * with.score[*k] + c * c * with.information[(*k, *k)];
+            with.score += with.information.column(*k) * *c;
         }
+        with
     }
 
     /// Columns of a candidate.
@@ -181,11 +175,6 @@ impl Lineup {
     pub fn beyond(&self, added: &[usize]) -> Projected<'_> {
         let mut model = self.model.clone();
         added.iter().for_each(|candidate| model.extend(&self.groups[*candidate]));
-        self.beyond_columns(&model)
-    }
-
-    /// The same for any columns in place of the model's.
-    fn beyond_columns(&self, model: &[usize]) -> Projected<'_> {
         let q = model.len();
         let own = DMatrix::from_fn(q, q, |i, j| self.information[(model[i], model[j])]);
         let scale: Vec<f64> =

@@ -1,5 +1,6 @@
 //! Synthetic data without an effect, searched like the data.
 
+use super::classes::Tested;
 use super::result::NullSets;
 use super::steps::{Model, Setting};
 use crate::search::Watch;
@@ -13,15 +14,20 @@ const SETS: usize = 20;
 /// Velocities of all frames above which no set is refitted if nothing else is asked for.
 const LARGE: usize = 1000;
 
+/// Adjusted p of every effect below which no set is refitted if nothing else is asked for: so few sets could not tell.
+const CLEAR: f64 = 1e-4;
+
 /// Fits and screens data that the base model could have made.
 pub(super) fn searched(
     setting: &Setting<'_>,
     base: &Model,
+    tested: &[Tested],
     watch: &mut Watch<'_>,
 ) -> Result<NullSets, Error> {
+    let in_doubt = tested.iter().any(|own| own.adjusted_p >= CLEAR);
     let count = match setting.search.null_sets {
         Some(count) => count,
-        None if base.inference.used <= LARGE => SETS,
+        None if in_doubt && base.inference.used <= LARGE => SETS,
         None => 0,
     };
     // Apart from the replicates of a bootstrap with the same seed.
@@ -39,9 +45,8 @@ fn smallest_p(setting: &Setting<'_>, base: &Model, number: u64) -> Result<f64, E
         synthetic(setting.frames, &base.request, &base.inference, base.inference.noise.velocity, number)?;
     let inference = infer(&frames, &request, &mut |_| ControlFlow::Continue(()))?;
     let setting = Setting { frames: &frames, ..*setting };
-    let model = Model { added: Vec::new(), request, inference };
-    let lineup = setting.lineup(&model)?;
-    let projected = lineup.beyond(&[]);
+    let model = setting.model(Vec::new(), request, inference)?;
+    let projected = model.lineup.beyond(&[]);
     Ok(setting.named(&[]).into_iter().map(|k| projected.score(k).p).fold(1.0, f64::min))
 }
 

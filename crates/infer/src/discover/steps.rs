@@ -7,7 +7,7 @@ use super::result::Search;
 use crate::objective::Objective;
 use crate::search::{Watch, refine};
 use crate::uncertainty::nudges;
-use crate::{CrossValidation, Error, Inference, Observation, Request, infer};
+use crate::{CoefficientSpace, CrossValidation, Error, Inference, NoiseLevels, Observation, Request, infer};
 
 /// Fall of `−2 log L` by which a candidate may be behind the first and is still refitted with it.
 const CONTENDERS: f64 = 16.0;
@@ -19,7 +19,7 @@ const MOST_CONTENDERS: usize = 5;
 const STEPS: u64 = 25;
 
 /// Cells of all frames above which candidates are compared without a refit.
-pub(super) const LARGE: usize = 4000;
+const LARGE: usize = 4000;
 
 /// What does not change from step to step.
 #[derive(Clone, Copy)]
@@ -34,11 +34,29 @@ pub(super) struct Model {
     pub added: Vec<usize>,
     pub request: Request,
     pub inference: Inference,
+    /// All candidates beside it.
+    pub lineup: Lineup,
+    space: CoefficientSpace,
+}
+
+impl Model {
+    /// What was minimised.
+    pub fn objective<'a>(&'a self, frames: &'a [Observation]) -> Objective<'a> {
+        let levels = self.inference.noise;
+        Objective { frames, structure: &self.request.structure, space: &self.space, levels }
+    }
+
+    /// Where it was least.
+    pub fn point(&self, frames: &[Observation]) -> Vec<f64> {
+        let mut at = self.space.nearest(self.inference.coefficients.as_slice());
+        at.extend(nudges(frames, &self.inference).concat());
+        at
+    }
 }
 
 impl Setting<'_> {
     /// The request to fit the base model with candidates added.
-    pub fn request(&self, added: &[usize]) -> Request {
+    fn request(&self, added: &[usize]) -> Request {
         let base = &self.search.fit;
         let structure = added_places(&base.structure, self.candidates, added).structure;
         Request { structure, cross_validation: CrossValidation::Skipped, ..base.clone() }
@@ -48,12 +66,24 @@ impl Setting<'_> {
     pub fn fit(&self, added: Vec<usize>, watch: &mut Watch<'_>) -> Result<Model, Error> {
         let request = self.request(&added);
         let inference = infer(self.frames, &request, watch.observe)?;
-        Ok(Model { added, request, inference })
+        self.model(added, request, inference)
     }
 
-    /// All candidates beside a fitted model.
-    pub fn lineup(&self, model: &Model) -> Result<Lineup, Error> {
-        Lineup::new(self.frames, &self.search.fit, self.candidates, &model.added, &model.inference)
+    /// A fit with all candidates beside it.
+    pub fn model(&self, added: Vec<usize>, request: Request, inference: Inference) -> Result<Model, Error> {
+        let lineup = Lineup::new(self.frames, &self.search.fit, self.candidates, &added, &inference)?;
+        Ok(Model { space: request.space()?, added, request, inference, lineup })
+    }
+
+    /// Whether there are too many cells to refit candidates that are close to each other.
+    pub fn is_large(&self) -> bool {
+        self.frames.iter().map(|frame| frame.positions.len()).sum::<usize>() > LARGE
+    }
+
+    /// Candidates that are descriptions and can be tested.
+    pub fn descriptions(&self) -> Vec<usize> {
+        let is_one = |k: &usize| !self.candidates[*k].is_named() && self.candidates[*k].columns.is_ok();
+        (0..self.candidates.len()).filter(is_one).collect()
     }
 
     /// Candidates that may be named and are not part of a model.
@@ -77,7 +107,7 @@ impl Setting<'_> {
         refused: &[usize],
         watch: &mut Watch<'_>,
     ) -> Result<Option<usize>, Error> {
-        let lineup = self.lineup(model)?;
+        let lineup = &model.lineup;
         let projected = lineup.beyond(&model.added);
         let on_offer = self.named(&model.added);
         let mut scores: Vec<(usize, Score)> =
@@ -88,20 +118,19 @@ impl Setting<'_> {
         if chance.adjusted(smallest) >= self.search.level {
             return Ok(None);
         }
-        let worth = |score: &Score| score.statistic - self.price(&lineup, score.dimension);
+        let worth = |score: &Score| score.statistic - self.price(lineup, score.dimension);
         scores.sort_by(|a, b| worth(&b.1).total_cmp(&worth(&a.1)));
         let best = scores.first().map_or(0.0, |(_, score)| worth(score));
         scores.retain(|(_, score)| {
             worth(score) > (best - CONTENDERS).max(0.0) && chance.adjusted(score.p) < self.search.level
         });
         scores.truncate(MOST_CONTENDERS);
-        let cells: usize = self.frames.iter().map(|frame| frame.positions.len()).sum();
-        let chosen = if scores.len() > 1 && cells <= LARGE {
+        let chosen = if scores.len() > 1 && !self.is_large() {
+            let levels = model.inference.noise;
             let values = watch.each("candidates", &scores, 1.0, |(candidate, score)| {
-                let mut added = model.added.clone();
-                added.push(*candidate);
-                let value = self.refined(model, &model.added, &added, score.coefficients.as_slice())?;
-                Ok(value + self.price(&lineup, score.dimension))
+                let new = Some((*candidate, score.coefficients.as_slice()));
+                let value = self.refined(model, levels, &model.added, new)?;
+                Ok(value + self.price(lineup, score.dimension))
             })?;
             (0..values.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0)
         } else {
@@ -110,31 +139,37 @@ impl Setting<'_> {
         Ok(scores.get(chosen).map(|(candidate, _)| *candidate))
     }
 
-    /// `−2 log L` at the noise levels of a fitted model, refitted from it with other candidates: of `kept` ones with their
-    /// coefficients, and of the last of `added` with those given.
-    pub fn refined(&self, from: &Model, kept: &[usize], added: &[usize], last: &[f64]) -> Result<f64, Error> {
+    /// Φ/σ_v² at given noise levels, refitted from a fit with those of its candidates that are kept, and a new one with the
+    /// coefficients given.
+    pub fn refined(
+        &self,
+        from: &Model,
+        levels: NoiseLevels,
+        kept: &[usize],
+        new: Option<(usize, &[f64])>,
+    ) -> Result<f64, Error> {
+        let added: Vec<usize> = kept.iter().copied().chain(new.map(|(candidate, _)| candidate)).collect();
         let base = &self.search.fit.structure;
-        let (old, new) =
-            (added_places(base, self.candidates, &from.added), added_places(base, self.candidates, added));
-        let request = self.request(added);
+        let before = added_places(base, self.candidates, &from.added);
+        let after = added_places(base, self.candidates, &added);
+        let request = self.request(&added);
         let space = request.space()?;
-        let mut coefficients = vec![0.0; request.structure.dimension()];
         let fitted = &from.inference.coefficients;
-        new.model.iter().zip(&old.model).for_each(|(to, from)| coefficients[*to] = fitted[*from]);
-        for (candidate, places) in added.iter().zip(&new.effects) {
-            let before =
-                from.added.iter().position(|own| own == candidate).filter(|_| kept.contains(candidate));
-            match before {
-                Some(k) => places
-                    .iter()
-                    .zip(&old.effects[k])
-                    .for_each(|(to, from)| coefficients[*to] = fitted[*from]),
-                None => places.iter().zip(last).for_each(|(to, c)| coefficients[*to] = *c),
+        let mut coefficients = vec![0.0; request.structure.dimension()];
+        let mut copy = |to: &[usize], from: &[usize]| {
+            to.iter().zip(from).for_each(|(to, from)| coefficients[*to] = fitted[*from]);
+        };
+        copy(&after.model, &before.model);
+        for (candidate, places) in kept.iter().zip(&after.effects) {
+            if let Some(k) = from.added.iter().position(|own| own == candidate) {
+                copy(places, &before.effects[k]);
             }
+        }
+        if let (Some((_, values)), Some(places)) = (new, after.effects.last()) {
+            places.iter().zip(values).for_each(|(to, value)| coefficients[*to] = *value);
         }
         let mut start = space.nearest(&coefficients);
         start.extend(nudges(self.frames, &from.inference).concat());
-        let levels = from.inference.noise;
         let objective =
             Objective { frames: self.frames, structure: &request.structure, space: &space, levels };
         Ok(refine(&objective, start, STEPS)?.value / levels.velocity.powi(2))

@@ -1,7 +1,6 @@
 //! Tests of the search on a small tissue.
 
 use super::candidate::candidates;
-use super::lineup::Lineup;
 use super::steps::Setting;
 use super::{Search, Verdict, discover};
 use crate::coefficients::PREFERRED_AREA;
@@ -40,7 +39,7 @@ fn a_drift_is_named_and_its_absence_is_not() {
     let drift = &found.selected[0];
     assert_eq!(drift.effect.id, "drift");
     assert!(drift.coefficients[0].covers(0.3) && drift.coefficients[1].covers(-0.2), "{drift:?}");
-    assert!(found.gain.is_some_and(|[gain, error]| gain > error));
+    assert!(found.likelihood_gain.is_some_and(|[gain, error]| gain > error));
     let nothing = discover(&[observation(0.02, 0.05, 8)], &search, &mut silent).unwrap();
     assert_eq!(nothing.verdict, Verdict::NothingMissing);
     assert!(nothing.selected.is_empty());
@@ -55,8 +54,7 @@ fn the_score_is_that_of_the_dense_problem() {
     let setting = Setting { frames: &frames, search: &search, candidates: &offered };
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
     let base = setting.fit(Vec::new(), &mut Watch { observe: &mut silent }).unwrap();
-    let lineup: Lineup = setting.lineup(&base).unwrap();
-    let projected = lineup.beyond(&[]);
+    let projected = base.lineup.beyond(&[]);
     // The same from the definition, W dense.
     let space = base.request.space().unwrap();
     let levels = base.inference.noise;

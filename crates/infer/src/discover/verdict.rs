@@ -4,7 +4,7 @@ use super::chance::Chance;
 use super::classes::Selection;
 use super::result::{Fitted, Verdict};
 use super::steps::{Model, Setting};
-use crate::{Doubt, Error, NoiseSource};
+use crate::{Doubt, NoiseSource};
 
 /// p below which what is left has a structure. It is small because every data set is tested.
 const STRUCTURED: f64 = 0.003;
@@ -21,21 +21,18 @@ pub(super) struct Left {
 }
 
 impl Left {
-    pub fn new(setting: &Setting<'_>, model: &Model, fitted: &Fitted) -> Result<Self, Error> {
-        let lineup = setting.lineup(model)?;
-        let projected = lineup.beyond(&model.added);
-        let descriptions: Vec<usize> = (0..setting.candidates.len())
-            .filter(|k| !setting.candidates[*k].is_named() && setting.candidates[*k].columns.is_ok())
-            .collect();
+    pub fn new(setting: &Setting<'_>, model: &Model, fitted: &Fitted) -> Self {
+        let projected = model.lineup.beyond(&model.added);
+        let descriptions = setting.descriptions();
         let smallest = descriptions.iter().map(|k| projected.score(*k).p).fold(1.0, f64::min);
         let chance = Chance::new(&projected, &descriptions, setting.search.fit.seed);
         let described = !descriptions.is_empty() && chance.adjusted(smallest) < STRUCTURED;
         let inference = &fitted.inference;
-        Ok(Self {
+        Self {
             structured: described || fitted.diagnostics.structure.p < STRUCTURED,
             too_much: inference.noise_source == NoiseSource::Given
                 && inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Objective(_))),
-        })
+        }
     }
 }
 

@@ -32,10 +32,10 @@ pub struct RankedEffect {
     pub reason: String,
 }
 
-/// By how much the held-out error falls.
+/// By how much an error falls, or velocities held out become more probable.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct Gain {
-    /// Fall of the normalised mean square error.
+    /// The fall.
     pub value: f64,
     /// Its standard error over the folds.
     pub standard_error: f64,

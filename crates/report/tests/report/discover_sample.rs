@@ -141,6 +141,7 @@ pub fn attributed() -> DiscoverReport {
             interval: "the backward difference from frame 5 to frame 6".into(),
             overlap: "shares one position with the forward difference that is explained, no interval".into(),
         }),
+        likelihood_gain: Some(Gain { value: 61.0, standard_error: 9.5 }),
         null_sets: NullSets { refitted: 200, seeds: (1..=200).collect() },
         calibration: Some(Calibration {
             level: 0.05,
@@ -199,6 +200,7 @@ pub fn not_testable() -> DiscoverReport {
     };
     let unknown = NoiseBudget { total: 3.0, base: f64::NAN, unexplained: -0.02, ..NoiseBudget::default() };
     report.noise_budget = BeforeAfter { before: unknown, after: unknown };
+    report.likelihood_gain = Some(Gain { value: f64::NAN, standard_error: f64::NAN });
     report.null_sets = NullSets::default();
     report.calibration = None;
     report.predictors = None;
@@ -212,6 +214,7 @@ fn unextended(mut report: DiscoverReport) -> DiscoverReport {
     report.noise_budget.before = NoiseBudget { base: 0.7, unexplained: 0.01, ..report.noise_budget.before };
     report.noise_budget.after = report.noise_budget.before;
     report.description = None;
+    report.likelihood_gain = None;
     report.selected.clear();
     for candidate in &mut report.ranking {
         if candidate.statistic > 6.0 {

@@ -19,8 +19,8 @@ pub(super) struct SearchOptions {
     /// Probability that data in which nothing is missing lead to an effect.
     #[arg(long, value_name = "P", default_value_t = 0.05, value_parser = level, allow_negative_numbers = true)]
     level: f64,
-    /// Made-up data without an effect that are fitted before one is believed, 0 to 10000 [default: as many as a
-    /// moderate time allows].
+    /// Made-up data without an effect that are fitted before one is believed, 0 to 10000 [default: 20 where an effect
+    /// is in doubt and the velocities are at most 1000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=10_000), allow_negative_numbers = true)]
     null_sets: Option<u64>,
     /// Effects added at most, 1 to 16.

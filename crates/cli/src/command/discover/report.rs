@@ -11,7 +11,7 @@ use voronudge_infer::discover::{
 use voronudge_infer::{Inference, NoiseSource};
 use voronudge_io::DataSet;
 use voronudge_report::discover_report::{
-    Calibration, DescriptionFit, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Predictors,
+    Calibration, DescriptionFit, Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Predictors,
     StructureTest, Unexplained, Verdict,
 };
 use voronudge_report::infer_report::Quantity;
@@ -52,6 +52,9 @@ pub(super) fn report(run: &Run, asked: &Asked<'_>, discovery: &Discovery) -> Dis
             after: budget(prepared, &discovery.after.budget),
         },
         predictors: predictors.clone(),
+        likelihood_gain: discovery
+            .likelihood_gain
+            .map(|[value, standard_error]| Gain { value, standard_error }),
         null_sets: NullSets {
             refitted: discovery.null_sets.smallest_p.len(),
             seeds: discovery.null_sets.seeds.clone(),

@@ -76,6 +76,7 @@ struct Context<'a> {
     noise: Vec<NoiseRow>,
     parameters: Vec<ParameterComparison>,
     directions: Directions,
+    likelihood_gain: Option<String>,
     single_p: String,
     false_positives: String,
 }
@@ -120,6 +121,9 @@ impl DiscoverPage<'_> {
             noise: before_after::noise_rows(report),
             parameters: before_after::parameters(report),
             directions: directions(&report.models.after.identifiability),
+            likelihood_gain: report
+                .likelihood_gain
+                .map(|gain| words::with_error(gain.value, gain.standard_error)),
             single_p: calibration.map_or_else(String::new, |found| words::probability(found.single_p)),
             false_positives: calibration
                 .map_or_else(String::new, |found| percent(found.unadjusted_false_positives)),
