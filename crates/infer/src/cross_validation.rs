@@ -5,6 +5,7 @@ use crate::objective::Objective;
 use crate::search::{Watch, follow};
 use crate::{Error, Observation, Progress};
 use std::ops::ControlFlow;
+use voronudge_model::Structure;
 
 /// Blocks along each axis into which a frame is cut at least.
 pub(crate) const BLOCKS: usize = 2;
@@ -23,6 +24,16 @@ pub(crate) struct Folds {
 }
 
 impl Folds {
+    /// Errors of a model with given coefficients on whole frames.
+    pub fn predicted(frames: &[Observation], structure: &Structure, coefficients: &[f64]) -> Self {
+        let of = |frame: &Observation| {
+            let rests = residuals_as_measured(frame, structure, coefficients);
+            let squared: f64 = rests.iter().map(|(_, rest)| rest.norm_squared()).sum();
+            (squared, frame.explainable().iter().map(|v| v.norm_squared()).sum())
+        };
+        Self { of_frames: true, folds: frames.iter().map(of).collect() }
+    }
+
     pub fn count(&self) -> usize {
         self.folds.len()
     }

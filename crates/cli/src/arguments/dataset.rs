@@ -2,10 +2,10 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use voronudge_io::{Boundary, DataSet, Noise, Source, YAxis};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataSetArguments {
     /// Folder with positions.npy, dataset.toml and, where there are any, velocities.npy or flow.npy.
@@ -59,6 +59,20 @@ pub(crate) struct DataSetArguments {
 }
 
 impl DataSetArguments {
+    /// The same of the folder of another data set, with its own files.
+    pub fn of_folder(&self, folder: &Path) -> Self {
+        Self {
+            dataset: Some(folder.to_owned()),
+            positions: None,
+            velocities: None,
+            labels: None,
+            flow: None,
+            flow_x: None,
+            flow_y: None,
+            ..self.clone()
+        }
+    }
+
     /// Reads and checks the data.
     pub fn load(&self) -> Result<DataSet, Failure> {
         if self.dataset.is_none() && self.positions.is_none() {

@@ -21,10 +21,12 @@ mod result;
 mod steps;
 #[cfg(test)]
 mod tests;
+mod transfer;
 mod verdict;
 mod whitening;
 
 pub use result::*;
+pub use transfer::{Absent, Transfer};
 
 use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
 use crate::search::Watch;

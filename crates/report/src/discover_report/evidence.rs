@@ -2,6 +2,9 @@
 
 use serde::Serialize;
 
+use super::model_fit::HeldOutError;
+use super::ranking::Gain;
+
 /// What remains after the last fit.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Unexplained {
@@ -84,4 +87,19 @@ pub struct Calibration {
     pub unadjusted_false_positives: f64,
     /// How the search behaved, in a sentence.
     pub words: String,
+}
+
+/// Velocities of another data set predicted with everything as it was fitted.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Prediction {
+    /// The data set, as given.
+    pub dataset: String,
+    /// Velocities predicted.
+    pub velocities: usize,
+    /// Error of the base model, over frames.
+    pub before: HeldOutError,
+    /// Error with the effects.
+    pub after: HeldOutError,
+    /// Fall of the error by the effects.
+    pub gain: Gain,
 }

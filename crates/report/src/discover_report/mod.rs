@@ -10,7 +10,7 @@ mod ranking;
 mod selected;
 mod verdict;
 
-pub use evidence::{Calibration, NoiseBudget, NullSets, Predictors, StructureTest, Unexplained};
+pub use evidence::{Calibration, NoiseBudget, NullSets, Prediction, Predictors, StructureTest, Unexplained};
 pub use model_fit::{DescriptionFit, HeldOutError, ModelFit, ModelNmse};
 pub use ranking::{CandidateStatus, EffectKind, Gain, RankedEffect};
 pub use selected::{EffectCoefficient, SelectedEffect};
@@ -65,6 +65,8 @@ pub struct DiscoverReport {
     pub noise_budget: BeforeAfter<NoiseBudget>,
     /// What effects with a memory were predicted from, where any was tried.
     pub predictors: Option<Predictors>,
+    /// Other data sets that were predicted.
+    pub predictions: Vec<Prediction>,
     /// By how much the added effects lower −2 log p of velocities held out, given all others.
     pub likelihood_gain: Option<Gain>,
     /// The synthetic data without an effect to which the search was put.

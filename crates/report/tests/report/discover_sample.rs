@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 
 use voronudge_report::discover_report::{
     Calibration, CandidateStatus, DescriptionFit, EffectCoefficient, EffectKind, Gain, HeldOutError,
-    ModelFit, ModelNmse, NoiseBudget, NullSets, Predictors, RankedEffect, SelectedEffect, StructureTest,
-    Unexplained, Verdict,
+    ModelFit, ModelNmse, NoiseBudget, NullSets, Prediction, Predictors, RankedEffect, SelectedEffect,
+    StructureTest, Unexplained, Verdict,
 };
 use voronudge_report::figure::{
     Correlation, CorrelationFunction, CorrelationPoint, Outlier, PartialPoint, PartialRegression, Suspicion,
@@ -141,6 +141,13 @@ pub fn attributed() -> DiscoverReport {
             interval: "the backward difference from frame 5 to frame 6".into(),
             overlap: "shares one position with the forward difference that is explained, no interval".into(),
         }),
+        predictions: vec![Prediction {
+            dataset: "movies/before".into(),
+            velocities: 4817,
+            before: HeldOutError { value: 0.998, standard_error: 0.002, folds: 6 },
+            after: HeldOutError { value: 0.771, standard_error: 0.012, folds: 6 },
+            gain: Gain { value: 0.227, standard_error: 0.011 },
+        }],
         likelihood_gain: Some(Gain { value: 61.0, standard_error: 9.5 }),
         null_sets: NullSets { refitted: 200, seeds: (1..=200).collect() },
         calibration: Some(Calibration {
@@ -200,6 +207,7 @@ pub fn not_testable() -> DiscoverReport {
     };
     let unknown = NoiseBudget { total: 3.0, base: f64::NAN, unexplained: -0.02, ..NoiseBudget::default() };
     report.noise_budget = BeforeAfter { before: unknown, after: unknown };
+    report.predictions.iter_mut().for_each(|own| own.gain.standard_error = f64::NAN);
     report.likelihood_gain = Some(Gain { value: f64::NAN, standard_error: f64::NAN });
     report.null_sets = NullSets::default();
     report.calibration = None;

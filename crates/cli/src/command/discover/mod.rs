@@ -4,6 +4,7 @@ mod candidates;
 mod effects;
 mod history;
 mod page;
+mod predictions;
 mod report;
 mod sentences;
 mod summary;
@@ -21,10 +22,14 @@ use crate::run::Run;
 use candidates::SearchOptions;
 use clap::Args;
 use history::{GivenDifference, History};
-use report::Asked;
-use surroundings::FieldArguments;
+use predictions::PredictionArguments;
+use report::Found;
+use surroundings::{ExternalMap, FieldArguments};
 use voronudge_infer::discover::discover;
+use voronudge_infer::{Constraints, Scale};
 use voronudge_io::{DataSet, Difference, OutputDirectory};
+use voronudge_model::Effect;
+use voronudge_report::discover_report::Predictors;
 
 /// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
 /// after on data that the fit has not seen.
@@ -49,6 +54,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     options: SearchOptions,
     #[command(flatten)]
+    predictions: PredictionArguments,
+    #[command(flatten)]
     known: ConstraintArguments,
     #[command(flatten)]
     method: SearchArguments,
@@ -65,23 +72,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut data = snapshots.data.load()?;
     let map = arguments.field.load(&mut data)?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
-    let velocities = Measured::new(snapshots, &data, arguments.difference)?;
-    let mut warnings: Vec<String> =
-        shared_errors(&velocities).into_iter().chain(unknown_noise(&data)).collect();
-    let history = History::new(&data, &velocities, arguments.given_difference)?;
-    let frames = velocities.frames(snapshots, &data)?;
-    let kept = history::keep_frames(history.as_ref(), &data, frames, &candidates);
-    warnings.extend(kept.warning);
-    let question = Question {
-        arguments: snapshots,
-        data: &data,
-        constraints,
-        method: arguments.method.method(),
-        seed: arguments.common.seed,
-    };
-    let mut prepared = question.prepare(velocities, kept.frames, &mut run)?;
-    surroundings::surround(&mut prepared, (snapshots, &data), map.as_ref(), history.as_ref())?;
-    warnings.iter().for_each(|warning| run.warn(warning));
+    let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
+    let (prepared, predictors) = asked.prepare(snapshots, (&data, map.as_ref()), None, &mut run)?;
+    let others = arguments.predictions.load(&asked, (&mut data, &prepared), &mut run)?;
     let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
     let mut progress = Progress::new(arguments.common.verbosity());
     let searched = discover(&prepared.observations, &search, &mut |state| {
@@ -94,17 +87,56 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
         arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
     }
-    let asked = Asked { data: &data, prepared: &prepared, search: &search, predictors: kept.predictors };
-    let report = report::report(&run, &asked, &discovery);
+    let predictions =
+        others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
+    let found = Found { data: &data, prepared: &prepared, search: &search, predictors, predictions };
+    let report = report::report(&run, &found, &discovery);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page::page(&snapshots.title(), &asked, &discovery, &report)?)?;
+    out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report)?)?;
     let folder = out.path().to_owned();
     run.finish(Some(out), &json, &summary::summary(&report, &folder))?;
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }
     Ok(if is_acceptable(last) { Answer::Positive } else { Answer::Negative })
+}
+
+/// What is asked of every data set.
+struct Asked<'a> {
+    arguments: &'a Arguments,
+    constraints: &'a Constraints,
+    candidates: &'a [&'static Effect],
+}
+
+impl Asked<'_> {
+    /// Snapshots with what surrounds and preceded them, in a given scale or that of the data.
+    fn prepare(
+        &self,
+        snapshots: &SnapshotArguments,
+        (data, map): (&DataSet, Option<&ExternalMap>),
+        scale: Option<Scale>,
+        run: &mut Run,
+    ) -> Result<(Prepared, Option<Predictors>), Failure> {
+        let Self { arguments, constraints, candidates } = self;
+        let velocities = Measured::new(snapshots, data, arguments.difference)?;
+        let history = History::new(data, &velocities, arguments.given_difference)?;
+        let frames = velocities.frames(snapshots, data)?;
+        let kept = history::keep_frames(history.as_ref(), data, frames, candidates);
+        let warnings = shared_errors(&velocities).into_iter().chain(unknown_noise(data)).chain(kept.warning);
+        warnings.for_each(|warning| run.warn(&warning));
+        let question = Question {
+            arguments: snapshots,
+            data,
+            constraints: (*constraints).clone(),
+            method: arguments.method.method(),
+            seed: arguments.common.seed,
+            scale,
+        };
+        let mut prepared = question.prepare(velocities, kept.frames, run)?;
+        surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
+        Ok((prepared, kept.predictors))
+    }
 }
 
 /// What the error of a shared position does to differences.

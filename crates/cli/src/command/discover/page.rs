@@ -1,6 +1,6 @@
 //! The result of `discover` as a page with figures.
 
-use super::report::Asked;
+use super::report::Found;
 use crate::command::fit::{Prepared, views};
 use crate::failure::Failure;
 use voronudge_geometry::Vector;
@@ -14,11 +14,11 @@ use voronudge_report::{BeforeAfter, DiscoverFigures, DiscoverPage, DiscoverRepor
 
 pub(super) fn page(
     title: &str,
-    asked: &Asked<'_>,
+    found: &Found<'_>,
     discovery: &Discovery,
     report: &DiscoverReport,
 ) -> Result<String, Failure> {
-    let prepared = asked.prepared;
+    let prepared = found.prepared;
     let drawn = views::drawn(prepared);
     let fits = BeforeAfter { before: &discovery.before.inference, after: &discovery.after.inference };
     let frames: Vec<BeforeAfter<FrameView>> = drawn

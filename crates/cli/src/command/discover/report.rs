@@ -11,22 +11,23 @@ use voronudge_infer::discover::{
 use voronudge_infer::{Inference, NoiseSource};
 use voronudge_io::DataSet;
 use voronudge_report::discover_report::{
-    Calibration, DescriptionFit, Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Predictors,
-    StructureTest, Unexplained, Verdict,
+    Calibration, DescriptionFit, Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Prediction,
+    Predictors, StructureTest, Unexplained, Verdict,
 };
 use voronudge_report::infer_report::Quantity;
 use voronudge_report::{BeforeAfter, DiscoverReport, Units};
 
 /// What was searched, and in which data.
-pub(super) struct Asked<'a> {
+pub(super) struct Found<'a> {
     pub data: &'a DataSet,
     pub prepared: &'a Prepared,
     pub search: &'a Search,
     pub predictors: Option<Predictors>,
+    pub predictions: Vec<Prediction>,
 }
 
-pub(super) fn report(run: &Run, asked: &Asked<'_>, discovery: &Discovery) -> DiscoverReport {
-    let Asked { data, prepared, search, predictors } = asked;
+pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> DiscoverReport {
+    let Found { data, prepared, search, predictors, predictions } = found;
     let units = outcome::units(data);
     let fits = BeforeAfter {
         before: model_fit(prepared, &discovery.before, &units),
@@ -52,6 +53,7 @@ pub(super) fn report(run: &Run, asked: &Asked<'_>, discovery: &Discovery) -> Dis
             after: budget(prepared, &discovery.after.budget),
         },
         predictors: predictors.clone(),
+        predictions: predictions.clone(),
         likelihood_gain: discovery
             .likelihood_gain
             .map(|[value, standard_error]| Gain { value, standard_error }),

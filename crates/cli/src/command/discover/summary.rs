@@ -20,18 +20,20 @@ pub(super) fn summary(report: &DiscoverReport, folder: &Path) -> String {
         }
     }
     text.push_str(&errors(report));
+    text.push_str(&predictions(report));
     text.push_str(&selected(report));
     text.push_str(&ranking(report));
     let _ = writeln!(text, "\nfigures in {}", folder.join("report.html").display());
     text
 }
 
+fn with_error(error: HeldOutError) -> String {
+    format!("{} ± {}", significant(error.value, 3), significant(error.standard_error, 1))
+}
+
 fn errors(report: &DiscoverReport) -> String {
     let mut text = String::new();
-    let held_out = |error: Option<HeldOutError>| match error {
-        Some(error) => format!("{} ± {}", significant(error.value, 3), significant(error.standard_error, 1)),
-        None => "–".into(),
-    };
+    let held_out = |error: Option<HeldOutError>| error.map_or_else(|| "–".into(), with_error);
     let _ = writeln!(
         text,
         "{:<13} {:>16}  {:>11}  {:>12}  {:>12}",
@@ -50,6 +52,16 @@ fn errors(report: &DiscoverReport) -> String {
     row("base", &report.models.before);
     if report.is_extended() {
         row("with effects", &report.models.after);
+    }
+    text
+}
+
+fn predictions(report: &DiscoverReport) -> String {
+    let mut text = String::new();
+    for own in &report.predictions {
+        let (before, after) = (with_error(own.before), with_error(own.after));
+        let _ =
+            writeln!(text, "{} predicted, nothing fitted: base {before}, with effects {after}", own.dataset);
     }
     text
 }

@@ -4,9 +4,10 @@ use super::flow::FlowArguments;
 use crate::arguments::DataSetArguments;
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
+use std::path::Path;
 use voronudge_io::FrameSelection;
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 pub(crate) struct SnapshotArguments {
     #[command(flatten)]
     pub data: DataSetArguments,
@@ -45,6 +46,11 @@ impl SnapshotArguments {
         }
         let text = format!("--largest-area is {}, but it must be finite and above zero", self.largest_area);
         Err(Failure::new(text).with_hint("leave it out for 3 times the median area"))
+    }
+
+    /// The same of the folder of another data set, all frames.
+    pub fn of_folder(&self, folder: &Path) -> Self {
+        Self { data: self.data.of_folder(folder), frames: None, ..self.clone() }
     }
 
     /// What the data are called: the name of their folder or file.

@@ -10,7 +10,7 @@ use voronudge_infer::{Flow, Scale, Window};
 use voronudge_io::{DataSet, FlowField};
 use voronudge_report::infer_report::{FlowGrid, FlowWindow};
 
-#[derive(Debug, Args)]
+#[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Velocities")]
 pub(crate) struct FlowArguments {
     /// Velocities to explain: those of cells, or a flow field on a grid [default: flow if there is a flow field and no

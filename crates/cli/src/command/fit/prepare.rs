@@ -21,6 +21,8 @@ pub(crate) struct Question<'a> {
     pub constraints: Constraints,
     pub method: Method,
     pub seed: u64,
+    /// The scale to use; that of the data if none is given.
+    pub scale: Option<Scale>,
 }
 
 /// The problem in scaled units, and what is needed to translate its solution.
@@ -141,7 +143,9 @@ impl Question<'_> {
         if mean_removed == MeanRemoved::PerFrame {
             observations.iter_mut().for_each(remove_median);
         }
-        let scale = scale_of(&observations).map_err(|error| faulty_data(error, &velocities, arguments))?;
+        // The data must have a scale of their own, even if it is not used.
+        let own = scale_of(&observations).map_err(|error| faulty_data(error, &velocities, arguments))?;
+        let scale = self.scale.unwrap_or(own);
         let (request, stated_noise) = self.request(&scale);
         let observations = observations
             .iter()

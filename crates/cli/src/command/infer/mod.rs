@@ -63,7 +63,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     let frames = velocities.frames(&arguments.snapshots, &data)?;
     let seed = arguments.common.seed;
-    let question = Question { arguments: &arguments.snapshots, data: &data, constraints, method, seed };
+    let question =
+        Question { arguments: &arguments.snapshots, data: &data, constraints, method, seed, scale: None };
     let prepared = question.prepare(velocities, frames, &mut run)?;
     let mut progress = Progress::new(arguments.common.verbosity());
     let fitted = infer(&prepared.observations, &prepared.request, &mut |state| {

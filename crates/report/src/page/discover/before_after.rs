@@ -5,7 +5,7 @@ use serde::Serialize;
 use super::super::Figure;
 use super::super::parameter_table::{TableRow, parameter_rows};
 use super::super::words::{effect_name, noise_source, with_error};
-use crate::discover_report::{DiscoverReport, ModelFit, ModelNmse};
+use crate::discover_report::{DiscoverReport, HeldOutError, ModelFit, ModelNmse, Prediction};
 use crate::figure::{Emphasis, ErrorBar, error_bars_with_floor};
 use crate::numbers::{significant, unit_text};
 
@@ -26,6 +26,29 @@ struct ErrorRow {
     cells: Vec<String>,
     note: String,
     is_main: bool,
+}
+
+/// Another data set, predicted.
+#[derive(Serialize)]
+pub(super) struct PredictionRow {
+    dataset: String,
+    velocities: usize,
+    before: String,
+    after: String,
+    gain: String,
+}
+
+/// Other data sets, in the order given.
+pub(super) fn predictions(report: &DiscoverReport) -> Vec<PredictionRow> {
+    let error = |own: HeldOutError| with_error(own.value, own.standard_error);
+    let row = |own: &Prediction| PredictionRow {
+        dataset: own.dataset.clone(),
+        velocities: own.velocities,
+        before: error(own.before),
+        after: error(own.after),
+        gain: with_error(own.gain.value, own.gain.standard_error),
+    };
+    report.predictions.iter().map(row).collect()
 }
 
 /// One column of the table.

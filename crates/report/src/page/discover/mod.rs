@@ -7,7 +7,7 @@ mod remainder;
 
 use serde::Serialize;
 
-use self::before_after::{Comparison, NoiseRow, ParameterComparison};
+use self::before_after::{Comparison, NoiseRow, ParameterComparison, PredictionRow};
 use self::candidates::{CandidateRow, ranking_figure};
 use self::effects::{EffectView, coefficient_figure};
 use self::remainder::Remainder;
@@ -76,6 +76,7 @@ struct Context<'a> {
     noise: Vec<NoiseRow>,
     parameters: Vec<ParameterComparison>,
     directions: Directions,
+    predictions: Vec<PredictionRow>,
     likelihood_gain: Option<String>,
     single_p: String,
     false_positives: String,
@@ -121,8 +122,10 @@ impl DiscoverPage<'_> {
             noise: before_after::noise_rows(report),
             parameters: before_after::parameters(report),
             directions: directions(&report.models.after.identifiability),
+            predictions: before_after::predictions(report),
             likelihood_gain: report
                 .likelihood_gain
+                .filter(|gain| gain.value.is_finite())
                 .map(|gain| words::with_error(gain.value, gain.standard_error)),
             single_p: calibration.map_or_else(String::new, |found| words::probability(found.single_p)),
             false_positives: calibration

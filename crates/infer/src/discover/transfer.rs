@@ -1,0 +1,53 @@
+//! What was found on some data, put to the test on others.
+
+use super::result::{Discovery, HeldOut, Search};
+use crate::Observation;
+use crate::cross_validation::Folds;
+use voronudge_model::{Column, Effect};
+
+/// How well other velocities are predicted with everything as it was fitted.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Transfer {
+    /// By the base model.
+    pub before: HeldOut,
+    /// By the model with the effects added.
+    pub after: HeldOut,
+    /// Fall of the error by the effects, and its standard error over frames.
+    pub gain: [f64; 2],
+}
+
+/// An effect that was found cannot act on other data.
+#[derive(Debug, Clone, Copy, thiserror::Error)]
+#[error("{}: {reason}", effect.id)]
+pub struct Absent {
+    /// The effect.
+    pub effect: &'static Effect,
+    /// Why.
+    pub reason: &'static str,
+}
+
+impl Discovery {
+    /// Predicts the velocities of other frames, in the same units, at their measured positions. `search` is what led to the
+    /// result.
+    ///
+    /// # Errors
+    /// [`Absent`] if an effect that was added needs what the other data do not have.
+    pub fn predict(&self, search: &Search, frames: &[Observation]) -> Result<Transfer, Absent> {
+        let mut columns: Vec<Column> = Vec::new();
+        for own in &self.selected {
+            let absent = |reason| Absent { effect: own.effect, reason };
+            for frame in frames {
+                let there = own.effect.columns(frame.environment(), frame.tessellation.domain());
+                if there.map_err(absent)? != own.columns {
+                    return Err(absent("these data have it in another form"));
+                }
+            }
+            columns.extend(&own.columns);
+        }
+        let base = &search.fit.structure;
+        let with = base.with(&columns);
+        let before = Folds::predicted(frames, base, self.before.inference.coefficients.as_slice());
+        let after = Folds::predicted(frames, &with, self.after.inference.coefficients.as_slice());
+        Ok(Transfer { before: HeldOut::of(&before), after: HeldOut::of(&after), gain: before.gain(&after) })
+    }
+}
