@@ -2,7 +2,7 @@
 
 use crate::least_squares::{self, residuals_as_measured};
 use crate::objective::Objective;
-use crate::search::{Watch, follow};
+use crate::search::{Watch, follow, refine};
 use crate::{Error, Observation, Progress};
 use std::ops::ControlFlow;
 use voronudge_model::Structure;
@@ -93,13 +93,17 @@ pub(crate) fn training(frames: &[Observation], held_out: &[Vec<bool>]) -> Vec<(u
         .collect()
 }
 
-/// Fits without the velocities of each fold. `None` if too few velocities are left to fit, or to hold out.
+/// Fits without the velocities of each fold. `at` is the fit to all: where whole frames are held out, the nudges of the others start
+/// from there, since they do not depend on that frame but through the parameters. `None` if too few velocities are left to
+/// fit, or to hold out.
 pub(crate) fn cross_validate(
     whole: &Objective<'_>,
+    at: &[f64],
     split: &Split,
     watch: &mut Watch<'_>,
 ) -> Result<Option<Folds>, Error> {
-    let tested = watch.each("cross-validation", &split.folds, 1.0, |held_out| test(whole, held_out))?;
+    let tested = watch
+        .each("cross-validation", &split.folds, 1.0, |held_out| test(whole, at, split.of_frames, held_out))?;
     let Some(folds) = tested.into_iter().collect::<Option<Vec<(f64, f64)>>>() else {
         return Ok(None);
     };
@@ -108,18 +112,27 @@ pub(crate) fn cross_validate(
 }
 
 /// Fits without some velocities: the squared error on them and their sum of squares. `None` if too few are left.
-fn test(whole: &Objective<'_>, held_out: &[Vec<bool>]) -> Result<Option<(f64, f64)>, Error> {
+fn test(
+    whole: &Objective<'_>,
+    at: &[f64],
+    of_frames: bool,
+    held_out: &[Vec<bool>],
+) -> Result<Option<(f64, f64)>, Error> {
     let Objective { frames, structure, space, .. } = *whole;
-    let training: Vec<Observation> = training(frames, held_out).into_iter().map(|(_, frame)| frame).collect();
+    let (kept, training): (Vec<usize>, Vec<Observation>) = training(frames, held_out).into_iter().unzip();
     let used: usize = training.iter().map(|frame| frame.targets().count()).sum();
     if used < 2 * space.dimension() + 2 {
         return Ok(None);
     }
-    let naive = least_squares::fit(&training, structure, space)?;
     let objective = Objective { frames: &training, ..*whole };
-    let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
-    let found = follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?;
-    let coefficients = space.coefficients(objective.split(&found.parameters).0);
+    let parameters = if of_frames {
+        refine(&objective, whole.part(at, &kept), STEPS)?.parameters
+    } else {
+        let naive = least_squares::fit(&training, structure, space)?;
+        let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
+        follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?.parameters
+    };
+    let coefficients = space.coefficients(objective.split(&parameters).0);
     let (mut error, mut total) = (0.0, 0.0);
     for (frame, out) in frames.iter().zip(held_out) {
         let rests = residuals_as_measured(frame, structure, coefficients.as_slice());

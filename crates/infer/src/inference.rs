@@ -50,7 +50,8 @@ pub fn infer(
     let levels = objective.levels;
     let cross_validated = match request.cross_validation {
         CrossValidation::Done => {
-            cross_validate(&objective, &Split::new(frames, BLOCKS), &mut watch)?.map(|folds| folds.error())
+            cross_validate(&objective, &found.parameters, &Split::new(frames, BLOCKS), &mut watch)?
+                .map(|folds| folds.error())
         }
         CrossValidation::Skipped => None,
     };

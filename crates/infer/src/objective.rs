@@ -116,6 +116,13 @@ impl<'a> Objective<'a> {
         (free, nudges)
     }
 
+    /// β and the nudges of some of the frames, in one vector.
+    pub fn part(&self, parameters: &[f64], frames: &[usize]) -> Vec<f64> {
+        let (free, nudges) = self.split(parameters);
+        let own = frames.iter().flat_map(|frame| nudges[*frame]);
+        free.iter().chain(own).copied().collect()
+    }
+
     /// Number of nudges of all frames, times two.
     pub fn nudge_count(&self) -> usize {
         self.frames.iter().map(|frame| 2 * frame.positions.len()).sum()

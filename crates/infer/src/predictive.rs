@@ -72,9 +72,7 @@ fn rest(
     }
     let (indices, frames): (Vec<usize>, Vec<Observation>) =
         training(objective.frames, held_out).into_iter().unzip();
-    let (free, nudges) = objective.split(at);
-    let mut kept = free.to_vec();
-    indices.iter().for_each(|index| kept.extend_from_slice(nudges[*index]));
+    let kept = objective.part(at, &indices);
     let objective = Objective { frames: &frames, ..*objective };
     deviance(&objective, &whitened(&objective, &kept)?.iter().collect::<Vec<_>>(), objective.components())
 }

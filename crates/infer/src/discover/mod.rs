@@ -116,7 +116,10 @@ fn folds(
     watch: &mut Watch<'_>,
 ) -> Result<Option<Folds>, Error> {
     match setting.search.fit.cross_validation {
-        CrossValidation::Done => cross_validate(&model.objective(setting.frames), split, watch),
+        CrossValidation::Done => {
+            let frames = setting.frames;
+            cross_validate(&model.objective(frames), &model.point(frames), split, watch)
+        }
         CrossValidation::Skipped => Ok(None),
     }
 }

@@ -19,17 +19,24 @@ pub(super) fn print(settings: &[Setting]) {
     settings.iter().for_each(|setting| println!("{}", costs(setting)));
 }
 
+/// The first columns: the setting.
+fn named(setting: &Setting) -> String {
+    let percent = [setting.noise.velocity, setting.noise.position].map(|noise| 100.0 * noise);
+    format!("| {} | {} | {}", setting.cells, percent[0], percent[1])
+}
+
+fn median(setting: &Setting, value: &dyn Fn(&Row) -> f64) -> f64 {
+    quartiles(setting.rows.iter().map(value).collect())[1]
+}
+
 /// A row of the first table.
 pub(super) fn errors(setting: &Setting) -> String {
-    let median = |value: &dyn Fn(&Row) -> f64| quartiles(setting.rows.iter().map(value).collect())[1];
-    let percent = |value: &dyn Fn(&Row) -> f64| format!("{:.1}", 100.0 * median(value));
-    let count = |value: &dyn Fn(&Row) -> f64| format!("{:.0}", median(value));
+    let percent = |value: &dyn Fn(&Row) -> f64| format!("{:.1}", 100.0 * median(setting, value));
+    let count = |value: &dyn Fn(&Row) -> f64| format!("{:.0}", median(setting, value));
     let share = |row: &Row| row.ours.wrong_edges as f64 / row.edges_before as f64;
     format!(
-        "| {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
-        setting.cells,
-        100.0 * setting.noise.velocity,
-        100.0 * setting.noise.position,
+        "{} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        named(setting),
         percent(&|row| row.naive.chiral),
         percent(&|row| row.paper.chiral),
         percent(&|row| row.ours.chiral),
@@ -39,7 +46,7 @@ pub(super) fn errors(setting: &Setting) -> String {
         count(&|row| row.edges_before as f64),
         count(&|row| row.paper.wrong_edges as f64),
         count(&|row| row.ours.wrong_edges as f64),
-        if setting.noise.position > 0.0 { format!("{:.2}", median(&share)) } else { "–".into() },
+        if setting.noise.position > 0.0 { format!("{:.2}", median(setting, &share)) } else { "–".into() },
         sum(setting, |row| row.sides_before),
         sum(setting, |row| row.ours.lost_sides),
         percent(&|row| row.naive.position_error),
@@ -51,14 +58,12 @@ pub(super) fn errors(setting: &Setting) -> String {
 /// A row of the second table.
 pub(super) fn costs(setting: &Setting) -> String {
     let rows = &setting.rows;
-    let median = |value: &dyn Fn(&Row) -> f64| quartiles(rows.iter().map(value).collect())[1];
+    let median = |value: &dyn Fn(&Row) -> f64| median(setting, value);
     let count = |test: &dyn Fn(&Row) -> bool| rows.iter().filter(|row| test(row)).count();
     let covers = |index: usize| count(&|row| row.ours.covered.is_some_and(|covered| covered[index]));
     format!(
-        "| {} | {} | {} | {:.2} | {:.2} | {:.2} | {:.2} | {:.3} | {:.0} | {} | {} | {} | {} | {} | {} | {} | {} |",
-        setting.cells,
-        100.0 * setting.noise.velocity,
-        100.0 * setting.noise.position,
+        "{} | {:.2} | {:.2} | {:.2} | {:.2} | {:.3} | {:.0} | {} | {} | {} | {} | {} | {} | {} | {} |",
+        named(setting),
         median(&|row| row.paper.objective),
         median(&|row| row.ours.objective),
         median(&|row| row.paper.seconds),
