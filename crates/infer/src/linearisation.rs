@@ -47,6 +47,18 @@ pub(crate) struct Local<'a> {
     pub free: usize,
 }
 
+/// `y = r + Jε` of one datum.
+pub(crate) fn linearised_back(
+    jacobian: &BlockMatrix,
+    (datum, residual): (usize, Vector<f64>),
+    nudges: &[f64],
+) -> Vector<f64> {
+    jacobian.row(datum).fold(residual, |y, (column, b)| {
+        let (ex, ey) = (nudges[2 * column], nudges[2 * column + 1]);
+        y + Vector::new(b[0] * ex + b[1] * ey, b[2] * ex + b[3] * ey)
+    })
+}
+
 /// One frame's part of a step before the coefficients' part is known.
 pub(crate) struct Eliminated {
     order: usize,
@@ -134,10 +146,7 @@ impl Linearisation {
         let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
         let (mut free_data, mut data) = (DVector::zeros(p), 0.0);
         for (datum, residual, x) in local.rows {
-            let y = local.jacobian.row(*datum).fold(*residual, |y, (column, b)| {
-                let (ex, ey) = (local.nudges[2 * column], local.nudges[2 * column + 1]);
-                y + Vector::new(b[0] * ex + b[1] * ey, b[2] * ex + b[3] * ey)
-            });
+            let y = linearised_back(local.jacobian, (*datum, *residual), local.nudges);
             data += y.norm_squared();
             free_normal += x.transpose() * x;
             free_gradient += x.transpose() * DVector::from_column_slice(residual.as_slice());

@@ -6,6 +6,7 @@ use super::whitening::whitened;
 use crate::cross_validation::Folds;
 use crate::diagnostics::{CellData, ResidualField, diagnose};
 use crate::least_squares::residuals;
+use crate::linearisation::linearised_back;
 use crate::uncertainty::nudges;
 use crate::{Error, Inference, Observation, Velocities};
 use voronudge_geometry::{Vector, areas};
@@ -77,13 +78,7 @@ impl Evidence<'_> {
             let jacobian = placed.jacobian(coefficients, &evaluated);
             let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
                 .into_iter()
-                .map(|(datum, rest)| {
-                    let back = jacobian.row(datum).fold(rest, |sum, (cell, b)| {
-                        let (x, y) = (nudges[2 * cell], nudges[2 * cell + 1]);
-                        sum + Vector::new(b[0] * x + b[1] * y, b[2] * x + b[3] * y)
-                    });
-                    (datum, back)
-                })
+                .map(|own| (own.0, linearised_back(&jacobian, own, nudges)))
                 .unzip();
             let cells = frames[index].positions.len();
             fields.push(whitened(&jacobian, cells, &rows, &y, objective.spring(), inference.noise.velocity));
