@@ -216,9 +216,23 @@ impl Space {
         let mut product = Mat::zeros(dimension + 1, count);
         matmul(product.as_mut(), Accum::Replace, self.matrix.as_ref(), q.as_ref(), one, Par::Seq);
         let mut inner = Mat::zeros(count, count);
-        matmul(inner.as_mut(), Accum::Replace, q.adjoint(), product.as_ref().subrows(0, dimension), one, Par::Seq);
+        matmul(
+            inner.as_mut(),
+            Accum::Replace,
+            q.adjoint(),
+            product.as_ref().subrows(0, dimension),
+            one,
+            Par::Seq,
+        );
         let mut basis = Mat::zeros(self.basis.nrows(), count);
-        matmul(basis.as_mut(), Accum::Replace, self.basis.as_ref().subcols(0, dimension), q.as_ref(), one, Par::Seq);
+        matmul(
+            basis.as_mut(),
+            Accum::Replace,
+            self.basis.as_ref().subcols(0, dimension),
+            q.as_ref(),
+            one,
+            Par::Seq,
+        );
         let next = self.basis.col(dimension).to_owned();
         self.matrix.fill(Complex64::ZERO);
         self.matrix.as_mut().submatrix_mut(0, 0, count, count).copy_from(&inner);

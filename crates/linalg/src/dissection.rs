@@ -50,7 +50,12 @@ impl Dissection {
             transposed,
             places,
             right: vec![false; rows],
-            made: Self { fronts: Vec::new(), order: Vec::with_capacity(rows), position: vec![0; rows], roots: Vec::new() },
+            made: Self {
+                fronts: Vec::new(),
+                order: Vec::with_capacity(rows),
+                position: vec![0; rows],
+                roots: Vec::new(),
+            },
         };
         cut.made.roots = cut.divide((0..rows as u32).collect());
         let mut made = cut.made;

@@ -11,7 +11,7 @@ const TOLERANCE: f64 = 1e-13;
 /// Restarts after which the iteration gives up.
 const RESTARTS: usize = 100;
 /// The same without inversion, where it only has to find what sticks out of the spectrum.
-const OUTWARD_RESTARTS: usize = 6;
+const OUTWARD_RESTARTS: usize = 4;
 /// Residuals ‖A x − λ x‖/‖A‖_∞ of what is taken for an eigenvalue.
 pub const RESIDUAL_LIMIT: f64 = 1e-8;
 /// Eigenvalues closer than this, relative to ‖A‖_∞, are one that was found twice.
@@ -44,11 +44,11 @@ pub type Progress<'a> = dyn FnMut(&'static str, usize, usize) + Send + 'a;
 /// [`Error::Malformed`] if there is not one place for each block row, [`Error::Singular`], [`Error::NoConvergence`].
 ///
 /// ```
-/// use voronudge_linalg::{BlockSparse, Wanted, nearest};
-/// let turn = |rate| [0.0, -rate, rate, 0.0];
+/// use voronudge_linalg::{BlockSparse, Complex64, Wanted, nearest};
+/// let turn = |rate: f64| [0.0, -rate, rate, 0.0];
 /// let matrix = BlockSparse::new(vec![0, 1, 2], vec![0, 1], vec![turn(1.0), turn(3.0)])?;
 /// let places = [[0.0, 0.0], [1.0, 0.0]];
-/// let found = nearest(&matrix, &places, (0.1, 2.8).into(), 1, Wanted::Right, &mut |_, _, _| {})?;
+/// let found = nearest(&matrix, &places, Complex64::new(0.1, 2.8), 1, Wanted::Right, &mut |_, _, _| {})?;
 /// assert!((found.pairs.values[0].im - 3.0).abs() < 1e-12);
 /// # Ok::<(), voronudge_linalg::Error>(())
 /// ```
@@ -259,6 +259,22 @@ fn without_rounding(value: Complex64, scale: f64) -> Complex64 {
 }
 
 impl PartialEigenpairs {
+    /// Keeps the eigenvalues for which a condition holds.
+    pub fn retain(&mut self, kept: impl Fn(Complex64) -> bool) {
+        self.choose(
+            &(0..self.pairs.values.len()).filter(|&k| kept(self.pairs.values[k])).collect::<Vec<_>>(),
+        );
+    }
+
+    /// Those with these numbers, in their order.
+    fn choose(&mut self, order: &[usize]) {
+        self.pairs.values = order.iter().map(|&k| self.pairs.values[k]).collect();
+        self.residuals = order.iter().map(|&k| self.residuals[k]).collect();
+        for vectors in [&mut self.pairs.right, &mut self.pairs.left].into_iter().flatten() {
+            vectors.place = order.iter().map(|&k| vectors.place[k]).collect();
+        }
+    }
+
     /// Sorts by the real part and keeps the first, with the partner of the last.
     fn keep(&mut self, count: usize) {
         self.sort();
@@ -297,11 +313,7 @@ impl PartialEigenpairs {
         let pair = member(count.checked_sub(1)).zip(member(Some(count)));
         let cut = pair.is_some_and(|(last, next)| last.im != 0.0 && next == last.conj());
         order.truncate(count + usize::from(cut));
-        self.pairs.values = order.iter().map(|&k| self.pairs.values[k]).collect();
-        self.residuals = order.iter().map(|&k| self.residuals[k]).collect();
-        for vectors in [&mut self.pairs.right, &mut self.pairs.left].into_iter().flatten() {
-            vectors.place = order.iter().map(|&k| vectors.place[k]).collect();
-        }
+        self.choose(&order);
         self.sort();
     }
 }
@@ -358,7 +370,8 @@ mod tests {
         let solid = sample::lattice(side, 0.5);
         let mut turning = sample::lattice(side, 0.5);
         for row in [7, 40, 61] {
-            let at = (turning.row_start[row]..turning.row_start[row + 1]).find(|&k| turning.column[k] as usize == row);
+            let at = (turning.row_start[row]..turning.row_start[row + 1])
+                .find(|&k| turning.column[k] as usize == row);
             let b = &mut turning.block[at.unwrap()];
             *b = [3.0 + row as f64 / 50.0, -40.0, 40.0, 3.0];
         }
@@ -380,26 +393,5 @@ mod tests {
         let found =
             nearest(&matrix, &sample::places(6), Complex64::ZERO, 2, Wanted::Right, &mut silent()).unwrap();
         assert!(found.pairs.values.iter().all(|value| value.norm() < 1e-10));
-    }
-
-    #[test]
-    #[ignore]
-    fn scratch_timing() {
-        let side: usize = std::env::var("SIDE").unwrap().parse().unwrap();
-        let matrix = sample::lattice(side, 0.5);
-        let begun = std::time::Instant::now();
-        let lu = SparseLu::<f64>::new(&matrix, 0.001.into(), &sample::places(side)).unwrap();
-        eprintln!("factor {:?}", begun.elapsed());
-        let mut x = vec![1.0; 2 * matrix.order()];
-        let begun = std::time::Instant::now();
-        lu.solve(Side::AsGiven, &mut x);
-        eprintln!("solve 2 {:?}", begun.elapsed());
-        drop(lu);
-        let status = || std::fs::read_to_string("/proc/self/status").unwrap().lines().filter(|l| l.starts_with("VmHWM")).collect::<String>();
-        eprintln!("{}", status());
-        let begun = std::time::Instant::now();
-        let found = rightmost(&matrix, &sample::places(side), 8, Wanted::Right, &mut |a, b, c| eprintln!("{a} {b} {c} {:?}", begun.elapsed())).unwrap();
-        eprintln!("all {:?} {:?} {:?}", begun.elapsed(), found.pairs.values, found.residuals);
-        eprintln!("{}", status());
     }
 }

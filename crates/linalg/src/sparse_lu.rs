@@ -89,7 +89,13 @@ impl<T: Number> SparseLu<T> {
         let transposed = matrix.transposed();
         let dissection = Dissection::new(matrix, &transposed, places);
         let factors: Vec<_> = dissection.fronts.iter().map(|_| OnceLock::new()).collect();
-        let job = Job { matrix, transposed: &transposed, shift: T::from_complex(shift), dissection: &dissection, factors: &factors };
+        let job = Job {
+            matrix,
+            transposed: &transposed,
+            shift: T::from_complex(shift),
+            dissection: &dissection,
+            factors: &factors,
+        };
         for &root in &dissection.roots {
             job.factorise(root)?;
         }
@@ -161,7 +167,14 @@ impl<T: Number> Job<'_, T> {
         let mut upper = Mat::from_fn(own, coupled, |k, column| f12[(row[k], column)]);
         solve_unit_lower_triangular_in_place(f11.rb(), upper.as_mut(), SEQUENTIAL);
         solve_lower_triangular_in_place(f11.rb().transpose(), f21.rb_mut().transpose_mut(), SEQUENTIAL);
-        matmul(f22.rb_mut(), Accum::Add, f21.rb(), upper.as_ref(), T::from_complex((-1.0).into()), SEQUENTIAL);
+        matmul(
+            f22.rb_mut(),
+            Accum::Add,
+            f21.rb(),
+            upper.as_ref(),
+            T::from_complex((-1.0).into()),
+            SEQUENTIAL,
+        );
         let factor = Factor { lu: f11.to_owned(), row, upper, lower: f21.to_owned() };
         let update = f22.to_owned();
         // Each front is met once, so the cell is empty.
