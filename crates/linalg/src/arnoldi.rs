@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::dense_eigen::small_eigen;
-use crate::eigenpairs::norm;
+use crate::eigenpairs::{norm, orthonormal};
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use num_complex::Complex64;
@@ -33,13 +33,11 @@ pub(crate) struct Settings {
     pub restarts: usize,
 }
 
-/// An eigenvalue of the operator with its vector and residual, by the iteration's own account.
+/// An eigenvalue of the operator with its vector.
 #[derive(Debug, Clone)]
 pub(crate) struct Ritz {
     pub value: Complex64,
     pub vector: Vec<Complex64>,
-    /// Relative to the largest |θ|.
-    pub residual: f64,
 }
 
 /// The wanted eigenvalues, best first; those whose residual is above the tolerance did not converge in time.
@@ -64,11 +62,7 @@ pub(crate) fn arnoldi(
             return Ok(ritz
                 .iter()
                 .take(count)
-                .map(|(value, weights, residual)| Ritz {
-                    value: *value,
-                    vector: space.combine(weights),
-                    residual: residual / scale,
-                })
+                .map(|(value, weights, _)| Ritz { value: *value, vector: space.combine(weights) })
                 .collect());
         }
         restarted(restart + 1);
@@ -195,21 +189,8 @@ impl Space {
     /// Restarts with the space that some vectors span.
     fn shrink<'a>(&mut self, kept: impl Iterator<Item = &'a [Complex64]>) {
         let dimension = self.matrix.ncols();
-        let mut columns: Vec<Vec<Complex64>> = Vec::new();
-        for weights in kept {
-            let mut vector = weights.to_vec();
-            for _ in 0..2 {
-                for column in &columns {
-                    let share: Complex64 = column.iter().zip(&vector).map(|(v, x)| v.conj() * x).sum();
-                    vector.iter_mut().zip(column).for_each(|(x, v)| *x -= share * v);
-                }
-            }
-            let size = norm(&vector);
-            // Vectors that coalesce add nothing.
-            if size > 1e-10 {
-                columns.push(vector.into_iter().map(|x| x / size).collect());
-            }
-        }
+        // Vectors that coalesce are entered once.
+        let columns = orthonormal(kept.map(<[Complex64]>::to_vec), 1e-10);
         let count = columns.len();
         let q = Mat::from_fn(dimension, count, |row, column| columns[column][row]);
         let one = Complex64::ONE;

@@ -106,6 +106,17 @@ pub(crate) fn small_eigen(matrix: MatRef<'_, Complex64>) -> Result<(Vec<Complex6
     Ok(((0..order).map(|i| values[i]).collect(), pairs.U().to_owned()))
 }
 
+/// Smallest singular value of a small complex matrix; `None` if an entry is not finite.
+pub(crate) fn smallest_singular_value(
+    rows: usize,
+    columns: usize,
+    entry: impl Fn(usize, usize) -> Complex64,
+) -> Option<f64> {
+    let matrix = Mat::from_fn(rows, columns, entry);
+    let values = matrix.singular_values().ok()?;
+    values.last().copied()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -127,7 +138,7 @@ mod tests {
                     let backward: Complex64 = (0..n).map(|i| y[i].conj() * matrix[i * n + row]).sum();
                     assert!((backward - value * y[row].conj()).norm() <= 1e-12 * scale, "{side}, {k}");
                 }
-                assert!(pairs.condition(k).unwrap() > 1.0 - 1e-12);
+                assert!(pairs.condition(k, 0.0).unwrap() > 1.0 - 1e-12);
             }
             assert!(pairs.values.windows(2).all(|pair| pair[0].re >= pair[1].re));
             let values = eigen(&matrix, n, Wanted::Values).unwrap();
@@ -155,8 +166,23 @@ mod tests {
         let e = 1e-6;
         let pairs = eigen(&[0.0, 1.0, e, 0.0], 2, Wanted::RightAndLeft).unwrap();
         let expected = (1.0 + e) / (2.0 * e.sqrt());
-        assert!((pairs.condition(0).unwrap() / expected - 1.0).abs() < 1e-9);
+        assert!((pairs.condition(0, 0.0).unwrap() / expected - 1.0).abs() < 1e-9);
         assert!((pairs.values[0].re - e.sqrt()).abs() < 1e-12);
+    }
+
+    /// diag(A, A) with A of two different values has every value twice, and the conditions of A.
+    #[test]
+    fn a_value_that_occurs_twice_has_the_condition_of_its_projector() {
+        let matrix = [
+            1.0, 7.0, 0.0, 0.0, //
+            0.0, 2.0, 0.0, 0.0, //
+            0.0, 0.0, 1.0, 7.0, //
+            0.0, 0.0, 0.0, 2.0,
+        ];
+        let pairs = eigen(&matrix, 4, Wanted::RightAndLeft).unwrap();
+        for k in 0..4 {
+            assert!((pairs.condition(k, 1e-9).unwrap() - 50f64.sqrt()).abs() < 1e-10);
+        }
     }
 
     #[test]

@@ -89,7 +89,8 @@ impl Dissection {
     }
 
     /// Numbers in the factors, for blocks of 2 × 2.
-    pub fn entries(&self) -> usize {
+    #[cfg(test)]
+    fn entries(&self) -> usize {
         self.fronts.iter().map(|front| 4 * front.own * (front.own + 2 * front.boundary.len())).sum()
     }
 }

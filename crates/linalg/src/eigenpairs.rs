@@ -1,5 +1,6 @@
 //! Eigenvalues with their vectors.
 
+use crate::dense_eigen::smallest_singular_value;
 use num_complex::Complex64;
 
 /// Vectors that belong to eigenvalues, real ones stored as such and conjugate pairs once.
@@ -66,12 +67,31 @@ impl Eigenpairs {
     }
 
     /// Condition number `1/|yᴴ x|` of an eigenvalue, with unit vectors: 1 for a normal matrix, infinite where vectors
-    /// coalesce. An error δA moves the eigenvalue by at most this times ‖δA‖, to first order. For an eigenvalue that occurs
-    /// several times it depends on the choice of vectors.
-    pub fn condition(&self, index: usize) -> Option<f64> {
-        let (x, y) = (self.right(index)?, self.left(index)?);
-        let product: Complex64 = x.iter().zip(&y).map(|(x, y)| y.conj() * x).sum();
-        Some(1.0 / product.norm())
+    /// coalesce. An error δA moves the eigenvalue by at most this times ‖δA‖, to first order.
+    ///
+    /// Eigenvalues within `same` of it count as one that occurs several times; then it is the norm of the projector on
+    /// all their vectors. `None` if these are not independent to rounding, or vectors were not asked for.
+    pub fn condition(&self, index: usize, same: f64) -> Option<f64> {
+        let (right, left) = (self.right.as_ref()?, self.left.as_ref()?);
+        let members: Vec<usize> =
+            (0..self.values.len()).filter(|&other| self.is_same(index, other, same)).collect();
+        let basis = |vectors: &Vectors| {
+            let basis = orthonormal(members.iter().map(|&member| vectors.get(member)), INDEPENDENT);
+            (basis.len() == members.len()).then_some(basis)
+        };
+        let (x, y) = (basis(right)?, basis(left)?);
+        let product = |row: usize, column: usize| inner(&y[row], &x[column]);
+        let smallest = if x.len() == 1 && y.len() == 1 {
+            product(0, 0).norm()
+        } else {
+            smallest_singular_value(y.len(), x.len(), product)?
+        };
+        Some(1.0 / smallest)
+    }
+
+    /// Whether two eigenvalues are one that occurs several times, to a tolerance.
+    pub fn is_same(&self, one: usize, other: usize, tolerance: f64) -> bool {
+        one == other || (self.values[one] - self.values[other]).norm() <= tolerance
     }
 
     /// Brings all into the order of the real part.
@@ -87,6 +107,37 @@ impl Eigenpairs {
             vectors.place = order.iter().map(|&index| vectors.place[index]).collect();
         }
     }
+}
+
+/// Share of a unit vector that the others do not span, from which it counts as independent.
+const INDEPENDENT: f64 = 1e-4;
+
+/// `aᴴ b`
+fn inner(a: &[Complex64], b: &[Complex64]) -> Complex64 {
+    a.iter().zip(b).map(|(a, b)| a.conj() * b).sum()
+}
+
+/// Orthonormal vectors that span the same space, without those of which less than the share `independent` is new.
+pub(crate) fn orthonormal(
+    vectors: impl Iterator<Item = Vec<Complex64>>,
+    independent: f64,
+) -> Vec<Vec<Complex64>> {
+    let mut basis: Vec<Vec<Complex64>> = Vec::new();
+    for vector in vectors {
+        let mut vector = unit(vector);
+        for _ in 0..2 {
+            for known in &basis {
+                let share = inner(known, &vector);
+                vector.iter_mut().zip(known).for_each(|(x, v)| *x -= share * v);
+            }
+        }
+        // NaN stays, and tells that a vector is missing.
+        let size = norm(&vector);
+        if size > independent || size.is_nan() {
+            basis.push(vector.into_iter().map(|x| x / size).collect());
+        }
+    }
+    basis
 }
 
 /// A vector scaled to unit length.

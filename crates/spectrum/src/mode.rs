@@ -26,9 +26,10 @@ pub struct Mode {
     /// transverse one. `None` also for translations, which have no gradient.
     pub longitudinal: Option<f64>,
     /// Condition number `1/|yᴴ u|` with the left vector y: 1 where modes are orthogonal, infinite at an exceptional point,
-    /// where two modes coalesce. Meaningless for a value that occurs several times.
+    /// where two modes coalesce. For a value that occurs several times, the norm of the projector on its modes,
+    /// if they are independent to rounding.
     pub condition: Option<f64>,
-    /// Overlap `|u'ᴴ u|` with the mode whose value is nearest: 1 where they coalesce. Conjugate pairs count.
+    /// Overlap `|u'ᴴ u|` with the mode of the nearest other value: 1 where they coalesce. Conjugate pairs count.
     pub overlap: Option<f64>,
 }
 

@@ -7,6 +7,10 @@ use voronudge_linalg::{
     Complex64, Eigenpairs, PartialEigenpairs, Progress, Wanted, eigen, nearest, rightmost,
 };
 
+/// Values closer than this, relative to the largest rate there can be, are one value that occurs several times. Rounding
+/// parts those by less, and two that coalesce at an exceptional point by more.
+const SAME: f64 = 1e-11;
+
 /// Which modes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Selection {
@@ -245,6 +249,7 @@ fn describe(
     tolerance: f64,
 ) -> Mode {
     let value = pairs.values[index];
+    let same = SAME * problem.largest_rate();
     let vector = pairs.right(index);
     let longitudinal = vector.as_ref().filter(|_| value.norm() > tolerance).and_then(|u| {
         let [divergence, curl] = problem.gradients.divergence_and_curl(u);
@@ -255,15 +260,15 @@ fn describe(
         residual,
         participation: vector.as_deref().map(participation),
         longitudinal,
-        condition: pairs.condition(index).filter(|condition| !condition.is_nan()),
-        overlap: vector.and_then(|u| overlap(pairs, index, &u)),
+        condition: pairs.condition(index, same).filter(|condition| !condition.is_nan()),
+        overlap: vector.and_then(|u| overlap(pairs, index, &u, same)),
     }
 }
 
 /// With the vector of the nearest other value.
-fn overlap(pairs: &Eigenpairs, index: usize, u: &[Complex64]) -> Option<f64> {
+fn overlap(pairs: &Eigenpairs, index: usize, u: &[Complex64], same: f64) -> Option<f64> {
     let value = pairs.values[index];
-    let others = (0..pairs.values.len()).filter(|&other| other != index);
+    let others = (0..pairs.values.len()).filter(|&other| !pairs.is_same(index, other, same));
     let distance = |other: usize| (pairs.values[other] - value).norm();
     let other = others.min_by(|&a, &b| distance(a).total_cmp(&distance(b)))?;
     let product: Complex64 = pairs.right(other)?.iter().zip(u).map(|(v, u)| v.conj() * u).sum();

@@ -57,8 +57,8 @@ pub fn mode_map(frame: &FrameView, mode: &DrawnMode, units: &Units) -> String {
     let at = [150.0, legend.top + 19.0];
     legend.svg.text(at, "amplitude arbitrary", TextStyle::quiet(Anchor::Start));
     if mode.frequency != 0.0 {
-        sense_entry(&mut legend, 282.0, "counter-clockwise", BLUE);
-        sense_entry(&mut legend, 282.0 + 132.0, "clockwise", VERMILLION);
+        sense_entry(&mut legend, 154.0, "counter-clockwise", BLUE);
+        sense_entry(&mut legend, 280.0, "clockwise", VERMILLION);
     }
     legend.left_out(4.0, frame, Swatch::Grey);
     legend.svg.finish()
@@ -80,7 +80,7 @@ impl Orbit {
         let places: Vec<[f64; 2]> = (0..CORNERS).map(place).collect();
         let sense = sign * (real[1] * imaginary[0] - real[0] * imaginary[1]);
         let size = places.iter().flatten().fold(0.0_f64, |most, x| most.max(x.abs()));
-        (size.is_finite() && size > 0.3).then_some(Self { places, counter_clockwise: sense >= 0.0 })
+        (size.is_finite() && size > 0.8).then_some(Self { places, counter_clockwise: sense >= 0.0 })
     }
 }
 
@@ -119,7 +119,7 @@ fn draw_orbits(map: &mut Map, frame: &FrameView, mode: &DrawnMode, stretch: f64)
 }
 
 fn sense_entry(legend: &mut Legend, x: f64, label: &str, colour: &str) {
-    let y = legend.top + 15.0;
+    let y = legend.top + 37.5;
     let mut mark = PathData::new();
     crate::markers::Marker::Circle.push(&mut mark, [x, y], 4.0);
     legend.svg.path(&mark, &format!(r#"fill="none" stroke="{colour}" stroke-width="1.2""#));

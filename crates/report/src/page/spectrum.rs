@@ -133,6 +133,7 @@ impl SpectrumPage<'_> {
 }
 
 fn cards(frame: &FrameSpectrum, unit: &str) -> Vec<Card> {
+    let square_unit = unit_text(&format!("{unit}^2"));
     let unit = unit_text(unit);
     let mode = |record: &Option<ModeRecord>, of: fn(&ModeRecord) -> f64| {
         record.as_ref().map_or(NO_VALUE.into(), |mode| format!("{} {unit}", significant(of(mode), 3)))
@@ -168,7 +169,7 @@ fn cards(frame: &FrameSpectrum, unit: &str) -> Vec<Card> {
         let scaled = frame.mean_square_frequency_over_k_p;
         cards.push(Card {
             label: "⟨ω²⟩".into(),
-            value: significant(square, 3),
+            value: format!("{} {}", significant(square, 3), square_unit),
             note: scaled.map_or(String::new(), |scaled| {
                 format!("{} K_P²", significant(scaled, 3)).replace("K_P", "Kₚ")
             }),
