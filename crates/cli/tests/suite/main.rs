@@ -21,5 +21,6 @@ mod program;
 mod refusal;
 mod scratch;
 mod simulations;
+mod spectra;
 mod stdout;
 mod uncertainties;
