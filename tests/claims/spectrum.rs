@@ -3,7 +3,8 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
-use voronudge_model::{Model, Parameters};
+use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector, areas};
+use voronudge_model::{Model, Parameters, velocities};
 use voronudge_spectrum::{Arrangement, Honeycomb, LinearProblem, Request, Selection, modes};
 use voronudge_theory::{MeanField, Orientation, hexagon_perimeter};
 
@@ -93,6 +94,44 @@ fn the_modes_of_a_honeycomb_are_those_of_the_theory() {
             let mean = squares / (2.0 * (columns * rows) as f64);
             assert!((found.mean_square_frequency().unwrap() - mean).abs() < 1e-6);
         }
+    }
+}
+
+/// Cells displaced by u cos(q·r) move with −D u cos(q·r): the rates of D are decay rates, `iω u = D u` for exp(−iωt).
+#[test]
+fn a_wave_moves_as_the_theory_says() {
+    for (arrangement, orientation) in LATTICES {
+        let lattice = Honeycomb::new(6, 8, arrangement).unwrap();
+        let (p_0, alpha, e) = (3.4, 0.4, 1e-6);
+        let q = [TAU / lattice.lengths()[0], 2.0 * TAU / lattice.lengths()[1]];
+        let d = theory(p_0, alpha).dynamical_matrix(q, orientation).unwrap();
+        let u = Vector::new(0.6, -0.8);
+        let cosine = |r: &Vector<f64>| (q[0] * r.x + q[1] * r.y).cos();
+        let moved = |sign: f64| {
+            let positions: Vec<_> =
+                lattice.positions().iter().map(|r| r + u * (sign * e * cosine(r))).collect();
+            let tessellation = Tessellation::new(&positions, lattice.tessellation().domain()).unwrap();
+            velocities(&tessellation, &positions, &model(p_0, alpha))
+        };
+        for ((r, a), b) in lattice.positions().iter().zip(moved(1.0)).zip(moved(-1.0)) {
+            let expected =
+                Vector::new(d[0][0] * u.x + d[0][1] * u.y, d[1][0] * u.x + d[1][1] * u.y) * -cosine(r);
+            assert!(((a - b) / (2.0 * e) - expected).norm() < 1e-6, "{a} {b} {expected}");
+        }
+    }
+}
+
+/// Cells displaced by u = (g x, 0): the density falls from ρ_0 to ρ_0 (1 − ∇·u).
+#[test]
+fn a_dilation_lowers_the_density() {
+    let lattice = Honeycomb::new(6, 8, Arrangement::RowsAlongX).unwrap();
+    let g = 1e-4;
+    let positions: Vec<_> = lattice.positions().iter().map(|r| Vector::new((1.0 + g) * r.x, r.y)).collect();
+    let [x, y] = lattice.lengths();
+    let domain = Domain::Periodic(PeriodicBox::new([(1.0 + g) * x, y]).unwrap());
+    let tessellation = Tessellation::new(&positions, domain).unwrap();
+    for area in areas(&tessellation, &positions) {
+        assert!((1.0 / area - (1.0 - g)).abs() < 2.0 * g * g);
     }
 }
 

@@ -165,7 +165,7 @@ fn results_do_not_depend_on_threads() {
 fn what_makes_no_sense_is_refused() {
     let data = fixture("reference-small");
     let refused = |flags: &[&str], facts: &[&str]| assert_refused("spectrum", &data, flags, facts);
-    refused(&["--dense-limit", "10"], &["20 cells", "10", "--largest"]);
+    refused(&["--dense-limit", "10"], &["20 cells", "10 cells"]);
     refused(&["--largest", "0"], &["0 modes"]);
     refused(&["--near", "nan", "0"], &["shift"]);
     refused(&["--band", "3", "1"], &["band", "3", "1"]);
@@ -174,8 +174,23 @@ fn what_makes_no_sense_is_refused() {
     refused(&["--values-only", "--modes"], &["--modes", "--values-only"]);
     refused(&["--frames", "7"], &["7"]);
     refused(&["--K_P", "1e308"], &["not finite"]);
-    assert_arguments_refused(["spectrum", "--lattice", "3", "4"], &["3 × 4", "--lattice 10 12"]);
+    assert_arguments_refused(["spectrum", "--lattice", "3", "4"], &["3 × 4", "5 × 6"]);
     assert_arguments_refused(["spectrum", "--lattice", "99999", "4"], &["too large"]);
     assert_arguments_refused(["spectrum"], &["no data"]);
     assert_eq!(voronudge(["spectrum", "--help"]).code, Some(0));
+    let few = Folder::data_set(
+        &ndarray::arr2(&[[0.0, 0.0], [1.0, 0.1], [0.2, 1.0], [1.1, 1.2], [2.0, 0.7]]),
+        "boundary = \"open\"\n",
+    );
+    assert_refused("spectrum", few.path(), &[], &["no cell counts"]);
+}
+
+#[test]
+fn doubtful_snapshots_and_units_are_warned_of() {
+    let out = Folder::new();
+    let outcome = succeed("spectrum --largest 3", &[("", &fixture("open-field")), ("--out", out.path())]);
+    for part in ["cell sizes", "only the first", "sides are shorter"] {
+        assert!(outcome.stderr.contains(part), "{part}: {}", outcome.stderr);
+    }
+    assert_eq!(report(out.path())["warnings"].as_array().map(Vec::len), Some(3));
 }

@@ -46,6 +46,9 @@ impl Solved {
         let tessellation =
             Tessellation::new(positions, domain).map_err(|error| snapshot.in_file_numbers(error))?;
         let view = FieldOfView::new(&tessellation, positions, LARGEST_AREA);
+        if (0..positions.len()).all(|cell| !view.counts(cell)) {
+            return Err(voronudge_spectrum::Error::NoCells.into());
+        }
         let mut surroundings = environment(&tessellation, positions, &view)?;
         if let Some(labels) = labels(data, &snapshot, frame) {
             surroundings =
@@ -70,6 +73,17 @@ impl Solved {
             view,
             tessellation,
             snapshot,
+        })
+    }
+
+    /// Whether the parameters can be meant for cells of this size.
+    pub fn doubtful_units(&self, parameters: &Parameters<f64>) -> Option<String> {
+        let index = parameters.preferred_perimeter / self.length;
+        (!(1.0..=10.0).contains(&index)).then(|| {
+            format!(
+                "P_0 is {index:.2e} cell sizes, where 3 to 5 is usual: parameters are in the units of the data, and the defaults \
+                 are for cells of unit size"
+            )
         })
     }
 

@@ -80,6 +80,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         solved.push(one);
     }
     progress.finish();
+    if let Some(warning) = solved.first().and_then(|first| first.doubtful_units(&parameters)) {
+        run.warn(warning);
+    }
     for one in &solved {
         one.warnings().into_iter().for_each(|warning| run.warn(warning));
     }
