@@ -13,13 +13,14 @@ use faer::reborrow::{Reborrow, ReborrowMut};
 use faer::traits::ComplexField;
 use faer::{Accum, Mat, MatMut, Par};
 use num_complex::Complex64;
+use std::ops::{AddAssign, SubAssign};
 use std::sync::OnceLock;
 
 /// Results must not depend on the number of threads: a front is one thread's work.
 const SEQUENTIAL: Par = Par::Seq;
 
 /// Real or complex numbers of double precision.
-pub(crate) trait Number: ComplexField + Copy + Send + Sync {
+pub(crate) trait Number: ComplexField + Copy + Send + Sync + AddAssign + SubAssign {
     /// Of a shift, the imaginary part only where there is room for one.
     fn from_complex(value: Complex64) -> Self;
     fn is_regular(self) -> bool;
@@ -202,7 +203,7 @@ impl<T: Number> Job<'_, T> {
                 if let Some(at) = front.local(position[other]) {
                     for (k, entry) in b.iter().enumerate() {
                         let place = (2 * own + k / 2, 2 * at + k % 2);
-                        full[place] = full[place] + real(*entry);
+                        full[place] += real(*entry);
                     }
                 }
             }
@@ -210,12 +211,12 @@ impl<T: Number> Job<'_, T> {
                 if let Some(at) = front.local(position[other]).filter(|&at| at >= front.own) {
                     for (k, entry) in b.iter().enumerate() {
                         let place = (2 * at + k % 2, 2 * own + k / 2);
-                        full[place] = full[place] + real(*entry);
+                        full[place] += real(*entry);
                     }
                 }
             }
             for k in 2 * own..2 * own + 2 {
-                full[(k, k)] = full[(k, k)] - self.shift;
+                full[(k, k)] -= self.shift;
             }
         }
     }
@@ -229,7 +230,7 @@ impl<T: Number> Job<'_, T> {
             .collect();
         for (column, &to_column) in places.iter().enumerate() {
             for (row, &to_row) in places.iter().enumerate() {
-                full[(to_row, to_column)] = full[(to_row, to_column)] + update[(row, column)];
+                full[(to_row, to_column)] += update[(row, column)];
             }
         }
     }
@@ -263,7 +264,7 @@ impl Front {
         matmul(taken.as_mut(), Accum::Replace, coupling.as_dyn_stride(), own.rb(), one, SEQUENTIAL);
         for (k, row) in self.rows_of_boundary().enumerate() {
             for column in 0..count {
-                x[(row, column)] = x[(row, column)] - taken[(k, column)];
+                x[(row, column)] -= taken[(k, column)];
             }
         }
     }

@@ -1,5 +1,7 @@
 //! What the modes of the model must be like.
 
+#![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
+
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};

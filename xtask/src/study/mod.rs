@@ -23,7 +23,7 @@ pub struct Arguments {
     /// Only tissues of this many cells (nada, discover, spectrum).
     #[arg(long)]
     cells: Option<usize>,
-    /// Folder for figures (nada, spectrum).
+    /// Folder for figures (nada).
     #[arg(long, value_name = "DIR")]
     figures: Option<PathBuf>,
     /// Only this part (discover).
@@ -64,7 +64,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Nada => nada::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
         Study::Noise => noise::levels(arguments.seeds),
         Study::Coverage => noise::coverage(arguments.seeds),
-        Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
+        Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

@@ -14,7 +14,7 @@ fn points(count: usize) -> Vec<SpectrumPoint> {
     let point = |k: usize| SpectrumPoint {
         rate: -(k as f64),
         frequency: (k as f64).sin(),
-        participation: Some(if k % 5 == 0 { 0.02 } else { 0.6 }),
+        participation: Some(if k.is_multiple_of(5) { 0.02 } else { 0.6 }),
     };
     (0..count).map(point).collect()
 }

@@ -7,6 +7,9 @@ use ndarray::{Array2, Array3, Array4};
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_spectrum::Mode;
 
+/// What a file says of each mode.
+type Column = fn(&Mode) -> Option<f64>;
+
 /// Files with the modes along the axis behind that of frames, which a data set with a single frame does not have.
 pub(super) fn write(
     out: &mut OutputDirectory,
@@ -23,7 +26,7 @@ pub(super) fn write(
         }
     }
     out.write_array("eigenvalues.npy", shaped(data, solved, values).view())?;
-    let columns: [(&str, fn(&Mode) -> Option<f64>); 3] = [
+    let columns: [(&str, Column); 3] = [
         ("participation.npy", |mode| mode.participation),
         ("longitudinal.npy", |mode| mode.longitudinal),
         ("condition.npy", |mode| mode.condition),
