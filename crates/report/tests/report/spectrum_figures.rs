@@ -12,7 +12,7 @@ fn units() -> Units {
 
 fn points(count: usize) -> Vec<SpectrumPoint> {
     let point = |k: usize| SpectrumPoint {
-        rate: -(k as f64),
+        rate: if k == 399 { -9e3 } else { -(k as f64) },
         frequency: (k as f64).sin(),
         participation: Some(if k.is_multiple_of(5) { 0.02 } else { 0.6 }),
     };
