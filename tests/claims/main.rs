@@ -4,3 +4,4 @@
 
 mod mean_field;
 mod recovery;
+mod spectrum;

@@ -31,6 +31,11 @@ impl Failure {
         self
     }
 
+    /// Says where the fault is, unless the user ended the command.
+    pub fn at_unless_interrupted(self, place: impl fmt::Display) -> Self {
+        if self.exit_code == 130 { self } else { self.at(place) }
+    }
+
     pub fn exit_code(&self) -> u8 {
         self.exit_code
     }
@@ -94,6 +99,13 @@ impl From<voronudge_infer::Error> for Failure {
 
 impl From<voronudge_simulate::Error> for Failure {
     fn from(error: voronudge_simulate::Error) -> Self {
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
+impl From<voronudge_spectrum::Error> for Failure {
+    fn from(error: voronudge_spectrum::Error) -> Self {
         let hint = error.hint();
         Self::from_parts(error, hint)
     }

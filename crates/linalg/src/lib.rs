@@ -1,4 +1,4 @@
-//! Sparse linear algebra behind a small interface: the only place that knows the library that does it.
+//! Sparse and dense linear algebra behind a small interface: the only place that knows the library that does it.
 //!
 //! ```
 //! use voronudge_linalg::{Cholesky, SymmetricMatrix};
@@ -11,8 +11,22 @@
 //! # Ok::<(), voronudge_linalg::Error>(())
 //! ```
 
+mod arnoldi;
+mod block_sparse;
 mod cholesky;
+mod dense_eigen;
+mod dissection;
+mod eigenpairs;
 mod error;
+mod partial_eigen;
+#[cfg(test)]
+mod sample;
+mod sparse_lu;
 
+pub use block_sparse::BlockSparse;
 pub use cholesky::{Cholesky, CholeskyPattern, SymmetricMatrix};
+pub use dense_eigen::{Wanted, eigen};
+pub use eigenpairs::Eigenpairs;
 pub use error::Error;
+pub use num_complex::Complex64;
+pub use partial_eigen::{PartialEigenpairs, Progress, RESIDUAL_LIMIT, nearest, rightmost};

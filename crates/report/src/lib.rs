@@ -1,13 +1,13 @@
 //! Figures, HTML pages and report files from results.
 //!
 //! This crate knows plain numbers only: no model, no fit, no files. The command line fills
-//! [`FrameView`] and [`InferReport`] or [`DiscoverReport`] and gets back text:
+//! [`FrameView`] and [`InferReport`], [`DiscoverReport`] or [`SpectrumReport`] and gets back text:
 //!
 //! - [`figure`]: one function per figure, each a stand-alone SVG. Charts stand on [`chart::Chart`]
 //!   (axes by plotters), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
 //! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
-//! - [`infer_report`], [`discover_report`]: what `report.json` holds, described by [`INFER_SCHEMA`] and
-//!   [`DISCOVER_SCHEMA`].
+//! - [`infer_report`], [`discover_report`], [`spectrum_report`]: what `report.json` holds, described by [`INFER_SCHEMA`],
+//!   [`DISCOVER_SCHEMA`] and [`SPECTRUM_SCHEMA`].
 //!
 //! ```
 //! use voronudge_report::figure::{ErrorBar, Emphasis, error_bars};
@@ -34,6 +34,7 @@ pub mod map;
 pub mod markers;
 pub mod numbers;
 pub mod page;
+pub mod spectrum_report;
 pub mod svg;
 mod view;
 
@@ -41,5 +42,6 @@ pub use before_after::BeforeAfter;
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use page::{DiscoverFigures, DiscoverPage, InferPage, Uncertainty};
+pub use page::{DiscoverFigures, DiscoverPage, InferPage, SpectrumPage, Uncertainty};
+pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

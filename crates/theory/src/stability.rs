@@ -108,6 +108,17 @@ impl MeanField {
             },
         )
     }
+
+    /// `⟨ω²⟩`, the mean square frequency over both modes at `mesh × mesh` wave vectors of the Brillouin zone.
+    ///
+    /// Γ counts as two modes that rest. It is the value that all modes of a periodic honeycomb of `mesh × mesh` cells
+    /// have. `mesh` is at least 2.
+    pub fn mean_square_frequency(&self, mesh: usize) -> f64 {
+        let orientation = Orientation::NeighbourAlongY;
+        let mesh = mesh.max(2);
+        let square = |q| eigenvalues(self.dynamical_matrix_at(q, orientation))[0].imaginary.powi(2);
+        zone(orientation, mesh).map(square).sum::<f64>() / (mesh * mesh) as f64
+    }
 }
 
 /// The points of a mesh that starts at Γ and spans the reciprocal cell, without Γ.

@@ -321,3 +321,13 @@ fn senseless_input_is_refused() {
         Err(Error::WaveVector { .. })
     ));
 }
+
+/// Nothing oscillates without chirality; far beyond every exceptional point ω² grows as α².
+#[test]
+fn the_mean_square_frequency_grows_as_the_square_of_the_chirality() {
+    assert_eq!(theory(3.3, 0.0).mean_square_frequency(20), 0.0);
+    let [one, two] = [50.0, 100.0].map(|alpha| theory(3.3, alpha).mean_square_frequency(20));
+    assert!((two / one / 4.0 - 1.0).abs() < 0.01, "{one} {two}");
+    let [left, right] = [0.7, -0.7].map(|alpha| theory(3.3, alpha).mean_square_frequency(20));
+    assert!((left / right - 1.0).abs() < 1e-12 && left > 0.0);
+}

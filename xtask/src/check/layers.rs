@@ -20,6 +20,7 @@ const LAYERS: &[(&str, Imports)] = &[
     ("model", Imports::Only(&["geometry"], &[])),
     ("simulate", Imports::Only(&["geometry", "model", "linalg"], &[])),
     ("infer", Imports::Only(&["geometry", "model", "linalg"], &["simulate"])),
+    ("spectrum", Imports::Only(&["geometry", "model", "linalg"], &[])),
     ("io", Imports::Only(&["geometry", "model"], &[])),
     ("report", Imports::Only(&[], &[])),
     ("cli", Imports::Any),

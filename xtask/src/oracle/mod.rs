@@ -8,14 +8,15 @@
 //!   vertices: `∂A/∂r_m = ½ (y_{m+1} − y_{m−1}, x_{m−1} − x_{m+1})` and
 //!   `∂P/∂r_m = u(r_m − r_{m−1}) + u(r_m − r_{m+1})` with unit vectors `u`;
 //! - motion of vertices with centres by solving the two bisector equations, differentiated, as a 2 × 2 system;
-//! - the Jacobian column by column, each a dual evaluation of the whole system.
+//! - the Jacobian column by column, each a dual evaluation of the whole system;
+//! - its eigenvalues by the QR algorithm of another library.
 //!
 //! Positions must be generic: no two vertices of a polygon at one place.
 
 mod pieces;
 mod polygon;
 
-use nalgebra::{Matrix2, Vector2};
+use nalgebra::{DMatrix, Matrix2, Vector2};
 use num_dual::{Dual64, DualNumCopy};
 pub use pieces::Corner;
 use polygon::Side;
@@ -96,6 +97,15 @@ impl Oracle {
             }
         }
         rows
+    }
+
+    /// Eigenvalues of the Jacobian (real, imaginary) by another library than the program's, the largest real part first.
+    pub fn eigenvalues(&self, constants: &Constants) -> Vec<[f64; 2]> {
+        let rows = self.jacobian(constants);
+        let matrix = DMatrix::from_fn(rows.len(), rows.len(), |row, column| rows[row][column]);
+        let mut values: Vec<[f64; 2]> = matrix.complex_eigenvalues().iter().map(|v| [v.re, v.im]).collect();
+        values.sort_by(|a, b| b[0].total_cmp(&a[0]).then(b[1].total_cmp(&a[1])));
+        values
     }
 
     fn fields_at<S: Number>(&self, positions: &[Vector2<S>], constants: &Constants) -> Fields<S> {

@@ -5,6 +5,7 @@ use nalgebra::Vector2;
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, areas, perimeters};
 use voronudge_model::{Model, Parameters, jacobian, stress, velocities};
 use voronudge_simulate::{RandomPlacement, generator};
+use voronudge_spectrum::{LinearProblem, Request, Selection, modes};
 
 /// Largest difference, relative to the largest entry.
 fn difference(a: impl IntoIterator<Item = f64>, b: impl IntoIterator<Item = f64>) -> f64 {
@@ -42,6 +43,15 @@ fn compare(positions: &[Vector2<f64>], lengths: [f64; 2], constants: Constants) 
     let dense = jacobian(&tessellation, positions, &model).to_dense();
     let rows = oracle.jacobian(&constants).into_iter().flatten();
     assert!(difference(dense, rows) < 1e-10);
+    let problem = LinearProblem::new(&tessellation, positions, &model, |_| true).unwrap();
+    let found = modes(&problem, &Request::new(Selection::All), &mut |_, _, _| {}).unwrap();
+    let scale = problem.largest_rate();
+    let values = oracle.eigenvalues(&constants);
+    assert_eq!(values.len(), found.modes.len());
+    for [re, im] in values {
+        let nearest = found.modes.iter().map(|mode| (mode.value.re - re).hypot(mode.value.im - im));
+        assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-8 * scale);
+    }
 }
 
 #[test]

@@ -5,6 +5,7 @@ mod nada;
 mod noise;
 mod recovery;
 mod seeds;
+mod spectrum;
 
 use crate::Outcome;
 use clap::{Args, ValueEnum};
@@ -19,7 +20,7 @@ pub struct Arguments {
     /// Number of seeds.
     #[arg(long, default_value_t = 10)]
     seeds: u64,
-    /// Only tissues of this many cells (nada, discover).
+    /// Only tissues of this many cells (nada, discover, spectrum).
     #[arg(long)]
     cells: Option<usize>,
     /// Folder for figures (nada).
@@ -50,6 +51,8 @@ enum Study {
     Noise,
     /// How often intervals cover.
     Coverage,
+    /// Mean square frequency of the modes of disordered solids.
+    Spectrum,
     /// Missing effects: found where there are none, found where there are some.
     Discover,
 }
@@ -61,6 +64,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Nada => nada::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
         Study::Noise => noise::levels(arguments.seeds),
         Study::Coverage => noise::coverage(arguments.seeds),
+        Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

@@ -53,6 +53,11 @@ impl ChosenEffects {
         self.0.is_empty()
     }
 
+    /// Ids with coefficients.
+    pub fn named(&self) -> BTreeMap<String, Vec<f64>> {
+        self.0.iter().map(|(id, values)| ((*id).to_owned(), values.clone())).collect()
+    }
+
     /// The model with these effects in an environment.
     pub fn add_to(
         &self,

@@ -7,3 +7,4 @@ mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
 pub(crate) mod simulate;
+pub(crate) mod spectrum;

@@ -21,6 +21,7 @@ mod program;
 mod refusal;
 mod scratch;
 mod simulations;
+mod spectra;
 mod stdout;
 mod uncertainties;
 mod undeclared;

@@ -5,13 +5,17 @@
 
 mod bootstrap_histogram;
 mod cell_map;
+mod complex_spectrum;
 mod component_scatter;
 mod correlation_function;
+mod density_of_states;
+mod dispersion;
 mod effect_ranking;
 mod error_bars;
 mod flow_map;
 mod landscape;
 mod method_comparison;
+mod mode_map;
 mod noise_budget;
 mod nudge_histogram;
 mod nudge_map;
@@ -26,12 +30,16 @@ mod velocity_map;
 
 pub use bootstrap_histogram::{BootstrapHistogram, bootstrap_histogram};
 pub use cell_map::{CellScalar, cell_map};
+pub use complex_spectrum::{SpectrumPoint, complex_spectrum};
 pub use correlation_function::{Correlation, CorrelationFunction, CorrelationPoint, correlation_function};
+pub use density_of_states::density_of_states;
+pub use dispersion::{DispersionPart, DispersionPoint, dispersion};
 pub use effect_ranking::effect_ranking;
 pub use error_bars::{Emphasis, ErrorBar, error_bars, error_bars_with_floor};
 pub use flow_map::{FlowMap, flow_map};
 pub use landscape::{Landscape, LandscapeAxis, landscape};
 pub use method_comparison::{MethodComparison, MethodSeries, method_comparison};
+pub use mode_map::{DrawnMode, mode_map};
 pub use noise_budget::noise_budget;
 pub use nudge_histogram::{NudgeHistogram, nudge_histogram};
 pub use nudge_map::nudge_map;

@@ -7,11 +7,13 @@ mod directions;
 mod discover;
 mod infer;
 mod parameter_table;
+mod spectrum;
 mod uncertainty;
 mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
+pub use spectrum::SpectrumPage;
 pub use uncertainty::Uncertainty;
 
 use minijinja::{AutoEscape, Environment, Value};

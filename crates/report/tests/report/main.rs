@@ -8,3 +8,4 @@ mod figures;
 mod inference_figures;
 mod pages;
 mod sample;
+mod spectrum_figures;

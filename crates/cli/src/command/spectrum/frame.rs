@@ -1,0 +1,121 @@
+//! The modes of one frame.
+
+use super::request::ModeRequest;
+use super::search::compute;
+use crate::arguments::{ChosenEffects, environment};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::snapshot::{Snapshot, domain, labels};
+use std::sync::Arc;
+use voronudge_geometry::{FieldOfView, Tessellation};
+use voronudge_io::DataSet;
+use voronudge_model::{Model, Parameters, velocities};
+use voronudge_spectrum::{LinearProblem, Modes, Scope, TransitionDistance};
+
+/// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
+const LARGEST_AREA: f64 = 3.0;
+/// Sides shorter than this share of the cell size are near a T1 transition.
+pub(super) const SHORT_SIDE: f64 = 0.01;
+
+/// A frame and its modes.
+pub(super) struct Solved {
+    pub frame: usize,
+    pub snapshot: Snapshot,
+    pub tessellation: Tessellation,
+    pub view: FieldOfView,
+    pub problem: Arc<LinearProblem>,
+    pub modes: Modes,
+    /// The cell size ℓ₀.
+    pub length: f64,
+    pub transition: Option<TransitionDistance>,
+    /// Root mean square velocity of the model over the cells that move.
+    pub speed: f64,
+}
+
+impl Solved {
+    pub fn new(
+        data: &DataSet,
+        frame: usize,
+        (parameters, effects): (&Parameters<f64>, &ChosenEffects),
+        request: &ModeRequest,
+        progress: &mut Progress,
+    ) -> Result<Self, Failure> {
+        let domain = domain(data)?;
+        let snapshot = Snapshot::new(data, frame);
+        let positions = &snapshot.positions;
+        let tessellation =
+            Tessellation::new(positions, domain).map_err(|error| snapshot.in_file_numbers(error))?;
+        let view = FieldOfView::new(&tessellation, positions, LARGEST_AREA);
+        if (0..positions.len()).all(|cell| !view.counts(cell)) {
+            return Err(voronudge_spectrum::Error::NoCells.into());
+        }
+        let mut surroundings = environment(&tessellation, positions, &view)?;
+        if let Some(labels) = labels(data, &snapshot, frame) {
+            surroundings =
+                surroundings.with_labels(labels).map_err(|error| Failure::new(error.to_string()))?;
+        }
+        let length = surroundings.cell_size();
+        let model = effects.add_to(Model::chiral_voronoi(parameters), surroundings, domain)?;
+        let problem = LinearProblem::new(&tessellation, positions, &model, |cell| view.counts(cell));
+        let problem = Arc::new(problem.map_err(|error| in_file_numbers(&snapshot, error))?);
+        let modes = compute(&problem, request.request, progress)?;
+        let all = velocities(&tessellation, positions, &model);
+        let squares: f64 = problem.cells().iter().map(|&cell| all[cell].norm_squared()).sum();
+        let transition =
+            TransitionDistance::new(&tessellation, positions, |cell| view.counts(cell), SHORT_SIDE * length);
+        Ok(Self {
+            frame,
+            speed: (squares / problem.cells().len() as f64).sqrt(),
+            problem,
+            modes,
+            length,
+            transition,
+            view,
+            tessellation,
+            snapshot,
+        })
+    }
+
+    /// Whether the parameters can be meant for cells of this size.
+    pub fn doubtful_units(&self, parameters: &Parameters<f64>) -> Option<String> {
+        let index = parameters.preferred_perimeter / self.length;
+        (!(1.0..=10.0).contains(&index)).then(|| {
+            format!(
+                "P_0 is {index:.2e} cell sizes, where 3 to 5 is usual: parameters are in the units of the data, and the defaults \
+                 are for cells of unit size"
+            )
+        })
+    }
+
+    /// Whether only some modes are known.
+    pub fn is_partial(&self) -> bool {
+        self.modes.scope != Scope::All
+    }
+
+    /// What should be known before using the modes.
+    pub fn warnings(&self) -> Vec<String> {
+        let mut warnings = Vec::new();
+        let near = self.transition.filter(|transition| transition.short_sides > 0);
+        if let Some(near) = near {
+            let [first, second] = near.cells.map(|cell| self.snapshot.cells[cell]);
+            warnings.push(format!(
+                "frame {}: {} of {} sides are shorter than a hundredth of the cell size, the shortest, between cells {first} and \
+                 {second}, by a factor of {:.1e}: neighbours are about to change there, so the modes hold for tiny \
+                 displacements only, and the stiffest of them belong to such sides",
+                self.frame,
+                near.short_sides,
+                near.sides,
+                near.shortest_side / self.length
+            ));
+        }
+        warnings
+    }
+}
+
+fn in_file_numbers(snapshot: &Snapshot, error: voronudge_spectrum::Error) -> Failure {
+    use voronudge_spectrum::Error;
+    match error {
+        Error::NotFinite { cell } => Error::NotFinite { cell: snapshot.cells[cell] }.into(),
+        other => other.into(),
+    }
+}

@@ -1,0 +1,109 @@
+//! `voronudge spectrum`: the linear modes of a snapshot.
+
+mod arrays;
+mod frame;
+mod lattice;
+mod page;
+mod report;
+mod request;
+mod search;
+mod view;
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use clap::Args;
+use frame::Solved;
+use lattice::Lattice;
+use request::SelectionArguments;
+use voronudge_io::{FrameSelection, OutputDirectory};
+
+/// Linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional points.
+///
+/// Writes eigenvalues.npy (2N, 2: real, imaginary; the largest real part first), participation.npy, longitudinal.npy,
+/// condition.npy, report.json and report.html; with --modes also the modes themselves.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    data: DataSetArguments,
+    /// A honeycomb of unit cells instead of a data set, with its waves along Γ–K–M–Γ beside the mean-field theory.
+    #[arg(long, num_args = 2, value_names = ["COLUMNS", "ROWS"], conflicts_with_all = ["dataset", "positions"], allow_negative_numbers = true)]
+    lattice: Option<Vec<usize>>,
+    /// Frames: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: the first].
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
+    frames: Option<FrameSelection>,
+    #[command(flatten)]
+    selection: SelectionArguments,
+    #[command(flatten)]
+    parameters: ParameterArguments,
+    #[command(flatten)]
+    effects: EffectArguments,
+    /// Also write modes.npy (modes, N, 2, 2: component, then real and imaginary part), of the first frame chosen.
+    #[arg(long)]
+    modes: bool,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("spectrum", &arguments.common)?;
+    let request = arguments.selection.resolve()?;
+    if arguments.modes && !request.has_vectors() {
+        return Err(Failure::new("--modes asks for vectors and --values-only for none")
+            .with_hint("leave one of them out"));
+    }
+    let effects = arguments.effects.resolve()?;
+    let parameters = arguments.parameters.resolve()?;
+    let lattice = arguments.lattice.as_deref().map(Lattice::new).transpose()?;
+    let (data, place) = match &lattice {
+        Some(lattice) => (lattice.data_set(), "the honeycomb".to_owned()),
+        None => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
+    };
+    let frames = match &arguments.frames {
+        Some(selection) => {
+            selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
+        }
+        None => vec![0],
+    };
+    if arguments.frames.is_none() && data.frames() > 1 {
+        run.warn(format!("of {} frames only the first is looked at; --frames chooses others", data.frames()));
+    }
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let mut solved = Vec::new();
+    for &frame in &frames {
+        let at = || format!("{place}, frame {frame}");
+        let one = Solved::new(&data, frame, (&parameters, &effects), &request, &mut progress)
+            .map_err(|failure| failure.at_unless_interrupted(at()))?;
+        solved.push(one);
+    }
+    progress.finish();
+    if let Some(warning) = solved.first().and_then(|first| first.doubtful_units(&parameters)) {
+        run.warn(warning);
+    }
+    for one in &solved {
+        one.warnings().into_iter().for_each(|warning| run.warn(warning));
+    }
+    let waves = lattice.as_ref().map(|lattice| lattice.waves(&parameters, &effects)).transpose()?;
+    arrays::write(&mut out, &data, &solved, arguments.modes)?;
+    if let (Some(lattice), Some(waves)) = (&lattice, &waves) {
+        lattice.write(&mut out, &data, waves)?;
+    }
+    if arguments.modes && solved.len() > 1 {
+        run.warn(format!("modes.npy holds the modes of frame {} only", frames[0]));
+    }
+    let report = report::report(&run, &data, (&parameters, &effects), &request, &solved, waves.as_ref());
+    let json = report.to_json()?;
+    out.write_text("report.json", &json)?;
+    let title = match (&lattice, &arguments.data.dataset) {
+        (Some(lattice), _) => lattice.title(),
+        (None, Some(folder)) => folder.display().to_string(),
+        (None, None) => place,
+    };
+    out.write_text("report.html", &page::page(&title, &data, &solved, &report, waves.as_ref())?)?;
+    let summary = page::summary(&report, out.path());
+    run.finish(Some(out), &json, &summary)?;
+    Ok(Answer::Positive)
+}

@@ -1,0 +1,41 @@
+//! Matrices for tests: the stencil of a tissue, with pseudo-random blocks.
+
+use crate::BlockSparse;
+
+/// A periodic triangular lattice of `side × side` sites coupled over two rings, which decays: a random symmetric part,
+/// dominated by its diagonal, and an antisymmetric part of a strength.
+pub(crate) fn lattice(side: usize, antisymmetric: f64) -> BlockSparse {
+    let site = |x: i64, y: i64| {
+        let wrap = |k: i64| k.rem_euclid(side as i64) as usize;
+        wrap(y) * side + wrap(x)
+    };
+    let mut rows: Vec<std::collections::BTreeMap<u32, [f64; 4]>> = vec![Default::default(); side * side];
+    for i in 0..side * side {
+        let (x, y) = ((i % side) as i64, (i / side) as i64);
+        for (dx, dy) in [(1, 0), (0, 1), (1, -1), (2, 0), (1, 1), (2, -1), (0, 2), (1, -2), (2, -2)] {
+            let j = site(x + dx, y + dy);
+            let random = |k: i64| ((i as f64 + 0.37) * (1.3 + (3 * dx + 7 * dy + 11 * k) as f64)).sin();
+            let b: [f64; 4] = [1.0 + random(0), 0.3 * random(1), 0.3 * random(1), 1.0 + random(2)];
+            let turn = [0.0, -antisymmetric * random(3), antisymmetric * random(3), 0.0];
+            for (row, column, sign) in [(i, j, 1.0), (j, i, -1.0)] {
+                let entry = rows[row].entry(column as u32).or_default();
+                (0..4).for_each(|k| entry[k] += b[k] + sign * turn[k]);
+                let own = rows[row].entry(row as u32).or_default();
+                (0..4).for_each(|k| own[k] -= b[k] + sign * turn[k]);
+            }
+        }
+    }
+    let mut start = vec![0];
+    let (mut column, mut block) = (Vec::new(), Vec::new());
+    for row in rows {
+        column.extend(row.keys());
+        block.extend(row.values());
+        start.push(column.len());
+    }
+    BlockSparse::new(start, column, block).unwrap()
+}
+
+/// The places of the sites.
+pub(crate) fn places(side: usize) -> Vec<[f64; 2]> {
+    (0..side * side).map(|i| [(i % side) as f64 + 0.5 * (i / side) as f64, (i / side) as f64]).collect()
+}

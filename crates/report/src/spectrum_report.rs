@@ -1,0 +1,179 @@
+//! `report.json` of the command `spectrum`.
+//!
+//! Field names are the interface that scripts use; [`SPECTRUM_SCHEMA`] describes them. Numbers that are not finite are
+//! written as `null`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::error::ReportError;
+use crate::infer_report::RunRecord;
+use crate::view::Units;
+
+/// JSON Schema (draft 2020-12) of [`SpectrumReport`].
+pub const SPECTRUM_SCHEMA: &str = include_str!("../schema/spectrum.schema.json");
+
+/// Everything `spectrum` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpectrumReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless; rates and angular frequencies are in 1/time.
+    pub units: Units,
+    /// Which modes were asked for.
+    pub selection: SelectionRecord,
+    /// Parameters as used, by the names of the interface.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// Effects beyond the base model with their coefficients.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub effects: BTreeMap<String, Vec<f64>>,
+    /// The mean-field theory at these parameters, where the model has no effects and K_P is positive.
+    pub mean_field: Option<MeanFieldRecord>,
+    /// The spectrum of each frame.
+    pub frames: Vec<FrameSpectrum>,
+    /// The comparison on a lattice, where asked for.
+    pub lattice: Option<LatticeRecord>,
+}
+
+impl SpectrumReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}
+
+/// Which modes were asked for.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[serde(tag = "modes", rename_all = "snake_case")]
+pub enum SelectionRecord {
+    /// All.
+    All,
+    /// Those that grow fastest.
+    Largest {
+        /// How many.
+        count: usize,
+    },
+    /// Those nearest to a point.
+    Near {
+        /// Its real and imaginary part.
+        shift: [f64; 2],
+        /// How many.
+        count: usize,
+    },
+    /// Those of a band of frequencies.
+    Band {
+        /// Its ends.
+        frequencies: [f64; 2],
+        /// How many were looked at.
+        count: usize,
+    },
+}
+
+/// What the theory of the honeycomb says.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MeanFieldRecord {
+    /// `solid`, `odd_elastic_solid` or `unstable`.
+    pub phase: &'static str,
+    /// The P_0 at which the honeycomb becomes unstable.
+    pub stability_limit: f64,
+    /// The |α| beyond which the mode at q* oscillates.
+    pub exceptional_chirality: f64,
+    /// ⟨ω²⟩ over the modes of the honeycomb.
+    pub mean_square_frequency: f64,
+}
+
+/// The spectrum of one frame.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrameSpectrum {
+    /// Index of the frame, zero-based.
+    pub frame: usize,
+    /// Cells present.
+    pub present: usize,
+    /// Cells that may move in the modes.
+    pub counted: usize,
+    /// The cell size ℓ₀, ℓ₀² = mean area.
+    pub length_scale: f64,
+    /// Modes found.
+    pub modes: usize,
+    /// Those that decay.
+    pub decaying: usize,
+    /// Those that grow.
+    pub growing: usize,
+    /// Those that neither grow nor decay, but oscillate.
+    pub neutral: usize,
+    /// Those whose rate and frequency are zero.
+    pub zero: usize,
+    /// Those that oscillate, whatever else they do.
+    pub oscillating: usize,
+    /// Rates up to this count as zero.
+    pub tolerance: f64,
+    /// ⟨ω²⟩ over all modes; null if only some were computed.
+    pub mean_square_frequency: Option<f64>,
+    /// The same in units of K_P².
+    pub mean_square_frequency_over_k_p: Option<f64>,
+    /// The mode that grows fastest or decays slowest, other than translations.
+    pub largest_growth: Option<ModeRecord>,
+    /// The mode with the highest frequency.
+    pub fastest_oscillation: Option<ModeRecord>,
+    /// The mode with the largest condition number.
+    pub exceptional: Option<ModeRecord>,
+    /// Where the matrix was factorised, if it was.
+    pub shift: Option<[f64; 2]>,
+    /// Distance from there up to which nothing should be missing.
+    pub reach: Option<f64>,
+    /// Largest ‖J u − λ u‖/‖J‖ of the modes that were searched for.
+    pub largest_residual: Option<f64>,
+    /// How near the snapshot is to a T1 transition.
+    pub transition: Option<TransitionRecord>,
+}
+
+/// One mode.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModeRecord {
+    /// Row in `eigenvalues.npy`.
+    pub index: usize,
+    /// Rate of growth.
+    pub rate: f64,
+    /// Angular frequency.
+    pub frequency: f64,
+    /// Share of the cells that take part.
+    pub participation: Option<f64>,
+    /// Share of the divergence in the gradients.
+    pub longitudinal: Option<f64>,
+    /// Condition number.
+    pub condition: Option<f64>,
+    /// Overlap with the mode whose value is nearest.
+    pub overlap: Option<f64>,
+}
+
+/// How near a snapshot is to a T1 transition.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TransitionRecord {
+    /// Length of the shortest side.
+    pub shortest_side: f64,
+    /// The cells that share it, as the file numbers them.
+    pub cells: [usize; 2],
+    /// Least distance of a fourth cell from the circle through three.
+    pub smallest_gap: f64,
+    /// Sides shorter than a hundredth of ℓ₀.
+    pub short_sides: usize,
+    /// All sides.
+    pub sides: usize,
+}
+
+/// The exact Jacobian of a honeycomb against the theory.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct LatticeRecord {
+    /// Cells in a row and rows.
+    pub size: [usize; 2],
+    /// Points on the path Γ–K–M–Γ.
+    pub points: usize,
+    /// Largest difference of the dynamical matrices, relative to the largest entry on the path; null with effects.
+    pub largest_difference: Option<f64>,
+}
