@@ -37,10 +37,12 @@ pub mod measure;
 mod placement;
 mod schedule;
 mod simulation;
+mod spatial_order;
 mod time_step;
 
 pub use error::Error;
 pub use placement::{Generator, RandomPlacement, generator};
 pub use schedule::{Completion, Event, Frame, Schedule, Summary, run};
 pub use simulation::Simulation;
+pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;

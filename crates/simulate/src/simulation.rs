@@ -2,7 +2,7 @@
 
 use crate::Error;
 use rayon::prelude::*;
-use voronudge_geometry::{Domain, Tessellation, Vector};
+use voronudge_geometry::{Domain, MovingTessellation, Tessellation, Vector};
 use voronudge_model::{HalfEdgeForces, Model};
 
 /// Largest displacement in one step, in mean spacings.
@@ -18,7 +18,7 @@ const CHUNK: usize = 4096;
 #[derive(Debug, Clone)]
 pub struct Simulation {
     model: Model<f64>,
-    tessellation: Tessellation,
+    tessellation: MovingTessellation,
     time: f64,
     positions: Vec<Vector<f64>>,
     velocities: Vec<Vector<f64>>,
@@ -63,12 +63,12 @@ impl Simulation {
         let Domain::Periodic(cell_box) = domain else {
             return Err(Error::OpenDomain);
         };
-        let tessellation = Tessellation::new(&positions, domain)
+        let tessellation = MovingTessellation::new(&positions, domain)
             .map_err(|source| Error::Tessellation { time: 0.0, source })?;
         let limit = LIMIT * (cell_box.area() / positions.len() as f64).sqrt();
         let mut forces = HalfEdgeForces::default();
         let mut velocities = Vec::new();
-        forces.evaluate(&tessellation, &positions, &model, &mut velocities);
+        forces.evaluate(tessellation.tessellation(), &positions, &model, &mut velocities);
         Ok(Self {
             model,
             tessellation,
@@ -120,7 +120,7 @@ impl Simulation {
 
     /// The tessellation of the current positions.
     pub fn tessellation(&self) -> &Tessellation {
-        &self.tessellation
+        self.tessellation.tessellation()
     }
 
     /// The model that moves the cells.
@@ -160,13 +160,16 @@ impl Simulation {
         self.tessellation
             .renew(positions)
             .map_err(|source| Error::Tessellation { time: self.time + after, source })?;
-        self.forces.evaluate(&self.tessellation, positions, &self.model, velocities);
+        self.forces.evaluate(self.tessellation.tessellation(), positions, &self.model, velocities);
         Ok(())
     }
 
     fn renew_tessellation_of_positions(&mut self) -> Result<(), Error> {
         let time = self.time;
-        self.tessellation.renew(&self.positions).map_err(|source| Error::Tessellation { time, source })
+        match self.tessellation.renew(&self.positions) {
+            Ok(_) => Ok(()),
+            Err(source) => Err(Error::Tessellation { time, source }),
+        }
     }
 
     fn check_displacements(&self, time_step: f64) -> Result<(), Error> {
