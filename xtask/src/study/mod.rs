@@ -3,6 +3,7 @@
 mod discover;
 mod nada;
 mod noise;
+mod phases;
 mod recovery;
 mod seeds;
 
@@ -52,6 +53,10 @@ enum Study {
     Coverage,
     /// Missing effects: found where there are none, found where there are some.
     Discover,
+    /// Mean square velocities of solids and liquids at two system sizes.
+    Velocities,
+    /// Largest Lyapunov exponents across the transition.
+    Lyapunov,
 }
 
 /// Runs a study.
@@ -61,6 +66,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Nada => nada::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
         Study::Noise => noise::levels(arguments.seeds),
         Study::Coverage => noise::coverage(arguments.seeds),
+        Study::Velocities => phases::velocities(),
+        Study::Lyapunov => phases::lyapunov(arguments.seeds),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }
