@@ -132,6 +132,11 @@ impl Driving {
         }
     }
 
+    /// Whether there is noise.
+    pub(crate) fn shakes(&self) -> bool {
+        self.diffusion > 0.0 || self.rotational_diffusion > 0.0
+    }
+
     /// Adds the noise of one step to the positions and turns the directions.
     pub(crate) fn shake(
         &self,

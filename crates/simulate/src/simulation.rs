@@ -216,12 +216,11 @@ impl Simulation {
         slope.clone_from(&self.velocities);
         headings.clone_from(&self.now.headings);
         for (reach, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-            displace(positions, &self.now.positions, slope, reach * time_step);
-            self.check_displacements(positions, time_step)?;
+            self.displace(positions, slope, reach * time_step, time_step)?;
             self.evaluate(positions, headings, self.now.time + reach * time_step, slope)?;
             add_scaled(sum, slope, weight);
         }
-        displace(positions, &self.now.positions, sum, time_step / 6.0);
+        self.displace(positions, sum, time_step / 6.0, time_step)?;
         self.arrive(positions, headings, slope, time_step)
     }
 
@@ -234,8 +233,10 @@ impl Simulation {
         time_step: f64,
     ) -> Result<(), Error> {
         headings.clone_from(&self.now.headings);
-        self.driving.shake(positions, headings, self.now.steps, time_step);
-        self.check_displacements(positions, time_step)?;
+        if self.driving.shakes() {
+            self.driving.shake(positions, headings, self.now.steps, time_step);
+            self.check_displacements(positions, time_step)?;
+        }
         self.evaluate(positions, headings, self.now.time + time_step, velocities)?;
         std::mem::swap(&mut self.now.positions, positions);
         std::mem::swap(&mut self.now.headings, headings);
@@ -280,11 +281,9 @@ impl Simulation {
         let Stage { positions, headings, slopes: [second, third, fourth] } = stage;
         let now = self.now.time;
         headings.clone_from(&self.now.headings);
-        displace(positions, &self.now.positions, &self.velocities, 0.5 * time_step);
-        self.check_displacements(positions, time_step)?;
+        self.displace(positions, &self.velocities, 0.5 * time_step, time_step)?;
         self.evaluate(positions, headings, now + 0.5 * time_step, second)?;
-        displace(positions, &self.now.positions, second, 0.75 * time_step);
-        self.check_displacements(positions, time_step)?;
+        self.displace(positions, second, 0.75 * time_step, time_step)?;
         self.evaluate(positions, headings, now + 0.75 * time_step, third)?;
         positions.clone_from(&self.now.positions);
         for (slope, weight) in [&self.velocities, &*second, &*third].into_iter().zip(THIRD_ORDER) {
@@ -326,6 +325,30 @@ impl Simulation {
         Ok(Domain::Periodic(PeriodicBox::sheared(lengths, offset)?))
     }
 
+    /// `to = r + h v`, within the limit of displacements.
+    fn displace(
+        &self,
+        to: &mut Vec<Vector<f64>>,
+        v: &[Vector<f64>],
+        h: f64,
+        time_step: f64,
+    ) -> Result<(), Error> {
+        to.resize(v.len(), Vector::zeros());
+        let from = self.now.positions.par_chunks(CHUNK);
+        let limit = (LIMIT * self.spacing).powi(2);
+        let near = to.par_chunks_mut(CHUNK).zip(from).zip(v.par_chunks(CHUNK)).map(|((to, from), v)| {
+            let mut near = true;
+            for ((to, from), v) in to.iter_mut().zip(from).zip(v) {
+                let d = v * h;
+                *to = from + d;
+                near &= d.norm_squared() < limit;
+            }
+            near
+        });
+        // No short cut: every chunk has to be displaced.
+        if near.reduce(|| true, |a, b| a & b) { Ok(()) } else { self.check_displacements(to, time_step) }
+    }
+
     fn check_displacements(&self, positions: &[Vector<f64>], time_step: f64) -> Result<(), Error> {
         let streaming = self.driving.shear.map_or(0.0, |shear| shear.rate(self.now.time)) * time_step;
         let moved = |(to, from): (&Vector<f64>, &Vector<f64>)| {
@@ -341,13 +364,6 @@ impl Simulation {
             }
         }
     }
-}
-
-/// `to = from + h v`
-fn displace(to: &mut Vec<Vector<f64>>, from: &[Vector<f64>], v: &[Vector<f64>], h: f64) {
-    to.resize(from.len(), Vector::zeros());
-    let rows = to.par_iter_mut().zip(from).zip(v).with_min_len(CHUNK);
-    rows.for_each(|((to, from), v)| *to = from + v * h);
 }
 
 /// `sum += weight v`

@@ -75,16 +75,13 @@ fn scan_cells(
             return None;
         }
         ring.clear();
-        let (mut farthest, mut total) = (0.0f64, 0.0);
-        for h in half_edges {
+        ring.extend(half_edges.map(|h| {
             let d = tessellation.displacement(positions, cell, h);
-            let square = d.x * d.x + d.y * d.y;
-            farthest = farthest.max(square);
-            total += square;
-            ring.push((d, square));
-        }
-        ring.push(ring[0]);
-        ring.push(ring[1]);
+            (d, d.x * d.x + d.y * d.y)
+        }));
+        let (farthest, total) =
+            ring.iter().fold((0.0f64, 0.0), |(most, sum), (_, square)| (most.max(*square), sum + square));
+        ring.extend_from_within(..2);
         let (mut least_cross, mut least) = (f64::INFINITY, f64::INFINITY);
         for corner in ring.windows(3) {
             let (before, here, after) = (corner[0], corner[1], corner[2]);
