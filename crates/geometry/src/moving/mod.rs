@@ -1,4 +1,4 @@
-//! The tessellation of cells that move: repaired by flips, which cost a tenth of a tessellation anew.
+//! The tessellation of cells that move: repaired by flips, which cost a tenth to a quarter of a tessellation anew.
 
 mod diagonal;
 mod lawson;
