@@ -25,6 +25,11 @@ impl Failure {
         Self { message: "interrupted; nothing was written".into(), hint: None, exit_code: 130 }
     }
 
+    /// Ctrl-C during a run that can be taken up again.
+    pub fn interrupted_at(message: impl Into<String>) -> Self {
+        Self { exit_code: 130, ..Self::new(message) }
+    }
+
     /// Says where the fault is.
     pub fn at(mut self, place: impl fmt::Display) -> Self {
         self.message = format!("{place}: {}", self.message);

@@ -7,7 +7,7 @@
 use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Tessellation, Vector};
 
 fn main() {
     divan::main();
@@ -55,4 +55,20 @@ fn new_from_almost_random_points(bencher: Bencher, side: usize) {
     bencher
         .counter(ItemsCount::new(positions.len()))
         .bench(|| Tessellation::new(divan::black_box(&positions), domain));
+}
+
+/// Cells that move to and fro by a few per cent of their spacing, as in a stage of a Runge–Kutta step: flips.
+#[divan::bench(args = [(10, Order::Rows), (100, Order::Rows), (1000, Order::Rows), (1000, Order::Shuffled)], sample_count = 10, sample_size = 3)]
+fn follow(bencher: Bencher, (side, order): (usize, Order)) {
+    let (positions, domain) = tissue(side, order, 0.3);
+    let mut rng = Pcg64Mcg::seed_from_u64(8);
+    let moved: Vec<_> = (positions.iter())
+        .map(|r| r + Vector::new(rng.random_range(-0.01..0.01), rng.random_range(-0.01..0.01)))
+        .collect();
+    let mut moving = MovingTessellation::new(&positions, domain).expect("distinct cells");
+    let mut there = false;
+    bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
+        there = !there;
+        moving.renew(divan::black_box(if there { &moved } else { &positions }))
+    });
 }

@@ -1,9 +1,7 @@
 //! Where cells live: a periodic box (also sheared, for Lees–Edwards boundaries) or an open field of view.
 
+use crate::builder::MOST_BOXES;
 use crate::{Error, Scalar, Vector};
-
-/// Largest offset in units of `L_x`: images are counted in 16 bits.
-const MOST_BOXES: f64 = 8192.0;
 
 /// The boundary condition. All of geometry, mechanics and inference see boundaries through this type only.
 #[derive(Debug, Clone, Copy, PartialEq)]

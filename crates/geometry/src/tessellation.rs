@@ -36,7 +36,8 @@ impl Tessellation {
     /// Tessellates cell centres at `positions` (N, in any unit).
     ///
     /// Periodic positions need not be inside the box. Cells on a common circle (a square lattice, say) get one of the
-    /// equivalent triangulations; the Voronoi edge between the others then has length zero.
+    /// equivalent triangulations, in a periodic box a fan from the lowest of them; the Voronoi edge between the others then
+    /// has length zero.
     ///
     /// # Errors
     /// [`Error`] if a position is not finite, two cells coincide, or there are too few cells (three, not on a line, for
@@ -65,6 +66,10 @@ impl Tessellation {
     /// The boundary condition.
     pub fn domain(&self) -> Domain {
         self.domain
+    }
+
+    pub(crate) fn set_domain(&mut self, domain: Domain) {
+        self.domain = domain;
     }
 
     /// Number of cells.

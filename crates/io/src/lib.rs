@@ -12,6 +12,7 @@
 //! | read which frames the user wants | [`FrameSelection`] |
 //! | read one array | [`read_reals`], [`read_integers`], [`read_vectors`] |
 //! | write results so that a killed run spoils nothing | [`OutputDirectory`] |
+//! | write frames of a long run that can be taken up again | [`Recording`] |
 //!
 //! # Conventions
 //!
@@ -33,6 +34,7 @@ mod frames;
 mod input;
 mod noise;
 mod output;
+mod recording;
 mod save;
 mod settings;
 mod source;
@@ -53,6 +55,7 @@ pub use frames::FrameSelection;
 pub use input::InputFile;
 pub use noise::Noise;
 pub use output::OutputDirectory;
+pub use recording::Recording;
 pub use source::Source;
 pub use table::{ColumnNames, FlowColumnNames};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};

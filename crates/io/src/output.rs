@@ -78,6 +78,16 @@ impl OutputDirectory {
         Ok(Self { staging, directory, staged: Vec::new() })
     }
 
+    /// For a directory that exists, with the files that are not yet in place in a folder of it.
+    pub(crate) fn staged_in(path: &Path, folder: &Path) -> Result<Self, Error> {
+        let staging = tempfile::Builder::new()
+            .prefix("results-")
+            .tempdir_in(folder)
+            .map_err(|source| output_error(path, OutputFault::NotWritable(source)))?;
+        let directory = Directory { path: path.to_path_buf(), origin: Origin::Found };
+        Ok(Self { staging, directory, staged: Vec::new() })
+    }
+
     /// The directory.
     #[must_use]
     pub fn path(&self) -> &Path {
@@ -129,6 +139,19 @@ impl OutputDirectory {
     /// As [`write_array`](Self::write_array).
     pub fn write_bytes(&mut self, name: &str, bytes: &[u8]) -> Result<(), Error> {
         self.stage(name, |file| file.write_all(bytes))
+    }
+
+    /// Takes in a finished file that lies elsewhere on the same disk; it stays there as well.
+    pub(crate) fn link(&mut self, name: &str, file: &Path) -> Result<(), Error> {
+        let target = self.directory.path.join(name);
+        refuse_folder(&target)?;
+        let staged = self.staging.path().join(name);
+        fs::hard_link(file, &staged)
+            .or_else(|_| fs::copy(file, &staged).map(|_| ()))
+            .map_err(|source| output_error(&target, OutputFault::Write(source)))?;
+        self.staged.retain(|known| known != name);
+        self.staged.push(name.to_owned());
+        Ok(())
     }
 
     /// Moves everything to its place; earlier results of the same names are replaced.
@@ -203,6 +226,6 @@ fn refuse_folder(target: &Path) -> Result<(), Error> {
     Ok(())
 }
 
-fn output_error(path: &Path, fault: OutputFault) -> Error {
+pub(crate) fn output_error(path: &Path, fault: OutputFault) -> Error {
     Error::Output { path: path.to_path_buf(), fault }
 }

@@ -30,6 +30,15 @@ impl DataSet {
         if let Some(labels) = &self.labels {
             out.write_integers("labels.npy", labels.view())?;
         }
+        self.save_settings(out)
+    }
+
+    /// Stages `dataset.toml` alone, for arrays that are written in another way.
+    ///
+    /// # Errors
+    /// As [`DataSet::save`].
+    pub fn save_settings(&self, out: &mut OutputDirectory) -> Result<(), Error> {
+        self.check()?;
         out.write_text("dataset.toml", &render(self))
     }
 }

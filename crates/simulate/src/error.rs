@@ -41,6 +41,36 @@ pub enum Error {
     /// A schedule that records nothing.
     #[error("0 frames, but a schedule records at least 1")]
     NoFrames,
+    /// A tolerance of the adaptive method that is not a positive finite number.
+    #[error("the tolerance is {tolerance}, but it must be positive and finite")]
+    Tolerance {
+        /// The tolerance given.
+        tolerance: f64,
+    },
+    /// An amount of self-propulsion or noise that is negative or not finite.
+    #[error("the {name} is {value}, but it must be finite and not negative")]
+    Driving {
+        /// What it is.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A state of other cells.
+    #[error("a state of {positions} positions and {headings} directions is not one of these {cells} cells")]
+    State {
+        /// Number of cells of the simulation.
+        cells: usize,
+        /// Number of positions of the state.
+        positions: usize,
+        /// Number of directions of the state.
+        headings: usize,
+    },
+    /// Cells that no honeycomb of the box has.
+    #[error("a honeycomb of {cells} cells does not fit a periodic box")]
+    Honeycomb {
+        /// Number of cells asked for.
+        cells: usize,
+    },
     /// A cell that moves too far in one step: the time step is too large for the forces.
     #[error(
         "at time {time}, cell {cell} would move by {distance} in one step of {time_step} (limit {limit}): the time step \
@@ -78,6 +108,10 @@ impl Error {
                  does not change",
             ),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
+            Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
+            Self::Driving { .. } => None,
+            Self::State { .. } => Some("go on with the run that the state was taken from"),
+            Self::Honeycomb { .. } => Some("take a multiple of four, such as 100"),
             Self::NoFrames => Some("ask for one frame to get the end of the run"),
         }
     }

@@ -32,15 +32,23 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod driving;
 mod error;
+mod honeycomb;
 pub mod measure;
+mod method;
 mod placement;
 mod schedule;
 mod simulation;
+mod spatial_order;
 mod time_step;
 
+pub use driving::{Driving, Shear};
 pub use error::Error;
+pub use honeycomb::honeycomb;
+pub use method::Method;
 pub use placement::{Generator, RandomPlacement, generator};
-pub use schedule::{Completion, Event, Frame, Schedule, Summary, run};
-pub use simulation::Simulation;
+pub use schedule::{Completion, Event, Frame, RunState, Schedule, Summary, resume, run};
+pub use simulation::{Simulation, State};
+pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;

@@ -1,6 +1,8 @@
 //! Running a simulation for a time and recording frames of it.
 
-use crate::{Error, Simulation, measure::mean_square_velocity};
+use crate::measure::{BlockAverage, TransitionCounter, mean_square_velocity};
+use crate::{Error, Simulation};
+use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 
 /// How long to run and what to record.
@@ -29,7 +31,11 @@ impl Schedule {
         self.time / self.frames as f64
     }
 
-    fn steps_per_frame(&self) -> Result<usize, Error> {
+    /// Number of steps between two frames.
+    ///
+    /// # Errors
+    /// [`Error::NoFrames`], [`Error::Duration`] and [`Error::TimeStep`] for an impossible schedule.
+    pub fn steps_per_frame(&self) -> Result<usize, Error> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         match self {
             Self { frames: 0, .. } => Err(Error::NoFrames),
@@ -53,15 +59,30 @@ pub struct Frame<'a> {
 /// What an observer of a run is shown.
 #[derive(Debug, Clone, Copy)]
 pub enum Event<'a> {
-    /// A step was made: how many so far, and how many the schedule has.
+    /// A frame of the schedule was reached.
+    Frame(Frame<'a>),
+    /// A step was made, and its frame shown: how many so far, and how many the schedule has.
     Step {
         /// Steps made.
         done: usize,
         /// Steps of the schedule.
         total: usize,
+        /// The simulation after the step.
+        simulation: &'a Simulation,
+        /// What [`resume`] needs to go on from here.
+        state: &'a RunState,
     },
-    /// A frame of the schedule was reached.
-    Frame(Frame<'a>),
+}
+
+/// How far a run has come, besides the state of its simulation.
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+pub struct RunState {
+    /// Steps made.
+    pub steps: usize,
+    /// `⟨v²⟩` after each step in the second half of the schedule.
+    pub mean_square_velocity: BlockAverage,
+    /// T1 transitions from step to step in the second half of the schedule.
+    pub transitions: u64,
 }
 
 /// How a run ended.
@@ -80,6 +101,10 @@ pub struct Summary {
     pub steps: usize,
     /// `⟨v²⟩` over cells and over the steps in the second half of the schedule; `None` if the run was stopped before.
     pub mean_square_velocity: Option<f64>,
+    /// The standard error of the time average, which knows of the correlation of the series; see [`BlockAverage`].
+    pub mean_square_velocity_error: Option<f64>,
+    /// T1 transitions per cell and time in the second half of the schedule; `None` as above.
+    pub transition_rate: Option<f64>,
     /// Whether the run was stopped.
     pub completion: Completion,
 }
@@ -113,29 +138,86 @@ pub fn run(
     schedule: &Schedule,
     mut observe: impl FnMut(Event<'_>) -> ControlFlow<()>,
 ) -> Result<Summary, Error> {
+    resume(simulation, schedule, RunState::default(), &mut observe)
+}
+
+/// Goes on with a run of which a part was made: `simulation` is in the state that belongs to `state`.
+///
+/// The whole is, bit by bit, the run that was not interrupted.
+///
+/// # Errors
+/// As [`run`].
+///
+/// ```
+/// use std::ops::ControlFlow;
+/// use voronudge_geometry::{Domain, PeriodicBox};
+/// use voronudge_model::{Model, Parameters};
+/// use voronudge_simulate::{Event, RandomPlacement, RunState, Schedule, Simulation, generator, resume, run};
+/// let domain = PeriodicBox::new([4.0, 4.0]).map(Domain::Periodic)?;
+/// let new = || -> Result<Simulation, Box<dyn std::error::Error>> {
+///     let positions = RandomPlacement::new(16, PeriodicBox::new([4.0, 4.0])?).draw(&mut generator(1))?;
+///     Ok(Simulation::new(positions, domain, Model::chiral_voronoi(&Parameters::default()))?)
+/// };
+/// let schedule = Schedule { time: 1.0, time_step: 0.01, frames: 5 };
+/// let mut whole = new()?;
+/// run(&mut whole, &schedule, |_| ControlFlow::Continue(()))?;
+///
+/// let (mut part, mut kept) = (new()?, RunState::default());
+/// run(&mut part, &schedule, |event| match event {
+///     Event::Step { done: 37, state, .. } => {
+///         kept = state.clone();
+///         ControlFlow::Break(())
+///     }
+///     _ => ControlFlow::Continue(()),
+/// })?;
+/// let mut rest = new()?.in_state(part.state().clone())?;
+/// resume(&mut rest, &schedule, kept, |_| ControlFlow::Continue(()))?;
+/// assert_eq!(rest.state(), whole.state());
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+pub fn resume(
+    simulation: &mut Simulation,
+    schedule: &Schedule,
+    mut state: RunState,
+    mut observe: impl FnMut(Event<'_>) -> ControlFlow<()>,
+) -> Result<Summary, Error> {
     let steps_per_frame = schedule.steps_per_frame()?;
     let time_step = schedule.frame_interval() / steps_per_frame as f64;
     let total = steps_per_frame * schedule.frames;
-    let (mut steps, mut samples, mut sum) = (0, 0, 0.0);
     let mut completion = Completion::Finished;
-    'run: for index in 0..schedule.frames {
-        for _ in 0..steps_per_frame {
-            simulation.step(time_step)?;
-            steps += 1;
-            if 2 * steps > total {
-                sum += mean_square_velocity(simulation.velocities());
-                samples += 1;
-            }
-            if observe(Event::Step { done: steps, total }).is_break() {
+    let mut transitions = TransitionCounter::default();
+    while state.steps < total {
+        let counts = 2 * (state.steps + 1) > total;
+        if counts {
+            state.transitions += transitions.count(simulation.tessellation()) as u64;
+        }
+        simulation.step(time_step)?;
+        state.steps += 1;
+        if counts {
+            state.transitions += transitions.count(simulation.tessellation()) as u64;
+            state.mean_square_velocity.add(mean_square_velocity(simulation.velocities()));
+        }
+        if state.steps.is_multiple_of(steps_per_frame) {
+            let index = state.steps / steps_per_frame - 1;
+            if observe(Event::Frame(Frame { index, simulation })).is_break() {
                 completion = Completion::Stopped;
-                break 'run;
+                break;
             }
         }
-        if observe(Event::Frame(Frame { index, simulation })).is_break() {
+        let made = Event::Step { done: state.steps, total, simulation, state: &state };
+        if observe(made).is_break() {
             completion = Completion::Stopped;
             break;
         }
     }
-    let mean_square_velocity = (samples > 0).then(|| sum / f64::from(samples));
-    Ok(Summary { steps, mean_square_velocity, completion })
+    let samples = state.mean_square_velocity.count();
+    Ok(Summary {
+        steps: state.steps,
+        mean_square_velocity: state.mean_square_velocity.mean(),
+        transition_rate: (samples > 0).then(|| {
+            state.transitions as f64 / (samples as f64 * time_step * simulation.positions().len() as f64)
+        }),
+        mean_square_velocity_error: state.mean_square_velocity.standard_error(),
+        completion,
+    })
 }

@@ -63,7 +63,7 @@ fn a_run_can_be_stopped_between_frames() {
     let mut simulation = tissue(3.5, 0.2);
     let schedule = Schedule { time: 10.0, time_step: 0.02, frames: 1 };
     let summary = run(&mut simulation, &schedule, |event| match event {
-        Event::Step { done: 7, total: 500 } => ControlFlow::Break(()),
+        Event::Step { done: 7, total: 500, .. } => ControlFlow::Break(()),
         _ => ControlFlow::Continue(()),
     })
     .unwrap();

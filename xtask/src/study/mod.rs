@@ -3,6 +3,7 @@
 mod discover;
 mod nada;
 mod noise;
+mod phases;
 mod recovery;
 mod seeds;
 mod spectrum;
@@ -55,6 +56,10 @@ enum Study {
     Spectrum,
     /// Missing effects: found where there are none, found where there are some.
     Discover,
+    /// Mean square velocities of solids and liquids at two system sizes.
+    Velocities,
+    /// Largest Lyapunov exponents across the transition.
+    Lyapunov,
 }
 
 /// Runs a study.
@@ -65,6 +70,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Noise => noise::levels(arguments.seeds),
         Study::Coverage => noise::coverage(arguments.seeds),
         Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
+        Study::Velocities => phases::velocities(),
+        Study::Lyapunov => phases::lyapunov(arguments.seeds),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

@@ -2,6 +2,7 @@
 
 use crate::program::{command, fixture};
 use crate::scratch::{Folder, names};
+use std::ffi::OsString;
 use std::path::Path;
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
@@ -52,21 +53,22 @@ fn an_interrupted_search_leaves_nothing() {
 }
 
 #[test]
-fn an_interrupted_run_leaves_earlier_results_alone() {
+fn an_interrupted_run_leaves_earlier_results_alone_and_can_be_taken_up() {
     let out = Folder::new();
     out.write("positions.npy", "earlier");
     let (code, stdout, stderr) = interrupt(start(out.path()), out.path());
     assert_eq!((code, stdout.as_str()), (Some(130), ""));
-    assert!(stderr.contains("error: interrupted"), "{stderr}");
-    assert_eq!(out.names(), ["positions.npy"]);
+    assert!(stderr.contains("error: interrupted") && stderr.contains("--resume"), "{stderr}");
+    assert_eq!(out.names(), [".voronudge-run", "positions.npy"]);
     assert_eq!(std::fs::read(out.file("positions.npy")).unwrap(), b"earlier");
-}
 
-#[test]
-fn an_interrupted_run_takes_its_new_folder_away() {
-    let parent = Folder::new();
-    let out = parent.file("results");
-    let (code, ..) = interrupt(start(&out), &out);
-    assert_eq!(code, Some(130));
-    assert_eq!(names(parent.path()), Vec::<String>::new());
+    // Not by mistake, and not as another run.
+    let told = |line: &str, facts: &[&str]| {
+        let words = line.split_whitespace().map(OsString::from);
+        let arguments: Vec<OsString> = words.chain(["--out".into(), out.path().into()]).collect();
+        crate::refusal::assert_told(&arguments, facts);
+    };
+    told(LINE, &["interrupted"]);
+    told(&format!("{} --resume", LINE.replace("--alpha 1", "--alpha 0.5")), &["\"parameters\""]);
+    assert_eq!(out.names(), [".voronudge-run", "positions.npy"]);
 }

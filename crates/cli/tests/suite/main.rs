@@ -19,6 +19,7 @@ mod interruption;
 mod layouts;
 mod program;
 mod refusal;
+mod resumption;
 mod scratch;
 mod simulations;
 mod spectra;

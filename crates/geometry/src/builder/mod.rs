@@ -7,6 +7,7 @@
 mod rings;
 mod tile;
 
+use crate::moving::Repair;
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector};
 use rayon::prelude::*;
 use rings::{Rings, assemble};
@@ -39,6 +40,9 @@ impl HasPosition for Site {
 /// Sizes, relative to √(area per cell), of the displacements that break ties between cells on one circle. They move the
 /// question of who is a neighbour, not the cells. The box is sheared by as much, for ties among images of one cell.
 const TIE_BREAKS: [f64; 4] = [0.0, 1e-11, 1e-9, 1e-7];
+
+/// Largest distance of a position from the origin, in boxes: images are counted in 16 bits.
+pub(crate) const MOST_BOXES: f64 = 8192.0;
 
 /// Replaces the topology of `tessellation` by that of `positions`.
 pub(crate) fn rebuild(tessellation: &mut Tessellation, positions: &[Vector<f64>]) -> Result<(), Error> {
@@ -84,7 +88,7 @@ fn periodic(
         return Err(Error::TooFewCells { found: 0, required: 1 });
     }
     let images: Vec<[i32; 2]> = positions.iter().map(|r| cell_box.image(*r)).collect();
-    if let Some(cell) = images.iter().position(|n| n.iter().any(|n| n.unsigned_abs() > 8192)) {
+    if let Some(cell) = images.iter().position(|n| n.iter().any(|n| f64::from(*n).abs() > MOST_BOXES)) {
         return Err(Error::Position { cell, x: positions[cell].x, y: positions[cell].y });
     }
     let spacing = (cell_box.area() / cells as f64).sqrt();
@@ -110,6 +114,8 @@ fn periodic(
         }
         if outcome.is_ok() {
             rings::refer_to_given_positions(tessellation, &images);
+            // Ties were broken by whatever came first; the flips break them by a rule. Nearly flat triangles stay.
+            let _ = Repair::default().attempt(tessellation, positions);
             break;
         }
     }

@@ -2,6 +2,7 @@
 
 mod boundaries;
 mod large;
+mod moving;
 mod overlap;
 mod polygon;
 mod refused;

@@ -1,5 +1,21 @@
 //! Measurements on a state: numbers of a field or of a tissue.
 
+mod block_average;
+mod displacement;
+mod hexatic;
+mod lyapunov;
+mod shape;
+mod structure_factor;
+mod transitions;
+
+pub use block_average::BlockAverage;
+pub use displacement::mean_square_displacement;
+pub use hexatic::{Hexatic, hexatic};
+pub use lyapunov::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};
+pub use shape::shape_indices;
+pub use structure_factor::{StructureFactor, structure_factor};
+pub use transitions::TransitionCounter;
+
 use voronudge_geometry::{CellPolygon, Tessellation, Vector};
 use voronudge_model::{ForceTerm, Model};
 
@@ -13,40 +29,6 @@ use voronudge_model::{ForceTerm, Model};
 pub fn mean_square_velocity(velocities: &[Vector<f64>]) -> f64 {
     let sum: f64 = velocities.iter().map(Vector::norm_squared).sum();
     sum / velocities.len().max(1) as f64
-}
-
-/// The hexatic order `Ψ₆ = |(1/N) Σ_i (1/z_i) Σ_j exp(6iθ_ij)|` over the neighbours `j` of each cell, in directions
-/// `θ_ij`: one on a triangular lattice, `1/√N` or so where directions are random.
-///
-/// ```
-/// use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-/// use voronudge_simulate::measure::hexatic_order;
-/// let height = 3f64.sqrt() / 2.0;
-/// let positions: Vec<_> = (0..16)
-///     .map(|i| Vector::new((i % 4) as f64 + 0.5 * (i / 4 % 2) as f64, (i / 4) as f64 * height))
-///     .collect();
-/// let domain = Domain::Periodic(PeriodicBox::new([4.0, 4.0 * height])?);
-/// let tessellation = Tessellation::new(&positions, domain)?;
-/// assert!((hexatic_order(&tessellation, &positions) - 1.0).abs() < 1e-12);
-/// # Ok::<(), voronudge_geometry::Error>(())
-/// ```
-pub fn hexatic_order(tessellation: &Tessellation, positions: &[Vector<f64>]) -> f64 {
-    let cells = tessellation.len();
-    let sum: Vector<f64> = (0..cells)
-        .map(|cell| {
-            let ring = tessellation.ring(cell);
-            let sides = ring.len().max(1) as f64;
-            let own: Vector<f64> = ring
-                .map(|h| {
-                    let d = tessellation.displacement(positions, cell, h);
-                    let angle = 6.0 * d.y.atan2(d.x);
-                    Vector::new(angle.cos(), angle.sin())
-                })
-                .sum();
-            own / sides
-        })
-        .sum();
-    sum.norm() / cells.max(1) as f64
 }
 
 /// The energy `E = Σ_i Σ_t c_t e_t(A_i, P_i)` of the cells with a closed polygon, for positions (N).

@@ -1,0 +1,246 @@
+//! `voronudge simulate`: trajectories of the model in a periodic box.
+
+mod recorder;
+mod report;
+mod start;
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, environment};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use clap::{Args, ValueEnum};
+use ndarray::Array3;
+use recorder::{Kept, Recorder};
+use report::{Report, Request, Spread};
+use start::Start;
+use std::ops::ControlFlow;
+use std::time::{Duration, Instant};
+use voronudge_geometry::{Domain, FieldOfView, Tessellation, areas};
+use voronudge_io::{Boundary, DataSet, YAxis};
+use voronudge_model::{Model, stress};
+use voronudge_simulate::measure::{hexatic, shape_indices};
+use voronudge_simulate::{
+    Completion, Driving, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
+};
+
+/// Simulates the chiral Voronoi model in a periodic box. The output is a data set.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Number of cells [default: 100].
+    #[arg(long, allow_negative_numbers = true)]
+    cells: Option<usize>,
+    /// Periodic box [default: unit area per cell, a square unless the start is a honeycomb].
+    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
+    box_lengths: Option<Vec<f64>>,
+    /// Starting positions: `random`, `honeycomb`, or the last frame of a data set.
+    #[arg(long, value_name = "random|honeycomb|DATASET", default_value = "random")]
+    start: String,
+    /// Least distance between random positions, in mean spacings.
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
+    least_distance: f64,
+    /// Duration.
+    #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
+    time: f64,
+    /// Time step; the largest one of the adaptive method.
+    #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
+    dt: f64,
+    /// Number of frames to keep, evenly spaced; the last at the end.
+    #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
+    frames: usize,
+    /// Method of integration.
+    #[arg(long, value_enum, default_value_t = MethodName::Rk4)]
+    method: MethodName,
+    /// Error of a displacement that the adaptive method allows in one step, in mean spacings.
+    #[arg(long, value_name = "ERROR", default_value_t = 1e-4, allow_negative_numbers = true)]
+    tolerance: f64,
+    /// Speed of self-propulsion.
+    #[arg(long, value_name = "SPEED", default_value_t = 0.0, allow_negative_numbers = true)]
+    self_propulsion: f64,
+    /// Rotational diffusion of the directions of self-propulsion.
+    #[arg(long, value_name = "D_R", default_value_t = 0.0, allow_negative_numbers = true)]
+    rotational_diffusion: f64,
+    /// Translational diffusion: noise of the positions.
+    #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true)]
+    diffusion: f64,
+    /// Go on with the run that was interrupted in --out.
+    #[arg(long)]
+    resume: bool,
+    /// Seconds between checkpoints.
+    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, allow_negative_numbers = true)]
+    checkpoint: f64,
+    #[command(flatten)]
+    parameters: ParameterArguments,
+    #[command(flatten)]
+    effects: EffectArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Classical Runge–Kutta, fourth order, steps of one size.
+    Rk4,
+    /// Bogacki–Shampine, third order, steps by an estimate of the error.
+    Adaptive,
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("simulate", &arguments.common)?;
+    let out = arguments.common.required_out()?.clone();
+    let parameters = arguments.parameters.resolve()?;
+    let effects = arguments.effects.resolve()?;
+    let every = Duration::try_from_secs_f64(arguments.checkpoint).map_err(|_| {
+        Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", arguments.checkpoint))
+            .with_hint("leave --checkpoint out for 30 seconds")
+    })?;
+    let start = Start::of(&arguments)?;
+    let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
+    let domain = Domain::Periodic(start.cell_box);
+    let tessellation = Tessellation::new(&start.positions, domain)?;
+    let view = FieldOfView::new(&tessellation, &start.positions, f64::INFINITY);
+    let surroundings = environment(&tessellation, &start.positions, &view)?;
+    let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
+    let request = Request {
+        cells,
+        box_lengths: lengths,
+        start: start.origin,
+        time: arguments.time,
+        dt: arguments.dt,
+        frames: arguments.frames,
+        method: match arguments.method {
+            MethodName::Rk4 => Method::RungeKutta4,
+            MethodName::Adaptive => Method::BogackiShampine { tolerance: arguments.tolerance },
+        },
+        parameters: (&parameters).into(),
+        effects,
+        driving: Driving {
+            shear: None,
+            speed: arguments.self_propulsion,
+            rotational_diffusion: arguments.rotational_diffusion,
+            diffusion: arguments.diffusion,
+            seed: arguments.common.seed,
+        },
+    };
+    let mut simulation = Simulation::new(start.positions, domain, model)?
+        .with_method(request.method)?
+        .with_driving(request.driving)?;
+    let schedule = Schedule { time: request.time, time_step: request.dt, frames: request.frames };
+    let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
+    if request.method == Method::RungeKutta4 && request.dt > advised {
+        run.warn(format!(
+            "the time step {} is above the {advised:.2e} advised for these parameters; velocities can come out wrong by tens of per cent",
+            request.dt
+        ));
+    }
+    let (mut recorder, kept) =
+        Recorder::open(&out, &request, schedule.steps_per_frame()?, every, arguments.resume)?;
+    let mut so_far = RunState::default();
+    if let Some(Kept { run, state }) = kept {
+        so_far = run;
+        simulation = simulation.in_state(state)?;
+    }
+    let steps_before = so_far.steps;
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let begun = Instant::now();
+    let mut fault = None;
+    let outcome = resume(&mut simulation, &schedule, so_far, |event| {
+        let written = match event {
+            Event::Frame(frame) => recorder.frame(frame.simulation),
+            Event::Step { done, total, simulation, state } => {
+                if progress.step("simulate", done as u64, total as u64).is_break() {
+                    let kept = recorder.checkpoint(simulation, state);
+                    fault = Some(kept.err().unwrap_or_else(|| interrupted(simulation.time())));
+                    return ControlFlow::Break(());
+                }
+                recorder.after_step(simulation, state)
+            }
+        };
+        match written {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(failure) => {
+                fault = Some(failure);
+                ControlFlow::Break(())
+            }
+        }
+    });
+    progress.finish();
+    if let Some(failure) = fault {
+        return Err(failure);
+    }
+    let summary = match outcome {
+        Ok(summary) => summary,
+        Err(error) => {
+            // It would fail in the same way again.
+            recorder.discard()?;
+            return Err(error.into());
+        }
+    };
+    debug_assert_eq!(summary.completion, Completion::Finished);
+    let seconds = begun.elapsed().as_secs_f64();
+    let mut results = recorder.results()?;
+    settings(&simulation, lengths, &schedule, start.length_unit, start.time_unit)
+        .save_settings(&mut results)?;
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
+    let hexatic = hexatic(tessellation, positions);
+    let report = Report {
+        run: run.record(None),
+        request,
+        mean_square_velocity: summary.mean_square_velocity,
+        mean_square_velocity_error: summary.mean_square_velocity_error,
+        t1_rate: summary.transition_rate,
+        hexatic_order: hexatic.order(),
+        hexatic_mean_modulus: hexatic.mean_modulus,
+        stress: stress(tessellation, positions, simulation.model(), |_| true),
+        area: Spread::of(&areas(tessellation, positions)),
+        shape_index: Spread::of(&shape_indices(tessellation, positions)),
+        steps: summary.steps,
+        steps_per_second: (summary.steps - steps_before) as f64 / seconds,
+    };
+    let json = serde_json::to_string_pretty(&report)?;
+    results.write_text("report.json", &json)?;
+    let text = format!(
+        "{cells} cells, {} steps, {:.0} steps per second\nmean square velocity over the second half: {}{}\nwritten to {}\n",
+        report.steps,
+        report.steps_per_second,
+        report.mean_square_velocity.map_or("none".into(), |v| format!("{v:.4e}")),
+        report.mean_square_velocity_error.map_or(String::new(), |e| format!(" ± {e:.1e}")),
+        results.path().display()
+    );
+    run.finish(Some(results), &json, &text)?;
+    recorder.discard()?;
+    Ok(Answer::Positive)
+}
+
+fn interrupted(time: f64) -> Failure {
+    Failure::interrupted_at(format!("interrupted at time {time:.6}; the run so far is kept"))
+        .with_hint("the same command with --resume goes on from there")
+}
+
+/// The data set without its frames, which are written as the run goes on.
+fn settings(
+    simulation: &Simulation,
+    lengths: [f64; 2],
+    schedule: &Schedule,
+    length_unit: String,
+    time_unit: String,
+) -> DataSet {
+    let cells = simulation.positions().len();
+    let positions =
+        Array3::from_shape_fn((1, cells, 2), |(_, cell, axis)| simulation.positions()[cell][axis]);
+    DataSet {
+        positions,
+        velocities: None,
+        flow: None,
+        labels: None,
+        boundary: Boundary::Periodic { lengths },
+        frame_interval: schedule.frame_interval(),
+        length_unit,
+        time_unit,
+        y_axis: YAxis::Up,
+        unwrapped: true,
+        position_noise: None,
+        velocity_noise: None,
+        inputs: Vec::new(),
+    }
+}

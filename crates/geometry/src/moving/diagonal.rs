@@ -1,0 +1,100 @@
+//! Which diagonal of a quadrilateral is a Delaunay edge.
+
+use crate::{Domain, Vector, cross};
+use robust::{Coord, incircle};
+
+/// A cell and the lattice vectors to the image that is meant.
+pub(super) type Site = (u32, [i16; 2]);
+
+/// Share of the sum of magnitudes below which a sum is taken for zero, in ties only.
+const CANCELLED: f64 = 1e-9;
+
+/// Whether the diagonal from the first to the third of four sites is an edge of the Delaunay triangulation. The sites are
+/// counter-clockwise, and so are the two triangles that the diagonal makes of them.
+///
+/// The sign of the in-circle determinant is exact. The answer depends on the four sites only, not on the one that is
+/// named first: coordinates are taken relative to the lowest cell. Four sites on one circle get the diagonal that they
+/// would have if each cell were lifted off the paraboloid by an infinitesimal amount, the lowest cell downwards most:
+/// a fan from the lowest cell. If the images of one cell balance, the box is sheared, then stretched, by an infinitesimal
+/// amount.
+pub(super) fn is_delaunay(positions: &[Vector<f64>], domain: &Domain, sites: [Site; 4]) -> bool {
+    let first = (0..4).min_by_key(|&k| sites[k]).unwrap_or(0);
+    let ordered: [Site; 4] = std::array::from_fn(|k| sites[(first + k) % 4]);
+    let (origin, [x, y]) = ordered[0];
+    let at = ordered.map(|(cell, image)| {
+        let image = [image[0] - x, image[1] - y];
+        domain.displacement(positions[origin as usize], positions[cell as usize], image)
+    });
+    let coordinates = at.map(|r| Coord { x: r.x, y: r.y });
+    let inside = match incircle(coordinates[0], coordinates[1], coordinates[2], coordinates[3]) {
+        0.0 => tie(ordered.map(|(cell, _)| cell), at),
+        sign => sign,
+    };
+    // Going on by one site is an odd permutation of the rows of the determinant.
+    if first % 2 == 0 { inside <= 0.0 } else { inside >= 0.0 }
+}
+
+/// The sign of the determinant of four sites on one circle after the infinitesimal displacements.
+fn tie(cells: [u32; 4], at: [Vector<f64>; 4]) -> f64 {
+    let orientation = |a: usize, b: usize, c: usize| cross(at[b] - at[a], at[c] - at[a]);
+    let cofactors =
+        [orientation(1, 2, 3), -orientation(0, 2, 3), orientation(0, 1, 3), -orientation(0, 1, 2)];
+    let sum = |height: &dyn Fn(usize) -> f64| {
+        let (mut sum, mut magnitude) = (0.0, 0.0);
+        for (k, cofactor) in cofactors.iter().enumerate() {
+            sum += cofactor * height(k);
+            magnitude += (cofactor * height(k)).abs();
+        }
+        (sum.abs() > CANCELLED * magnitude).then_some(sum)
+    };
+    let mut lowest_first = cells;
+    lowest_first.sort_unstable();
+    lowest_first
+        .iter()
+        .find_map(|&lowered| sum(&|k| if cells[k] == lowered { -1.0 } else { 0.0 }))
+        .or_else(|| sum(&|k| at[k].x * at[k].y))
+        .or_else(|| sum(&|k| at[k].y * at[k].y))
+        .unwrap_or(0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::PeriodicBox;
+
+    fn all_rotations(positions: &[Vector<f64>], domain: &Domain, sites: [Site; 4]) -> bool {
+        let turned = |by: usize| std::array::from_fn(|k| sites[(by + k) % 4]);
+        let answers: [bool; 4] = std::array::from_fn(|by| is_delaunay(positions, domain, turned(by)));
+        assert_eq!(answers[0], answers[2]);
+        assert_eq!(answers[1], answers[3]);
+        assert_ne!(answers[0], answers[1], "one diagonal of the two");
+        answers[0]
+    }
+
+    #[test]
+    fn the_shorter_diagonal_of_a_rhombus_is_chosen() {
+        let positions = [[0.0, -1.0], [1.5, 0.0], [0.0, 1.0], [-1.5, 0.0]].map(|[x, y]| Vector::new(x, y));
+        let sites = [0, 1, 2, 3].map(|cell| (cell, [0, 0]));
+        assert!(all_rotations(&positions, &Domain::Open, sites));
+    }
+
+    #[test]
+    fn four_sites_on_a_circle_make_a_fan_from_the_lowest() {
+        let corners = [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[x, y]| Vector::new(x, y));
+        for lowest in 0..4 {
+            let positions: Vec<_> = (0..4).map(|k| corners[(k + lowest) % 4]).collect();
+            let sites = [0, 1, 2, 3].map(|cell| (cell, [0, 0]));
+            assert!(all_rotations(&positions, &Domain::Open, sites));
+        }
+    }
+
+    #[test]
+    fn images_of_one_cell_on_a_circle_are_decided_too() {
+        let positions = [Vector::new(0.3, 0.2)];
+        let sites = [[0, 0], [1, 0], [1, 1], [0, 1]].map(|image| (0, image));
+        for lengths in [[1.0, 1.0], [1.0, 3.0]] {
+            let domain = Domain::Periodic(PeriodicBox::new(lengths).unwrap());
+            all_rotations(&positions, &domain, sites);
+        }
+    }
+}

@@ -1,0 +1,145 @@
+//! Lawson's flips: edges that are not Delaunay edges are exchanged for the other diagonal until none is left.
+
+use super::diagonal::{Site, is_delaunay};
+use super::scan::Edge;
+use crate::{Tessellation, Vector};
+
+/// A cell that no flip has touched.
+const UNTOUCHED: u32 = u32::MAX;
+
+/// Flips per cell after which a triangulation is given up: a disordered one needs about one.
+const FLIPS_PER_CELL: usize = 50;
+
+/// The flips did not come to an end: rounding, or triangles that were turned over.
+pub(super) struct Tangled;
+
+/// The rings that flips have changed, apart from the arrays of the tessellation. Memory is kept from call to call.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Lawson {
+    /// For each cell, its place in `rings`.
+    slot: Vec<u32>,
+    /// The cells touched, in the order of their rings.
+    touched: Vec<u32>,
+    rings: Vec<Vec<Site>>,
+    queue: Vec<Edge>,
+}
+
+impl Lawson {
+    /// Flips until every edge is a Delaunay edge, given the edges that may not be. Returns the number of flips.
+    pub fn settle(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        suspects: &[Edge],
+    ) -> Result<usize, Tangled> {
+        self.forget();
+        self.slot.resize(tessellation.len(), UNTOUCHED);
+        self.queue.clear();
+        self.queue.extend(suspects.iter().rev());
+        let most = FLIPS_PER_CELL * tessellation.len().max(20);
+        let mut flips = 0;
+        while let Some(edge) = self.queue.pop() {
+            let Some([before, after]) = self.opposite(tessellation, edge) else {
+                continue; // flipped away
+            };
+            let own = (edge.from, [0, 0]);
+            if is_delaunay(positions, &tessellation.domain(), [own, before, edge.to, after]) {
+                continue;
+            }
+            flips += 1;
+            if flips > most || !self.flip(tessellation, [own, before, edge.to, after]) {
+                self.forget();
+                return Err(Tangled);
+            }
+        }
+        for &cell in &self.touched {
+            let ring = &mut self.rings[self.slot[cell as usize] as usize];
+            let lowest = (0..ring.len()).min_by_key(|&m| ring[m]).unwrap_or(0);
+            ring.rotate_left(lowest);
+        }
+        Ok(flips)
+    }
+
+    /// The cells whose rings have changed.
+    pub fn touched(&self) -> &[u32] {
+        &self.touched
+    }
+
+    /// The new ring of a cell, from its lowest neighbour on, if flips have changed it.
+    #[inline]
+    pub fn ring(&self, cell: usize) -> Option<&[Site]> {
+        match self.slot[cell] {
+            UNTOUCHED => None,
+            slot => Some(&self.rings[slot as usize]),
+        }
+    }
+
+    /// Forgets all changes.
+    pub fn forget(&mut self) {
+        for cell in self.touched.drain(..) {
+            self.slot[cell as usize] = UNTOUCHED;
+        }
+    }
+
+    /// The sites before and after an edge in the ring of its first cell.
+    fn opposite(&self, tessellation: &Tessellation, edge: Edge) -> Option<[Site; 2]> {
+        let around = |sides: usize, site: &dyn Fn(usize) -> Site| {
+            let m = (0..sides).find(|&m| site(m) == edge.to)?;
+            Some([site(if m == 0 { sides - 1 } else { m - 1 }), site(if m + 1 == sides { 0 } else { m + 1 })])
+        };
+        let cell = edge.from as usize;
+        match self.ring(cell) {
+            Some(ring) => around(ring.len(), &|m| ring[m]),
+            None => {
+                let ring = tessellation.ring(cell);
+                around(ring.len(), &|m| {
+                    (tessellation.neighbour[ring.start + m], tessellation.image[ring.start + m])
+                })
+            }
+        }
+    }
+
+    /// Exchanges the diagonal between the first and the third of four counter-clockwise sites for the other. False if the
+    /// rings are not those of a triangulation.
+    fn flip(&mut self, tessellation: &Tessellation, sites: [Site; 4]) -> bool {
+        let seen = |from: usize, to: usize| {
+            let ((_, origin), (cell, image)) = (sites[from], sites[to]);
+            (cell, [image[0] - origin[0], image[1] - origin[1]])
+        };
+        let mut sound = true;
+        for (end, other) in [(0, 2), (2, 0)] {
+            let ring = self.touch(tessellation, sites[end].0);
+            let site = seen(end, other);
+            let place = ring.iter().position(|s| *s == site);
+            sound &= place.map(|m| ring.remove(m)).is_some();
+        }
+        // Seen from the second site, the quadrilateral opens from the third to the first; from the fourth, the other way.
+        for (end, other, next) in [(1, 3, 0), (3, 1, 2)] {
+            let ring = self.touch(tessellation, sites[end].0);
+            let following = seen(end, next);
+            let place = ring.iter().position(|s| *s == following);
+            sound &= place.map(|m| ring.insert(m, seen(end, other))).is_some();
+        }
+        for (from, to) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+            self.queue.push(Edge { from: sites[from].0, to: seen(from, to) });
+        }
+        sound
+    }
+
+    fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
+        let slot = &mut self.slot[cell as usize];
+        if *slot == UNTOUCHED {
+            let next = self.touched.len();
+            *slot = next as u32;
+            self.touched.push(cell);
+            if self.rings.len() == next {
+                self.rings.push(Vec::new());
+            }
+            let ring = tessellation.ring(cell as usize);
+            let neighbours = tessellation.neighbour[ring.clone()].iter().copied();
+            self.rings[next].clear();
+            self.rings[next].extend(neighbours.zip(tessellation.image[ring].iter().copied()));
+        }
+        &mut self.rings[*slot as usize]
+    }
+}

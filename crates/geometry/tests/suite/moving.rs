@@ -1,0 +1,186 @@
+//! Flips against a tessellation anew: the same arrays, whatever the path.
+
+#![allow(clippy::unwrap_used)]
+
+use crate::samples::{honeycomb, periodic, random, sheared, squares};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
+use voronudge_geometry::{Domain, Error, MovingTessellation, PeriodicBox, Renewal, Tessellation, Vector};
+
+/// A jittered lattice of `side²` cells: disordered, with few very close pairs.
+fn liquid(side: usize, jitter: f64, seed: u64) -> Vec<Vector<f64>> {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    (squares(side, side).iter())
+        .map(|r| r + Vector::new(rng.random_range(-jitter..jitter), rng.random_range(-jitter..jitter)))
+        .collect()
+}
+
+fn shake(positions: &mut [Vector<f64>], size: f64, rng: &mut Pcg64Mcg) {
+    for r in positions {
+        *r += Vector::new(rng.random_range(-size..size), rng.random_range(-size..size));
+    }
+}
+
+/// Makes `steps` random displacements of a size and compares after each; returns (flips, renewals built anew).
+fn follow(
+    positions: &mut [Vector<f64>],
+    domain: Domain,
+    size: f64,
+    steps: usize,
+    seed: u64,
+) -> (usize, usize) {
+    let mut rng = Pcg64Mcg::seed_from_u64(seed);
+    let mut moving = MovingTessellation::new(positions, domain).unwrap();
+    let (mut flips, mut rebuilt) = (0, 0);
+    for step in 0..steps {
+        shake(positions, size, &mut rng);
+        match moving.renew(positions).unwrap() {
+            Renewal::Flipped(count) => flips += count,
+            Renewal::Rebuilt => rebuilt += 1,
+        }
+        assert!(
+            *moving.tessellation() == Tessellation::new(positions, domain).unwrap(),
+            "seed {seed}, step {step}"
+        );
+    }
+    (flips, rebuilt)
+}
+
+#[test]
+fn flips_give_what_a_tessellation_anew_gives() -> Result<(), Error> {
+    for seed in 0..40 {
+        let mut positions = liquid(12, 0.45, seed);
+        let (flips, rebuilt) = follow(&mut positions, periodic([12.0; 2])?, 0.03, 40, seed);
+        assert!(flips > 100 && rebuilt < 10, "{flips} flips, {rebuilt} built anew");
+    }
+    Ok(())
+}
+
+#[test]
+fn large_displacements_are_followed_too() -> Result<(), Error> {
+    let (mut flips, mut rebuilt) = (0, 0);
+    for (k, size) in [0.1, 0.2, 0.5, 3.0].into_iter().enumerate() {
+        let mut positions = liquid(15, 0.45, 100 + k as u64);
+        let counts = follow(&mut positions, periodic([15.0; 2])?, size, 30, k as u64);
+        flips += counts.0;
+        rebuilt += counts.1;
+    }
+    assert!(flips > 1000, "{flips}");
+    assert!(rebuilt > 30, "{rebuilt}");
+    Ok(())
+}
+
+#[test]
+fn small_and_narrow_boxes_are_followed() -> Result<(), Error> {
+    for seed in 0..60 {
+        for (cells, lengths, offset) in
+            [(1, [1.0, 1.3], 0.2), (2, [1.0, 2.0], 0.0), (5, [2.0, 2.5], 0.7), (20, [2.0, 10.0], -3.1)]
+        {
+            let mut positions = random(cells, lengths, seed);
+            follow(&mut positions, sheared(lengths, offset)?, 0.02, 20, seed);
+        }
+    }
+    Ok(())
+}
+
+#[test]
+fn many_threads_worth_of_cells_are_followed() -> Result<(), Error> {
+    let mut positions = liquid(70, 0.45, 7);
+    let (flips, _) = follow(&mut positions, periodic([70.0; 2])?, 0.02, 5, 7);
+    assert!(flips > 500, "{flips}");
+    Ok(())
+}
+
+#[test]
+fn nothing_moves_and_nothing_flips() -> Result<(), Error> {
+    let (lattice, lengths) = honeycomb(6, 6);
+    for (positions, domain) in [(lattice, periodic(lengths)?), (squares(6, 5), periodic([6.0, 5.0])?)] {
+        let mut moving = MovingTessellation::new(&positions, domain)?;
+        assert_eq!(moving.renew(&positions)?, Renewal::Flipped(0));
+    }
+    Ok(())
+}
+
+/// Four cells on each circle, exactly: both ways break the tie by the same rule, wherever the cells come from.
+#[test]
+fn a_square_lattice_is_reached_from_all_sides() -> Result<(), Error> {
+    let lattice = squares(9, 8);
+    let domain = periodic([9.0, 8.0])?;
+    let expected = Tessellation::new(&lattice, domain)?;
+    for seed in 0..20 {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let mut positions = lattice.clone();
+        shake(&mut positions, 0.1, &mut rng);
+        let mut moving = MovingTessellation::new(&positions, domain)?;
+        moving.renew(&lattice)?;
+        assert!(*moving.tessellation() == expected, "{seed}");
+    }
+    Ok(())
+}
+
+#[test]
+fn cells_that_run_across_the_boundary_keep_their_neighbours() -> Result<(), Error> {
+    let domain = periodic([10.0; 2])?;
+    let mut positions = liquid(10, 0.4, 3);
+    let mut moving = MovingTessellation::new(&positions, domain)?;
+    let velocities = liquid(10, 0.4, 4);
+    for _ in 0..400 {
+        for (i, (r, v)) in positions.iter_mut().zip(&velocities).enumerate() {
+            *r += Vector::new(0.1, -0.07) + v * (0.002 * (i as f64).sin());
+        }
+        moving.renew(&positions)?;
+    }
+    assert!(positions.iter().all(|r| r.x > 30.0), "several boxes on");
+    assert_eq!(*moving.tessellation(), Tessellation::new(&positions, domain)?);
+    Ok(())
+}
+
+#[test]
+fn a_box_that_is_sheared_is_followed() -> Result<(), Error> {
+    let mut positions = liquid(12, 0.4, 5);
+    let mut rng = Pcg64Mcg::seed_from_u64(5);
+    let mut moving = MovingTessellation::new(&positions, periodic([12.0; 2])?)?;
+    let mut flips = 0;
+    for step in 1..=400 {
+        shake(&mut positions, 0.01, &mut rng);
+        let strain = 0.01 * f64::from(step);
+        for r in &mut positions {
+            r.x += 0.01 * r.y;
+        }
+        let domain = Domain::Periodic(PeriodicBox::sheared([12.0; 2], 12.0 * strain)?);
+        if let Renewal::Flipped(count) = moving.renew_in(&positions, domain)? {
+            flips += count;
+        }
+        assert!(*moving.tessellation() == Tessellation::new(&positions, domain)?, "{step}");
+    }
+    assert!(flips > 500, "{flips}");
+    Ok(())
+}
+
+#[test]
+fn unusable_positions_are_refused_and_can_be_followed_by_good_ones() -> Result<(), Error> {
+    let domain = periodic([8.0; 2])?;
+    let positions = liquid(8, 0.4, 6);
+    let mut moving = MovingTessellation::new(&positions, domain)?;
+    for wrong in [Vector::new(f64::NAN, 0.0), Vector::new(1.0, f64::INFINITY), positions[5]] {
+        let mut broken = positions.clone();
+        broken[3] = wrong;
+        assert!(moving.renew(&broken).is_err());
+        moving.renew(&positions)?;
+        assert_eq!(*moving.tessellation(), Tessellation::new(&positions, domain)?);
+    }
+    let fewer = &positions[..50];
+    assert_eq!(moving.renew(fewer)?, Renewal::Rebuilt);
+    assert_eq!(*moving.tessellation(), Tessellation::new(fewer, domain)?);
+    Ok(())
+}
+
+#[test]
+fn an_open_field_is_built_anew() -> Result<(), Error> {
+    let mut positions = liquid(8, 0.4, 8);
+    let mut moving = MovingTessellation::new(&positions, Domain::Open)?;
+    shake(&mut positions, 0.05, &mut Pcg64Mcg::seed_from_u64(1));
+    assert_eq!(moving.renew(&positions)?, Renewal::Rebuilt);
+    assert_eq!(*moving.tessellation(), Tessellation::new(&positions, Domain::Open)?);
+    Ok(())
+}

@@ -1,0 +1,172 @@
+//! What moves cells besides the model: shear of the box, self-propulsion, noise.
+
+use crate::Error;
+use rand::Rng;
+use rand_distr::StandardNormal;
+use rand_pcg::Pcg64;
+use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
+use voronudge_geometry::Vector;
+
+/// Cells that share a stream of random numbers.
+const CHUNK: usize = 1024;
+
+/// Simple shear of the periodic box (Lees–Edwards): the image one box above is displaced by `γ(t) L_y` along x.
+///
+/// Cells are carried along by the affine flow `γ̇ y x̂`, with `y` unwrapped.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub enum Shear {
+    /// `γ = strain` from the start: the starting positions are sheared too.
+    Step {
+        /// The strain γ.
+        strain: f64,
+    },
+    /// `γ = rate · t`
+    Steady {
+        /// The strain rate γ̇, in 1/time.
+        rate: f64,
+    },
+    /// `γ = amplitude · sin(angular_frequency · t)`
+    Oscillatory {
+        /// The largest strain.
+        amplitude: f64,
+        /// The angular frequency ω, in 1/time.
+        angular_frequency: f64,
+    },
+}
+
+impl Shear {
+    /// The strain γ at a time.
+    pub fn strain(&self, time: f64) -> f64 {
+        match *self {
+            Self::Step { strain } => strain,
+            Self::Steady { rate } => rate * time,
+            Self::Oscillatory { amplitude, angular_frequency } => {
+                amplitude * (angular_frequency * time).sin()
+            }
+        }
+    }
+
+    /// The strain rate γ̇ at a time, in 1/time.
+    ///
+    /// ```
+    /// use voronudge_simulate::Shear;
+    /// let shear = Shear::Oscillatory { amplitude: 0.1, angular_frequency: 2.0 };
+    /// let slope = (shear.strain(0.3 + 1e-6) - shear.strain(0.3 - 1e-6)) / 2e-6;
+    /// assert!((shear.rate(0.3) - slope).abs() < 1e-9);
+    /// ```
+    pub fn rate(&self, time: f64) -> f64 {
+        match *self {
+            Self::Step { .. } => 0.0,
+            Self::Steady { rate } => rate,
+            Self::Oscillatory { amplitude, angular_frequency } => {
+                amplitude * angular_frequency * (angular_frequency * time).cos()
+            }
+        }
+    }
+}
+
+/// Motion that the model does not have. The default is none.
+///
+/// ```text
+/// dr_i = (v_i(r) + γ̇ y_i x̂ + v₀ (cos θ_i, sin θ_i)) dt + √(2D) dW_i        dθ_i = √(2D_r) dW′_i
+/// ```
+///
+/// Noise is additive and is put in at the end of each step: of weak order one in `Δt`, without a step-size bias of its own
+/// (Euler–Maruyama for the noise, the chosen method for the rest). Its numbers come from the seed, the step and the cell,
+/// whatever the number of threads.
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+pub struct Driving {
+    /// Shear of the box.
+    pub shear: Option<Shear>,
+    /// Speed of self-propulsion `v₀`, in length/time.
+    pub speed: f64,
+    /// Rotational diffusion `D_r` of the directions of self-propulsion, in 1/time.
+    pub rotational_diffusion: f64,
+    /// Translational diffusion `D`, in length²/time.
+    pub diffusion: f64,
+    /// Seed of noise and of the first directions.
+    pub seed: u64,
+}
+
+impl Driving {
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        let amounts = [
+            ("speed of self-propulsion", self.speed),
+            ("rotational diffusion", self.rotational_diffusion),
+            ("translational diffusion", self.diffusion),
+        ];
+        for (name, value) in amounts {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(Error::Driving { name, value });
+            }
+        }
+        Ok(())
+    }
+
+    /// Random directions of self-propulsion (N, radians); none if nothing propels itself.
+    pub(crate) fn first_headings(&self, cells: usize) -> Vec<f64> {
+        if self.speed == 0.0 {
+            return Vec::new();
+        }
+        let mut rng = stream(self.seed, u64::MAX, 0);
+        (0..cells).map(|_| rng.random_range(0.0..std::f64::consts::TAU)).collect()
+    }
+
+    /// Adds the streaming of the shear and the self-propulsion to velocities.
+    pub(crate) fn add_to(
+        &self,
+        velocities: &mut [Vector<f64>],
+        positions: &[Vector<f64>],
+        headings: &[f64],
+        time: f64,
+    ) {
+        let rate = self.shear.map_or(0.0, |shear| shear.rate(time));
+        if rate != 0.0 {
+            let rows = velocities.par_iter_mut().zip(positions).with_min_len(CHUNK);
+            rows.for_each(|(v, r)| v.x += rate * r.y);
+        }
+        if self.speed != 0.0 {
+            let rows = velocities.par_iter_mut().zip(headings).with_min_len(CHUNK);
+            rows.for_each(|(v, angle)| *v += Vector::new(angle.cos(), angle.sin()) * self.speed);
+        }
+    }
+
+    /// Whether there is noise.
+    pub(crate) fn shakes(&self) -> bool {
+        self.diffusion > 0.0 || self.rotational_diffusion > 0.0
+    }
+
+    /// Adds the noise of one step to the positions and turns the directions.
+    pub(crate) fn shake(
+        &self,
+        positions: &mut [Vector<f64>],
+        headings: &mut [f64],
+        step: u64,
+        time_step: f64,
+    ) {
+        let chunk_of = |chunk: usize, salt: u64| stream(self.seed, step, 2 * chunk as u64 + salt);
+        if self.diffusion > 0.0 {
+            let size = (2.0 * self.diffusion * time_step).sqrt();
+            positions.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, positions)| {
+                let mut rng = chunk_of(chunk, 0);
+                for r in positions {
+                    let (x, y): (f64, f64) = (rng.sample(StandardNormal), rng.sample(StandardNormal));
+                    *r += Vector::new(x, y) * size;
+                }
+            });
+        }
+        if self.rotational_diffusion > 0.0 {
+            let size = (2.0 * self.rotational_diffusion * time_step).sqrt();
+            headings.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, headings)| {
+                let mut rng = chunk_of(chunk, 1);
+                headings.iter_mut().for_each(|angle| *angle += size * rng.sample::<f64, _>(StandardNormal));
+            });
+        }
+    }
+}
+
+/// The random numbers of one chunk of cells in one step.
+fn stream(seed: u64, step: u64, chunk: u64) -> Pcg64 {
+    Pcg64::new(u128::from(seed) << 64 | 0x5851_F42D_4C95_7F2D, u128::from(step) << 64 | u128::from(chunk))
+}

@@ -1,0 +1,145 @@
+//! Density and velocity in Fourier space.
+
+use rayon::prelude::*;
+use voronudge_geometry::{PeriodicBox, Vector};
+
+/// Structure factors in a shell of wave numbers, averaged over the wave vectors of the box in it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct StructureFactor {
+    /// Mean wave number of the shell, in 1/length.
+    pub wave_number: f64,
+    /// Number of wave vectors `±q` in the shell, each pair counted once.
+    pub wave_vectors: usize,
+    /// `S(q) = |Σ_i exp(−i q·r_i)|²/N` of the density: 1 for random positions.
+    pub density: f64,
+    /// `|Σ_i q̂·v_i exp(−i q·r_i)|²/N`: compression waves, in the square of the unit of velocity.
+    pub longitudinal: f64,
+    /// `|Σ_i (ẑ × q̂)·v_i exp(−i q·r_i)|²/N`: shear waves and vortices.
+    pub transverse: f64,
+}
+
+/// Structure factors of positions and velocities (N each) in a periodic box up to a wave number, in shells of width
+/// `2π/max(L_x, L_y)`. Velocities may be empty; their parts are then zero.
+///
+/// Every wave vector of the box up to `largest` is summed exactly, at a cost of N sines and cosines each.
+///
+/// ```
+/// use voronudge_simulate::{honeycomb, measure::structure_factor};
+/// let (positions, cell_box) = honeycomb(144)?;
+/// // A perfect crystal does not scatter below its first Bragg peak, 4π/(a√3) for a spacing a.
+/// let spacing = (2.0 / 3f64.sqrt()).sqrt();
+/// let peak = 4.0 * std::f64::consts::PI / (spacing * 3f64.sqrt());
+/// let shells = structure_factor(&positions, &[], &cell_box, 0.9 * peak);
+/// assert!(shells.iter().all(|shell| shell.density < 1e-20));
+/// # Ok::<(), voronudge_simulate::Error>(())
+/// ```
+pub fn structure_factor(
+    positions: &[Vector<f64>],
+    velocities: &[Vector<f64>],
+    cell_box: &PeriodicBox,
+    largest: f64,
+) -> Vec<StructureFactor> {
+    let [width, height] = cell_box.lengths();
+    let shell_width = std::f64::consts::TAU / width.max(height);
+    let vectors = wave_vectors(cell_box, largest);
+    let amplitudes: Vec<[f64; 4]> =
+        vectors.par_iter().map(|q| amplitudes(positions, velocities, *q)).collect();
+    let mut shells = vec![(0, [0.0; 4]); (largest / shell_width) as usize + 1];
+    for amplitudes in amplitudes {
+        let shell = &mut shells[(amplitudes[0] / shell_width - 0.5).max(0.0) as usize];
+        shell.0 += 1;
+        shell.1.iter_mut().zip(amplitudes).for_each(|(sum, value)| *sum += value);
+    }
+    shells
+        .into_iter()
+        .filter(|(count, _)| *count > 0)
+        .map(|(count, sums)| {
+            let [wave_number, density, longitudinal, transverse] = sums.map(|sum| sum / count as f64);
+            StructureFactor { wave_number, wave_vectors: count, density, longitudinal, transverse }
+        })
+        .collect()
+}
+
+/// One of each pair `±q` of wave vectors of the box: `q · (lattice vector)` is a multiple of 2π.
+fn wave_vectors(cell_box: &PeriodicBox, largest: f64) -> Vec<Vector<f64>> {
+    let [width, height] = cell_box.lengths();
+    let tau = std::f64::consts::TAU;
+    let most = |length: f64| (largest * length / tau).ceil() as i32;
+    let columns = most(width);
+    // Rows are displaced by the shear of the box.
+    let rows = most(height) + (f64::from(columns) * (cell_box.offset() / width).abs()).ceil() as i32;
+    (0..=columns)
+        .flat_map(|column| (-rows..=rows).map(move |row| (column, row)))
+        .filter(|&(column, row)| column > 0 || row > 0)
+        .map(|(column, row)| {
+            let x = tau * f64::from(column) / width;
+            Vector::new(x, (tau * f64::from(row) - x * cell_box.offset()) / height)
+        })
+        .filter(|q| q.norm() <= largest)
+        .collect()
+}
+
+/// `|q|` and the three structure factors at one wave vector.
+fn amplitudes(positions: &[Vector<f64>], velocities: &[Vector<f64>], q: Vector<f64>) -> [f64; 4] {
+    let direction = q / q.norm();
+    let mut sums = [Vector::zeros(); 3];
+    for (i, r) in positions.iter().enumerate() {
+        let (sin, cos) = q.dot(r).sin_cos();
+        let wave = Vector::new(cos, -sin);
+        let v = velocities.get(i).copied().unwrap_or_default();
+        sums[0] += wave;
+        sums[1] += wave * direction.dot(&v);
+        sums[2] += wave * (direction.x * v.y - direction.y * v.x);
+    }
+    let cells = positions.len().max(1) as f64;
+    let [density, longitudinal, transverse] = sums.map(|sum| sum.norm_squared() / cells);
+    [q.norm(), density, longitudinal, transverse]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::generator;
+    use rand::Rng;
+
+    #[test]
+    fn random_positions_and_velocities_are_white() {
+        let cell_box = PeriodicBox::sheared([20.0, 15.0], 4.0).unwrap();
+        let mut rng = generator(3);
+        let mut pair = |a: f64, b: f64| Vector::new(rng.random_range(0.0..a), rng.random_range(0.0..b));
+        let positions: Vec<_> = (0..1200).map(|_| pair(20.0, 15.0)).collect();
+        let velocities: Vec<_> = (0..1200).map(|_| pair(2.0, 2.0) - Vector::new(1.0, 1.0)).collect();
+        let shells = structure_factor(&positions, &velocities, &cell_box, 8.0);
+        let average = |part: fn(&StructureFactor) -> f64| {
+            let count: usize = shells.iter().map(|s| s.wave_vectors).sum();
+            shells.iter().map(|s| part(s) * s.wave_vectors as f64).sum::<f64>() / count as f64
+        };
+        assert!((average(|s| s.density) - 1.0).abs() < 0.12);
+        // The mean square of a component uniform in ±1 is 1/3.
+        assert!((average(|s| s.longitudinal) * 3.0 - 1.0).abs() < 0.12);
+        assert!((average(|s| s.transverse) * 3.0 - 1.0).abs() < 0.12);
+    }
+
+    #[test]
+    fn images_do_not_matter_and_a_shear_wave_is_transverse() {
+        let cell_box = PeriodicBox::sheared([10.0, 10.0], 3.0).unwrap();
+        let q = std::f64::consts::TAU / 10.0;
+        let positions: Vec<_> =
+            (0..400).map(|i| Vector::new(f64::from(i % 20) * 0.5, f64::from(i / 20) * 0.5)).collect();
+        let velocities: Vec<_> = positions.iter().map(|r| Vector::new((q * r.y).cos(), 0.0)).collect();
+        let moved: Vec<_> = (positions.iter().enumerate())
+            .map(|(i, r)| r + cell_box.translation([i as i32 % 3, i as i32 % 5]))
+            .collect();
+        let (there, here) = (
+            structure_factor(&moved, &velocities, &cell_box, 2.0),
+            structure_factor(&positions, &velocities, &cell_box, 2.0),
+        );
+        for (there, here) in there.iter().zip(&here) {
+            assert!((there.transverse - here.transverse).abs() < 1e-9);
+            assert!(here.longitudinal < 1e-20);
+        }
+        let total: f64 = here.iter().map(|s| s.transverse * s.wave_vectors as f64).sum();
+        // ±q share the amplitude ½: (N/2)²/N.
+        assert!((total - 100.0).abs() < 1e-9, "{total}");
+    }
+}

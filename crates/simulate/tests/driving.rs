@@ -1,0 +1,180 @@
+//! Shear, self-propulsion, noise, and steps of adaptive size.
+
+#![allow(clippy::unwrap_used)]
+
+use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge_model::{Model, Parameters, stress};
+use voronudge_simulate::measure::mean_square_displacement;
+use voronudge_simulate::{Driving, Error, Method, RandomPlacement, Shear, Simulation, generator, honeycomb};
+
+fn tissue(cells: usize, seed: u64, parameters: &Parameters<f64>) -> Simulation {
+    let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2]).unwrap();
+    let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(seed)).unwrap();
+    Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(parameters)).unwrap()
+}
+
+/// Cells without any force between them.
+fn inert() -> Parameters<f64> {
+    Parameters { area_elasticity: 0.0, perimeter_elasticity: 0.0, ..Parameters::default() }
+}
+
+fn advance(simulation: &mut Simulation, steps: usize, time_step: f64) {
+    (0..steps).for_each(|_| simulation.step(time_step).unwrap());
+}
+
+#[test]
+fn inert_cells_are_carried_by_the_shear() {
+    for shear in [
+        Shear::Step { strain: 0.3 },
+        Shear::Steady { rate: 0.7 },
+        Shear::Oscillatory { amplitude: 0.4, angular_frequency: 3.0 },
+    ] {
+        let before = tissue(100, 1, &inert());
+        let driving = Driving { shear: Some(shear), ..Driving::default() };
+        let mut simulation = before.clone().with_driving(driving).unwrap();
+        advance(&mut simulation, 200, 0.01);
+        let strain = shear.strain(simulation.time());
+        for (r, from) in simulation.positions().iter().zip(before.positions()) {
+            assert!((r - Vector::new(from.x + strain * from.y, from.y)).norm() < 1e-8, "{shear:?}");
+        }
+        let sheared = Domain::Periodic(PeriodicBox::sheared([10.0; 2], 10.0 * strain).unwrap());
+        assert_eq!(*simulation.tessellation(), Tessellation::new(simulation.positions(), sheared).unwrap());
+    }
+}
+
+/// The flow of a sheared tissue does not depend on which image of a cell is followed.
+#[test]
+fn images_flow_alike_under_shear() {
+    let driving = Driving { shear: Some(Shear::Steady { rate: 0.2 }), ..Driving::default() };
+    let parameters = Parameters { chirality: 1.0, ..Parameters::default() };
+    let one = tissue(64, 2, &parameters);
+    let (domain, model) = (one.tessellation().domain(), one.model().clone());
+    let shift = |i: usize| Vector::new(8.0 * (i % 3) as f64, 8.0 * (i % 2) as f64);
+    let moved = one.positions().iter().enumerate().map(|(i, r)| r + shift(i)).collect();
+    let mut one = one.with_driving(driving).unwrap();
+    let mut other = Simulation::new(moved, domain, model).unwrap().with_driving(driving).unwrap();
+    advance(&mut one, 100, 0.01);
+    advance(&mut other, 100, 0.01);
+    for (i, (r, s)) in one.positions().iter().zip(other.positions()).enumerate() {
+        let image = shift(i) + Vector::new(0.2 * one.time() * shift(i).y, 0.0);
+        assert!((s - r - image).norm() < 1e-8, "{i}: {}", s - r - image);
+    }
+}
+
+/// The shear modulus of the honeycomb at P_0 = 3.0: K_P P_MF² s/4 per unit area, as in the mean-field theory.
+#[test]
+fn a_step_strain_of_the_honeycomb_gives_its_shear_modulus() {
+    let parameters = Parameters { preferred_perimeter: 3.0, ..Parameters::default() };
+    let (positions, cell_box) = honeycomb(64).unwrap();
+    let strain = 1e-6;
+    let driving = Driving { shear: Some(Shear::Step { strain }), ..Driving::default() };
+    let domain = Domain::Periodic(cell_box);
+    let simulation = Simulation::new(positions, domain, Model::chiral_voronoi(&parameters)).unwrap();
+    let simulation = simulation.with_driving(driving).unwrap();
+    let sigma = stress(simulation.tessellation(), simulation.positions(), simulation.model(), |_| true);
+    let modulus = sigma[0][1] / strain;
+    assert!((modulus - 1.00843).abs() < 1e-4, "{modulus}");
+}
+
+#[test]
+fn a_steadily_sheared_solid_yields_and_keeps_its_momentum() {
+    let parameters = Parameters { preferred_perimeter: 3.4, ..Parameters::default() };
+    let driving = Driving { shear: Some(Shear::Steady { rate: 0.05 }), ..Driving::default() };
+    let mut simulation = tissue(64, 3, &parameters).with_driving(driving).unwrap();
+    let height = |s: &Simulation| s.positions().iter().map(|r| r.y).sum::<f64>();
+    let before = height(&simulation);
+    advance(&mut simulation, 4000, 0.01);
+    assert!((height(&simulation) - before).abs() < 1e-10);
+    let sigma = stress(simulation.tessellation(), simulation.positions(), simulation.model(), |_| true);
+    assert!(sigma[0][1] > 0.0, "the tissue resists: {}", sigma[0][1]);
+}
+
+#[test]
+fn noise_diffuses_and_propulsion_persists() {
+    let diffusion = 0.05;
+    let mut noisy =
+        tissue(400, 4, &inert()).with_driving(Driving { diffusion, seed: 9, ..Driving::default() }).unwrap();
+    let mut frames = vec![noisy.positions().to_vec()];
+    for _ in 0..20 {
+        advance(&mut noisy, 5, 0.02);
+        frames.push(noisy.positions().to_vec());
+    }
+    let msd = mean_square_displacement(&frames).unwrap();
+    assert!((msd[1] / (4.0 * diffusion * 0.1) - 1.0).abs() < 0.05, "{}", msd[1]);
+    assert!((msd[10] / (4.0 * diffusion) - 1.0).abs() < 0.15, "{}", msd[10]);
+
+    let (speed, rotational_diffusion) = (0.3, 2.0);
+    let driving = Driving { speed, rotational_diffusion, seed: 9, ..Driving::default() };
+    let mut active = tissue(400, 4, &inert()).with_driving(driving).unwrap();
+    let begin = active.positions().to_vec();
+    advance(&mut active, 1, 0.01);
+    for (r, from) in active.positions().iter().zip(&begin) {
+        assert!(((r - from).norm() - speed * 0.01).abs() < 1e-12);
+    }
+    advance(&mut active, 399, 0.01);
+    // ⟨Δr²⟩ = 2 v₀² (t/D_r − (1 − exp(−D_r t))/D_r²)
+    let time: f64 = 4.0;
+    let expected = 2.0
+        * speed
+        * speed
+        * (time / rotational_diffusion
+            - (1.0 - (-rotational_diffusion * time).exp()) / rotational_diffusion.powi(2));
+    let frames = [begin, active.positions().to_vec()];
+    let found = mean_square_displacement(&frames).unwrap()[1];
+    assert!((found / expected - 1.0).abs() < 0.15, "{found} {expected}");
+}
+
+#[test]
+fn noise_does_not_depend_on_threads_but_on_its_seed() {
+    let end = |threads, seed| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        let driving =
+            Driving { diffusion: 0.01, speed: 0.2, rotational_diffusion: 1.0, seed, ..Driving::default() };
+        pool.install(|| {
+            let mut simulation = tissue(5000, 5, &Parameters::default()).with_driving(driving).unwrap();
+            advance(&mut simulation, 4, 0.01);
+            simulation.state().clone()
+        })
+    };
+    assert_eq!(end(1, 1), end(2, 1));
+    assert_ne!(end(1, 1), end(1, 2));
+}
+
+#[test]
+fn adaptive_steps_keep_their_tolerance() {
+    let parameters = Parameters { chirality: 1.0, ..Parameters::default() };
+    let mut begin = tissue(64, 6, &parameters);
+    advance(&mut begin, 300, 0.01);
+    let mut exact = begin.clone();
+    advance(&mut exact, 2000, 0.0001);
+    let errors = [1e-3, 1e-5, 1e-7].map(|tolerance| {
+        let mut adaptive = begin.clone().with_method(Method::BogackiShampine { tolerance }).unwrap();
+        advance(&mut adaptive, 2, 0.1);
+        assert!((adaptive.time() - exact.time()).abs() < 1e-9);
+        let gaps = adaptive.positions().iter().zip(exact.positions()).map(|(a, b)| (a - b).norm());
+        gaps.fold(0.0, f64::max)
+    });
+    // Errors of many parts add up and grow in the chaotic liquid.
+    assert!(errors[0] < 0.2 && errors[1] < 5e-3 && errors[2] < 1e-4, "{errors:?}");
+    assert!(errors[2] < errors[0] / 50.0, "{errors:?}");
+}
+
+#[test]
+fn impossible_driving_and_states_are_refused() {
+    let simulation = tissue(16, 7, &inert());
+    for driving in [
+        Driving { diffusion: -1.0, ..Driving::default() },
+        Driving { speed: f64::NAN, ..Driving::default() },
+        Driving { rotational_diffusion: f64::INFINITY, ..Driving::default() },
+    ] {
+        assert!(matches!(simulation.clone().with_driving(driving), Err(Error::Driving { .. })));
+    }
+    let shear = Driving { shear: Some(Shear::Step { strain: f64::NAN }), ..Driving::default() };
+    assert!(matches!(simulation.clone().with_driving(shear), Err(Error::Tessellation { .. })));
+    for tolerance in [0.0, -1.0, f64::NAN] {
+        let refused = simulation.clone().with_method(Method::BogackiShampine { tolerance });
+        assert!(matches!(refused, Err(Error::Tolerance { .. })));
+    }
+    let state = tissue(9, 7, &inert()).state().clone();
+    assert!(matches!(simulation.in_state(state), Err(Error::State { cells: 16, positions: 9, .. })));
+}

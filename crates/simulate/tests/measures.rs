@@ -1,0 +1,82 @@
+//! Measurements on solids and liquids.
+
+#![allow(clippy::unwrap_used)]
+
+use std::ops::ControlFlow;
+use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_model::{Model, Parameters};
+use voronudge_simulate::measure::{LyapunovExponent, LyapunovSchedule, hexatic, largest_lyapunov_exponent};
+use voronudge_simulate::{Error, RandomPlacement, Schedule, Simulation, generator, run};
+
+fn tissue(cells: usize, preferred_perimeter: f64, chirality: f64) -> Simulation {
+    let parameters = Parameters { preferred_perimeter, chirality, ..Parameters::default() };
+    let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2]).unwrap();
+    let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(1)).unwrap();
+    Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(&parameters)).unwrap()
+}
+
+fn exponent(simulation: &Simulation, steps: usize) -> LyapunovExponent {
+    let schedule = LyapunovSchedule { time_step: 0.01, transient: 1000, steps, renormalisation: 10 };
+    let domain = simulation.tessellation().domain();
+    let (positions, model) = (simulation.positions(), simulation.model());
+    largest_lyapunov_exponent(positions, domain, model, &schedule, 1, |_| ControlFlow::Continue(())).unwrap()
+}
+
+#[test]
+fn a_chiral_liquid_is_chaotic_and_a_solid_is_not() {
+    let mut liquid = tissue(64, 4.0, 1.0);
+    (0..500).for_each(|_| liquid.step(0.01).unwrap());
+    let of_liquid = exponent(&liquid, 2000);
+    assert!(of_liquid.value > 5.0 * of_liquid.standard_error.unwrap(), "{of_liquid:?}");
+    let mut solid = tissue(64, 3.2, 0.2);
+    (0..3000).for_each(|_| solid.step(0.01).unwrap());
+    let of_solid = exponent(&solid, 1000);
+    assert!(of_solid.value < -0.01, "{of_solid:?}");
+}
+
+#[test]
+fn cells_of_a_liquid_change_neighbours_and_those_of_a_solid_do_not() {
+    let rate = |simulation: &mut Simulation| {
+        let schedule = Schedule { time: 20.0, time_step: 0.01, frames: 1 };
+        let summary = run(simulation, &schedule, |_| ControlFlow::Continue(())).unwrap();
+        (summary.transition_rate.unwrap(), summary.mean_square_velocity_error.unwrap())
+    };
+    let (liquid, error) = rate(&mut tissue(100, 4.0, 1.0));
+    assert!(liquid > 0.5, "{liquid}");
+    // The errors of a thousand independent values of a relative scatter of a tenth would be 0.03.
+    assert!(error > 0.03, "{error}");
+    assert_eq!(rate(&mut tissue(100, 3.0, 0.2)).0, 0.0);
+}
+
+#[test]
+fn the_order_of_a_liquid_is_low_and_that_of_grains_is_hidden_in_the_average() {
+    let mut liquid = tissue(400, 4.0, 1.0);
+    (0..300).for_each(|_| liquid.step(0.01).unwrap());
+    let order = hexatic(liquid.tessellation(), liquid.positions());
+    assert!(order.order() < 0.3 && order.mean_modulus > order.order(), "{order:?}");
+}
+
+#[test]
+fn momentum_is_zero_to_rounding() {
+    let mut liquid = tissue(100, 4.0, 2.0);
+    for _ in 0..500 {
+        liquid.step(0.005).unwrap();
+        let momentum: Vector<f64> = liquid.velocities().iter().sum();
+        assert!(momentum.norm() / 100.0 < 1e-12, "{momentum}");
+    }
+}
+
+#[test]
+fn impossible_measurements_are_refused() {
+    let simulation = tissue(16, 3.8, 0.0);
+    let (positions, model) = (simulation.positions(), simulation.model());
+    let domain = simulation.tessellation().domain();
+    let sound = LyapunovSchedule { time_step: 0.01, transient: 2, steps: 2, renormalisation: 1 };
+    let refusal = |domain, schedule: LyapunovSchedule| {
+        let observe = |_| ControlFlow::Continue(());
+        largest_lyapunov_exponent(positions, domain, model, &schedule, 1, observe).unwrap_err()
+    };
+    assert_eq!(refusal(Domain::Open, sound), Error::OpenDomain);
+    assert_eq!(refusal(domain, LyapunovSchedule { steps: 0, ..sound }), Error::NoFrames);
+    assert!(matches!(refusal(domain, LyapunovSchedule { time_step: 0.0, ..sound }), Error::TimeStep { .. }));
+}
