@@ -110,12 +110,12 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
-    /// Snapshots with what surrounds and preceded them, in a given scale or that of the data.
+    /// Snapshots with what surrounds and preceded them, in their own scale or, of another data set, in that of the fit.
     fn prepare(
         &self,
         snapshots: &SnapshotArguments,
         (data, map): (&DataSet, Option<&ExternalMap>),
-        scale: Option<Scale>,
+        other: Option<Scale>,
         run: &mut Run,
     ) -> Result<(Prepared, Option<Predictors>), Failure> {
         let Self { arguments, constraints, candidates } = self;
@@ -123,15 +123,25 @@ impl Asked<'_> {
         let history = History::new(data, &velocities, arguments.given_difference)?;
         let frames = velocities.frames(snapshots, data)?;
         let kept = history::keep_frames(history.as_ref(), data, frames, candidates);
-        let warnings = shared_errors(&velocities).into_iter().chain(unknown_noise(data)).chain(kept.warning);
-        warnings.for_each(|warning| run.warn(&warning));
+        match other {
+            None => shared_errors(&velocities)
+                .into_iter()
+                .chain(unknown_noise(data))
+                .chain(kept.warning)
+                .for_each(|warning| run.warn(warning)),
+            // What is wrong with the kind of data was said of the first.
+            Some(_) => kept
+                .warning
+                .into_iter()
+                .for_each(|warning| run.warn(format!("{}: {warning}", snapshots.title()))),
+        }
         let question = Question {
             arguments: snapshots,
             data,
             constraints: (*constraints).clone(),
             method: arguments.method.method(),
             seed: arguments.common.seed,
-            scale,
+            scale: other,
         };
         let mut prepared = question.prepare(velocities, kept.frames, run)?;
         surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
