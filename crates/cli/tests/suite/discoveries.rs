@@ -42,6 +42,25 @@ fn squares(folder: &Folder, name: &str) -> f64 {
 }
 
 #[test]
+fn what_is_found_is_put_to_the_test_on_other_data() {
+    let data = fixture("undeclared/set-05");
+    let options = ["--null-sets", "0", "--effects", "drift,rotation", "--predict"];
+    // The same data must be predicted about as well as they are fitted; a twin without the drift must not.
+    let twin = fixture("undeclared/set-08");
+    let out = Folder::new();
+    let (same, other) = (data.to_str().unwrap(), twin.to_str().unwrap());
+    let line = format!("discover {} {same} --predict {other}", options.join(" "));
+    succeed(&line, &[("", &data), ("--out", out.path())]);
+    let report = report(out.path());
+    assert_valid(&report);
+    assert_eq!(report["predictions"].as_array().unwrap().len(), 2);
+    let error = |at: &str| number(&report, &format!("/predictions/{at}/value"));
+    assert!((error("0/after") - number(&report, "/after/nmse/un_nudged")).abs() < 1e-9);
+    assert!(error("0/after") < error("0/before"));
+    assert!(error("1/after") > error("1/before"));
+}
+
+#[test]
 fn a_drift_is_found_and_taken_out() {
     let data = fixture("undeclared/set-05");
     let out = discover(&data, "");

@@ -17,8 +17,10 @@ const MOST_REFUSED: usize = 3;
 pub(super) struct Growth<'a> {
     pub setting: Setting<'a>,
     pub base: &'a Model,
-    pub split: &'a Split,
     pub ranking: Ranking,
+    split: &'a Split,
+    /// How probable the base model makes velocities held out, where that can be said.
+    by_base: Option<Predictive>,
 }
 
 /// A model with effects added.
@@ -28,28 +30,33 @@ pub(super) struct Grown {
     pub tested: Vec<Tested>,
 }
 
-impl Growth<'_> {
+impl<'a> Growth<'a> {
+    /// Before anything is added.
+    pub fn new(
+        setting: Setting<'a>,
+        base: &'a Model,
+        split: &'a Split,
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
+        let by_base = predictive(&setting, base, split, watch)?;
+        Ok(Self { setting, base, ranking: Ranking::new(&setting, &base.lineup), split, by_base })
+    }
+
     /// Adds what the model lacks, one effect after another, as long as velocities held out become more probable, and takes
     /// back what others make superfluous.
     pub fn grow(&mut self, watch: &mut Watch<'_>) -> Result<Option<Grown>, Error> {
         let mut grown: Option<(Model, Option<Predictive>)> = None;
-        let mut predicted_by_base = None;
         let mut refused: Vec<usize> = Vec::new();
         while refused.len() < MOST_REFUSED
             && grown.as_ref().map_or(0, |(model, _)| model.added.len()) < self.setting.search.most_effects
         {
-            let current = grown.as_ref().map_or(self.base, |(model, _)| model);
+            let (current, before) =
+                grown.as_ref().map_or((self.base, &self.by_base), |(model, own)| (model, own));
             let Some(candidate) = self.setting.lacking(current, &refused, watch)? else { break };
-            if predicted_by_base.is_none() {
-                predicted_by_base = Some(self.predictive(self.base, watch)?);
-            }
-            let before = grown.as_ref().map_or(predicted_by_base.as_ref(), |(_, own)| Some(own));
             let added = current.added.iter().copied().chain([candidate]).collect();
             let model = self.setting.fit(added, watch)?;
-            let after = self.predictive(&model, watch)?;
-            let gain =
-                before.and_then(Option::as_ref).zip(after.as_ref()).map(|(before, after)| before.gain(after));
-            if gain.is_some_and(|[value, error]| value <= error) {
+            let after = predictive(&self.setting, &model, self.split, watch)?;
+            if gain(before, &after).is_some_and(|[value, error]| value <= error) {
                 self.refuse(
                     candidate,
                     "velocities held out do not become more probable by more than the standard error",
@@ -85,13 +92,7 @@ impl Growth<'_> {
 
     /// By how much velocities held out become more probable with effects than without, and the standard error.
     pub fn likelihood_gain(&self, with: &Model, watch: &mut Watch<'_>) -> Result<Option<[f64; 2]>, Error> {
-        let (before, after) = (self.predictive(self.base, watch)?, self.predictive(with, watch)?);
-        Ok(before.zip(after).map(|(before, after)| before.gain(&after)))
-    }
-
-    fn predictive(&self, model: &Model, watch: &mut Watch<'_>) -> Result<Option<Predictive>, Error> {
-        let frames = self.setting.frames;
-        Predictive::new(&model.objective(frames), &model.point(frames), self.split, watch)
+        Ok(gain(&self.by_base, &predictive(&self.setting, with, self.split, watch)?))
     }
 
     /// Takes back the effect with the largest p as long as it is chance.
@@ -125,4 +126,18 @@ impl Growth<'_> {
     fn refuse(&mut self, candidate: usize, reason: &'static str) {
         self.ranking.refuse(self.setting.candidates[candidate].effect, reason);
     }
+}
+
+/// How probable a model makes velocities held out.
+fn predictive(
+    setting: &Setting<'_>,
+    model: &Model,
+    split: &Split,
+    watch: &mut Watch<'_>,
+) -> Result<Option<Predictive>, Error> {
+    Predictive::new(&model.objective(setting.frames), &model.point(setting.frames), split, watch)
+}
+
+fn gain(before: &Option<Predictive>, after: &Option<Predictive>) -> Option<[f64; 2]> {
+    before.as_ref().zip(after.as_ref()).map(|(before, after)| before.gain(after))
 }

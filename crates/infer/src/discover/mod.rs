@@ -35,7 +35,6 @@ use candidate::candidates;
 use classes::{Selection, selection};
 use evidence::Evidence;
 use growth::{Grown, Growth};
-use ranking::Ranking;
 use steps::{Model, Setting};
 
 /// Least width of a block of cells that is held out, in units of ℓ₀.
@@ -57,8 +56,7 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
     let base = setting.fit(Vec::new(), &mut watch)?;
     let split = Split::new(frames, blocks(frames));
     let testable = base.lineup.left() >= base.lineup.number_of_columns() as f64;
-    let ranking = Ranking::new(&setting, &base.lineup);
-    let mut growth = Growth { setting, base: &base, split: &split, ranking };
+    let mut growth = Growth::new(setting, &base, &split, &mut watch)?;
     let mut null_sets = NullSets::default();
     let mut grown = None;
     if testable {
@@ -81,7 +79,7 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
         gain = base_folds.as_ref().zip(own_folds.as_ref()).map(|(base, own)| base.gain(own));
         likelihood_gain = growth.likelihood_gain(model, &mut watch)?;
     }
-    let description = if testable { describe(&growth, &mut watch)? } else { None };
+    let description = if testable { describe(&growth, &split, &mut watch)? } else { None };
     let mut ranking = growth.ranking;
     ranking.settle(&selected);
     let last = grown.as_ref().map_or(&base, |grown| &grown.model);
@@ -125,8 +123,8 @@ fn folds(
 }
 
 /// The generic description that says most beyond chance, fitted.
-fn describe(growth: &Growth<'_>, watch: &mut Watch<'_>) -> Result<Option<Described>, Error> {
-    let Growth { setting, base, split, .. } = growth;
+fn describe(growth: &Growth<'_>, split: &Split, watch: &mut Watch<'_>) -> Result<Option<Described>, Error> {
+    let Growth { setting, base, .. } = growth;
     let projected = base.lineup.beyond(&[]);
     let best = (setting.descriptions().into_iter())
         .map(|k| (k, projected.score(k)))

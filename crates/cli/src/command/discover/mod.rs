@@ -123,18 +123,7 @@ impl Asked<'_> {
         let history = History::new(data, &velocities, arguments.given_difference)?;
         let frames = velocities.frames(snapshots, data)?;
         let kept = history::keep_frames(history.as_ref(), data, frames, candidates);
-        match other {
-            None => shared_errors(&velocities)
-                .into_iter()
-                .chain(unknown_noise(data))
-                .chain(kept.warning)
-                .for_each(|warning| run.warn(warning)),
-            // What is wrong with the kind of data was said of the first.
-            Some(_) => kept
-                .warning
-                .into_iter()
-                .for_each(|warning| run.warn(format!("{}: {warning}", snapshots.title()))),
-        }
+        let (kind, noise) = (shared_errors(&velocities), unknown_noise(data));
         let question = Question {
             arguments: snapshots,
             data,
@@ -145,6 +134,14 @@ impl Asked<'_> {
         };
         let mut prepared = question.prepare(velocities, kept.frames, run)?;
         surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
+        match other {
+            None => kind.into_iter().chain(noise).chain(kept.warning).for_each(|warning| run.warn(warning)),
+            // What is wrong with the kind of data was said of the first.
+            Some(_) => kept
+                .warning
+                .into_iter()
+                .for_each(|warning| run.warn(format!("{}: {warning}", snapshots.title()))),
+        }
         Ok((prepared, kept.predictors))
     }
 }
