@@ -3,9 +3,10 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
-use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector, honeycomb};
 use voronudge_model::{BlockMatrix, HalfEdgeForces, Model, jacobian, stress};
-use voronudge_theory::{MeanField, Orientation, Parameters, hexagon_perimeter, hexagon_side};
+use voronudge_spectrum::bloch_matrix;
+use voronudge_theory::{MeanField, Orientation, Parameters, hexagon_perimeter};
 
 /// (P_0, α): solid, solid with waves, just below the limit of stability, beyond it.
 const CASES: [(f64, f64); 6] = [(3.0, 0.0), (3.0, 0.3), (3.5, -0.2), (3.7, 1.0), (3.72, 0.01), (4.0, 2.9)];
@@ -35,20 +36,14 @@ struct Honeycomb {
 impl Honeycomb {
     /// `rows` is even. Rows are lines of neighbours.
     fn new(columns: usize, rows: usize, orientation: Orientation, stretch: [f64; 2]) -> Self {
-        let (side, height) = (3f64.sqrt() * hexagon_side(), 1.5 * hexagon_side());
-        let place = |along: f64, across: f64| match orientation {
-            Orientation::NeighbourAlongX => [along * stretch[0], across * stretch[1]],
+        let (mut positions, mut lengths) = honeycomb(columns, rows);
+        if orientation == Orientation::NeighbourAlongY {
             // Turned by a quarter.
-            Orientation::NeighbourAlongY => [-across * stretch[0], along * stretch[1]],
-        };
-        let positions: Vec<_> = (0..columns * rows)
-            .map(|cell| {
-                let (column, row) = (cell % columns, cell / columns);
-                let shift = 0.5 * (row % 2) as f64;
-                Vector::from(place((column as f64 + shift) * side, row as f64 * height))
-            })
-            .collect();
-        let lengths = place(columns as f64 * side, rows as f64 * height).map(f64::abs);
+            positions.iter_mut().for_each(|r| *r = Vector::new(-r.y, r.x));
+            lengths.reverse();
+        }
+        positions.iter_mut().for_each(|r| *r = Vector::new(r.x * stretch[0], r.y * stretch[1]));
+        let lengths = [lengths[0] * stretch[0], lengths[1] * stretch[1]];
         let domain = Domain::Periodic(PeriodicBox::new(lengths).unwrap());
         Self { tessellation: Tessellation::new(&positions, domain).unwrap(), positions, lengths }
     }
@@ -59,16 +54,7 @@ impl Honeycomb {
 
     /// Real and imaginary part of `−Σ_j J_{ij} exp(i q·(r_j − r_i))` by the nearest images.
     fn transform(&self, matrix: &BlockMatrix, cell: usize, q: Vector<f64>) -> [[[f64; 2]; 2]; 2] {
-        let mut sums = [[[0.0; 2]; 2]; 2];
-        for (column, block) in matrix.row(cell) {
-            let shift = self.tessellation.domain().shortest(self.positions[column] - self.positions[cell]);
-            let (sin, cos) = q.dot(&shift).sin_cos();
-            for (entry, value) in block.iter().enumerate() {
-                sums[0][entry / 2][entry % 2] -= value * cos;
-                sums[1][entry / 2][entry % 2] -= value * sin;
-            }
-        }
-        sums
+        bloch_matrix(&self.tessellation, &self.positions, matrix, cell, q.into())
     }
 }
 

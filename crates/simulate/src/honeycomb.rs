@@ -21,9 +21,9 @@ use voronudge_geometry::{PeriodicBox, Vector};
 /// # Ok::<(), Box<dyn std::error::Error>>(())
 /// ```
 pub fn honeycomb(cells: usize) -> Result<(Vec<Vector<f64>>, PeriodicBox), Error> {
-    // Spacing a and distance of rows a √3/2 at unit density: a² √3/2 = 1.
-    let spacing = (2.0 / 3f64.sqrt()).sqrt();
-    let height = 0.5 * 3f64.sqrt() * spacing;
+    // Both lengths of the box are those of one column and two rows times the numbers of these.
+    let [spacing, pair_of_rows] = voronudge_geometry::honeycomb(1, 2).1;
+    let height = 0.5 * pair_of_rows;
     let anisotropy = |rows: usize| {
         let columns = cells / rows;
         ((columns as f64 * spacing) / (rows as f64 * height)).ln().abs()
@@ -32,14 +32,7 @@ pub fn honeycomb(cells: usize) -> Result<(Vec<Vector<f64>>, PeriodicBox), Error>
         .filter(|rows| rows % 2 == 0 && cells.is_multiple_of(*rows))
         .min_by(|a, b| anisotropy(*a).total_cmp(&anisotropy(*b)))
         .ok_or(Error::Honeycomb { cells })?;
-    let columns = cells / rows;
-    let positions = (0..cells)
-        .map(|i| {
-            let (column, row) = (i % columns, i / columns);
-            Vector::new((column as f64 + 0.5 * (row % 2) as f64) * spacing, row as f64 * height)
-        })
-        .collect();
-    let cell_box = PeriodicBox::new([columns as f64 * spacing, rows as f64 * height])
-        .map_err(|source| Error::Tessellation { time: 0.0, source })?;
+    let (positions, lengths) = voronudge_geometry::honeycomb(cells / rows, rows);
+    let cell_box = PeriodicBox::new(lengths).map_err(|source| Error::Tessellation { time: 0.0, source })?;
     Ok((positions, cell_box))
 }

@@ -30,22 +30,11 @@ impl Honeycomb {
         if columns < 5 || rows < 6 || rows % 2 == 1 {
             return Err(Error::Honeycomb { columns, rows });
         }
-        // Cells of unit area: spacing a with a² √3/2 = 1.
-        let spacing = (2.0 / 3f64.sqrt()).sqrt();
-        let height = 1.0 / spacing;
-        let place = |along: f64, across: f64| match arrangement {
-            Arrangement::RowsAlongX => [along, across],
-            // Turned by a quarter.
-            Arrangement::RowsAlongY => [-across, along],
-        };
-        let positions: Vec<_> = (0..columns * rows)
-            .map(|cell| {
-                let (column, row) = (cell % columns, cell / columns);
-                let shift = 0.5 * (row % 2) as f64;
-                Vector::from(place((column as f64 + shift) * spacing, row as f64 * height))
-            })
-            .collect();
-        let lengths = place(columns as f64 * spacing, rows as f64 * height).map(f64::abs);
+        let (mut positions, mut lengths) = voronudge_geometry::honeycomb(columns, rows);
+        if arrangement == Arrangement::RowsAlongY {
+            positions.iter_mut().for_each(|r| *r = Vector::new(-r.y, r.x));
+            lengths.reverse();
+        }
         let domain = PeriodicBox::new(lengths).map_err(Error::Tessellation)?;
         let tessellation =
             Tessellation::new(&positions, Domain::Periodic(domain)).map_err(Error::Tessellation)?;
@@ -75,16 +64,28 @@ impl Honeycomb {
     /// Real and imaginary part of `D(q) = −Σ_j J_{0j} exp(i q·(r_j − r_0))`, exact for any wave vector `q` (1/ℓ_0), since no
     /// cell reaches halfway around the box. `jacobian` is that of [`Honeycomb::jacobian`], `cell` any cell.
     pub fn dynamical_matrix(&self, jacobian: &BlockMatrix, cell: usize, q: [f64; 2]) -> [[[f64; 2]; 2]; 2] {
-        let q = Vector::from(q);
-        let mut sums = [[[0.0; 2]; 2]; 2];
-        for (column, block) in jacobian.row(cell) {
-            let shift = self.tessellation.domain().shortest(self.positions[column] - self.positions[cell]);
-            let (sin, cos) = q.dot(&shift).sin_cos();
-            for (entry, value) in block.iter().enumerate() {
-                sums[0][entry / 2][entry % 2] -= value * cos;
-                sums[1][entry / 2][entry % 2] -= value * sin;
-            }
-        }
-        sums
+        bloch_matrix(&self.tessellation, &self.positions, jacobian, cell, q)
     }
+}
+
+/// Real and imaginary part of `−Σ_j J_ij exp(i q·(r_j − r_i))` for cell i of a lattice, by the nearest images. That is D(q) for
+/// any wave vector `q` (1/length) where no cell acts halfway around the box.
+pub fn bloch_matrix(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    jacobian: &BlockMatrix,
+    cell: usize,
+    q: [f64; 2],
+) -> [[[f64; 2]; 2]; 2] {
+    let q = Vector::from(q);
+    let mut sums = [[[0.0; 2]; 2]; 2];
+    for (column, block) in jacobian.row(cell) {
+        let shift = tessellation.domain().shortest(positions[column] - positions[cell]);
+        let (sin, cos) = q.dot(&shift).sin_cos();
+        for (entry, value) in block.iter().enumerate() {
+            sums[0][entry / 2][entry % 2] -= value * cos;
+            sums[1][entry / 2][entry % 2] -= value * sin;
+        }
+    }
+    sums
 }

@@ -37,7 +37,7 @@ mod selection;
 mod transition;
 
 pub use error::Error;
-pub use honeycomb::{Arrangement, Honeycomb};
+pub use honeycomb::{Arrangement, Honeycomb, bloch_matrix};
 pub use mode::{Growth, Mode};
 pub use problem::LinearProblem;
 pub use selection::{Character, Counts, Modes, Request, Scope, Selection, dense_memory, modes};

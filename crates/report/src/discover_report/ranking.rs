@@ -41,6 +41,12 @@ pub struct Gain {
     pub standard_error: f64,
 }
 
+impl From<[f64; 2]> for Gain {
+    fn from([value, standard_error]: [f64; 2]) -> Self {
+        Self { value, standard_error }
+    }
+}
+
 /// What became of a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]

@@ -140,7 +140,7 @@ pub(super) fn ranked(candidate: &Ranked, discovery: &Discovery) -> RankedEffect 
         detection_limit: percentage(candidate.detection_limit),
         size: percentage(candidate.size),
         size_ci95: candidate.interval.map(|ends| ends.map(percentage)),
-        gain: gain.map(|[value, standard_error]| Gain { value, standard_error }),
+        gain: gain.map(Gain::from),
         status,
         reason,
     }

@@ -1,15 +1,16 @@
 //! What is found on one data set, put to the test on others.
 
 use super::Asked;
+use super::report::held_out_error;
 use crate::command::fit::Prepared;
 use crate::failure::Failure;
 use crate::run::Run;
 use clap::Args;
 use std::path::PathBuf;
 use voronudge_infer::Observation;
-use voronudge_infer::discover::{Absent, Discovery, HeldOut, Search, Transfer};
+use voronudge_infer::discover::{Absent, Discovery, Search, Transfer};
 use voronudge_io::DataSet;
-use voronudge_report::discover_report::{Gain, HeldOutError, Prediction};
+use voronudge_report::discover_report::Prediction;
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Search")]
@@ -64,18 +65,13 @@ impl Other {
         let dataset = self.folder.display().to_string();
         let transfer = discovery.predict(search, &self.observations);
         let absent = |absent: &Absent| run.warn(format!("{dataset} is not predicted: {absent}"));
-        let Transfer { before, after, gain: [value, standard_error] } = transfer.inspect_err(absent).ok()?;
-        let error = |own: HeldOut| HeldOutError {
-            value: own.value,
-            standard_error: own.standard_error,
-            folds: own.folds,
-        };
+        let Transfer { before, after, gain } = transfer.inspect_err(absent).ok()?;
         Some(Prediction {
             dataset,
             velocities: self.observations.iter().map(|frame| frame.targets().count()).sum(),
-            before: error(before),
-            after: error(after),
-            gain: Gain { value, standard_error },
+            before: held_out_error(before),
+            after: held_out_error(after),
+            gain: gain.into(),
         })
     }
 }

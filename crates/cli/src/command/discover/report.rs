@@ -54,9 +54,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         },
         predictors: predictors.clone(),
         predictions: predictions.clone(),
-        likelihood_gain: discovery
-            .likelihood_gain
-            .map(|[value, standard_error]| Gain { value, standard_error }),
+        likelihood_gain: discovery.likelihood_gain.map(Gain::from),
         null_sets: NullSets {
             refitted: discovery.null_sets.smallest_p.len(),
             seeds: discovery.null_sets.seeds.clone(),
@@ -91,14 +89,13 @@ fn model_fit(prepared: &Prepared, fitted: &Fitted, units: &Units) -> ModelFit {
     }
 }
 
+/// An error on data that the fit has not seen.
+pub(super) fn held_out_error(error: HeldOut) -> HeldOutError {
+    HeldOutError { value: error.value, standard_error: error.standard_error, folds: error.folds }
+}
+
 fn nmse(prepared: &Prepared, result: &Inference, held_out: Option<HeldOut>) -> ModelNmse {
-    let of = |unit: HeldOutUnit| {
-        held_out.filter(|error| error.unit == unit).map(|error| HeldOutError {
-            value: error.value,
-            standard_error: error.standard_error,
-            folds: error.folds,
-        })
-    };
+    let of = |unit: HeldOutUnit| held_out.filter(|error| error.unit == unit).map(held_out_error);
     ModelNmse {
         naive: result.nmse.naive,
         nudged: result.nmse.nudged,
