@@ -26,6 +26,7 @@ mod partial_regression;
 mod predicted_against_measured;
 mod profile;
 mod residual_maps;
+mod series;
 mod velocity_map;
 
 pub use bootstrap_histogram::{BootstrapHistogram, bootstrap_histogram};
@@ -50,6 +51,7 @@ pub use partial_regression::{PartialPoint, PartialRegression, partial_regression
 pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
+pub use series::{Colours, Drawn, Series, SeriesAxis, SeriesChart, SeriesPoint, series_chart};
 pub use velocity_map::{VelocityField, velocity_map};
 
 use crate::svg::{Anchor, Svg, TextStyle};
