@@ -41,6 +41,11 @@ impl Failure {
         if self.exit_code == 130 { self } else { self.at(place) }
     }
 
+    /// What is wrong, without advice.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
     pub fn exit_code(&self) -> u8 {
         self.exit_code
     }

@@ -47,6 +47,11 @@ impl Run {
         })
     }
 
+    /// The seed of runs that were made before.
+    pub fn seed_is(&mut self, seed: u64) {
+        self.seed = seed;
+    }
+
     pub fn warn(&mut self, text: impl Into<String>) {
         let text = text.into();
         if self.verbosity == Verbosity::Normal {

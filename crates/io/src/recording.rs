@@ -8,7 +8,7 @@ use crate::error::{Error, OutputFault};
 use crate::output::{OutputDirectory, output_error};
 
 /// The hidden folder of an unfinished run.
-const FOLDER: &str = ".voronudge-run";
+pub(crate) const FOLDER: &str = ".voronudge-run";
 const CHECKPOINT: &str = "checkpoint";
 
 /// An unfinished run inside its output directory: arrays of frames on disk, and a checkpoint.
@@ -24,6 +24,7 @@ const CHECKPOINT: &str = "checkpoint";
 /// let mut recording = Recording::begin(&out, &arrays)?;
 /// recording.append(0, &[0.0, 0.1, 1.0, 1.1])?;
 /// recording.checkpoint(b"one frame")?;
+/// assert_eq!(recording.frame(0, 0)?, [0.0, 0.1, 1.0, 1.1]);
 /// recording.append(0, &[f64::NAN; 4])?; // after the checkpoint; the program dies
 /// drop(recording);
 ///
@@ -51,6 +52,8 @@ struct FrameFile {
     name: String,
     path: PathBuf,
     file: BufWriter<File>,
+    /// Bytes before the first frame, and of each.
+    lengths: [u64; 2],
 }
 
 impl Recording {
@@ -112,6 +115,17 @@ impl Recording {
         write(&mut array.file).map_err(|source| output_error(&array.path, OutputFault::Write(source)))
     }
 
+    /// A frame that was appended, in C order, of the array of a number; nothing if there is none.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where it cannot be read.
+    pub fn frame(&mut self, array: usize, frame: usize) -> Result<Vec<f64>, Error> {
+        let Some(array) = self.arrays.get_mut(array) else {
+            return Ok(Vec::new());
+        };
+        array.read(frame).map_err(|source| output_error(&array.path, OutputFault::Write(source)))
+    }
+
     /// Replaces the checkpoint by one that stands for all frames appended so far.
     ///
     /// # Errors
@@ -167,18 +181,20 @@ impl FrameFile {
     fn create(folder: &Path, name: &str, shape: [usize; 3]) -> Result<Self, Error> {
         let path = folder.join(name);
         let create = || {
-            let mut file = BufWriter::new(File::create(&path)?);
+            let file = OpenOptions::new().read(true).write(true).create(true).truncate(true).open(&path)?;
+            let mut file = BufWriter::new(file);
             file.write_all(&header(shape))?;
             Ok(file)
         };
         let file = create().map_err(|source| output_error(&path, OutputFault::Write(source)))?;
-        Ok(Self { name: name.into(), path, file })
+        Ok(Self { name: name.into(), path, file, lengths: lengths(shape) })
     }
 
     fn open(folder: &Path, name: &str, shape: [usize; 3], frames: usize) -> Result<Self, Error> {
         let path = folder.join(name);
         let header = header(shape);
-        let length = header.len() as u64 + (frames * shape[1] * shape[2] * size_of::<f64>()) as u64;
+        let [before, each] = lengths(shape);
+        let length = before + frames as u64 * each;
         let open = || {
             let mut file = OpenOptions::new().read(true).write(true).open(&path)?;
             let mut found = vec![0; header.len()];
@@ -191,8 +207,30 @@ impl FrameFile {
             Ok(BufWriter::new(file))
         };
         let file = open().map_err(|source| output_error(&path, OutputFault::Write(source)))?;
-        Ok(Self { name: name.into(), path, file })
+        Ok(Self { name: name.into(), path, file, lengths: lengths(shape) })
     }
+
+    fn read(&mut self, frame: usize) -> io::Result<Vec<f64>> {
+        self.file.flush()?;
+        let [before, each] = self.lengths;
+        let mut bytes = vec![0; each as usize];
+        let file = self.file.get_mut();
+        file.seek(SeekFrom::Start(before + frame as u64 * each))?;
+        let read = file.read_exact(&mut bytes);
+        file.seek(SeekFrom::End(0))?;
+        read?;
+        let value = |chunk: &[u8]| {
+            let mut value = [0; size_of::<f64>()];
+            value.copy_from_slice(chunk);
+            f64::from_le_bytes(value)
+        };
+        Ok(bytes.chunks_exact(size_of::<f64>()).map(value).collect())
+    }
+}
+
+/// Bytes of the header of an array, and of one frame.
+fn lengths(shape: [usize; 3]) -> [u64; 2] {
+    [header(shape).len() as u64, (shape[1] * shape[2] * size_of::<f64>()) as u64]
 }
 
 /// The header of a `.npy` file, version 1.0, of 64-bit floats in C order.
@@ -209,7 +247,7 @@ fn header([frames, rows, columns]: [usize; 3]) -> Vec<u8> {
     bytes
 }
 
-fn remove(folder: &Path) -> Result<(), Error> {
+pub(crate) fn remove(folder: &Path) -> Result<(), Error> {
     match fs::remove_dir_all(folder) {
         Err(source) if source.kind() != io::ErrorKind::NotFound => {
             Err(output_error(folder, OutputFault::Write(source)))

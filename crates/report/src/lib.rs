@@ -34,6 +34,7 @@ pub mod map;
 pub mod markers;
 pub mod numbers;
 pub mod page;
+pub mod phase_report;
 pub mod spectrum_report;
 pub mod svg;
 mod view;
@@ -42,6 +43,9 @@ pub use before_after::BeforeAfter;
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use page::{DiscoverFigures, DiscoverPage, InferPage, SpectrumPage, Uncertainty};
+pub use page::{
+    DiscoverFigures, DiscoverPage, InferPage, PhasePage, SimulatePage, SpectrumPage, Uncertainty,
+};
+pub use phase_report::{PHASE_SCHEMA, PhaseReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

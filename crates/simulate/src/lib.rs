@@ -32,6 +32,7 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+pub mod collapse;
 mod driving;
 mod error;
 mod honeycomb;
@@ -48,7 +49,7 @@ pub use driving::{Driving, Shear};
 pub use error::Error;
 pub use honeycomb::honeycomb;
 pub use method::Method;
-pub use placement::{Generator, RandomPlacement, generator};
+pub use placement::{Generator, RandomPlacement, generator, seed_of_run};
 pub use schedule::{Completion, Event, Frame, RunState, Schedule, Summary, resume, run};
 pub use simulation::{Simulation, State};
 pub use spatial_order::sort_in_space;

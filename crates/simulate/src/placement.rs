@@ -19,6 +19,20 @@ pub fn generator(seed: u64) -> Generator {
     Generator::seed_from_u64(seed)
 }
 
+/// The seed of one of many runs that share a seed: a function of the three numbers only, so that a run does not depend on
+/// which others are made, in which order, or where.
+///
+/// ```
+/// use voronudge_simulate::seed_of_run;
+/// assert_eq!(seed_of_run(1, 7, 0), seed_of_run(1, 7, 0));
+/// assert_ne!(seed_of_run(1, 7, 0), seed_of_run(1, 7, 1));
+/// assert_ne!(seed_of_run(1, 7, 0), seed_of_run(1, 0, 7));
+/// ```
+pub fn seed_of_run(seed: u64, point: u64, replica: u64) -> u64 {
+    let stream = u128::from(point) << 64 | u128::from(replica);
+    Pcg64::new(u128::from(seed) << 64 | 0x9E37_79B9_7F4A_7C15, stream).random()
+}
+
 /// Uniform random positions, each drawn anew until it is far enough from those before it.
 ///
 /// Where the box is too full for the distance asked for, the distance is relaxed step by step; so this ends at any

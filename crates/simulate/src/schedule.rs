@@ -186,10 +186,13 @@ pub fn resume(
     let total = steps_per_frame * schedule.frames;
     let mut completion = Completion::Finished;
     let mut transitions = TransitionCounter::default();
+    let mut counted = false;
     while state.steps < total {
         let counts = 2 * (state.steps + 1) > total;
-        if counts {
-            state.transitions += transitions.count(simulation.tessellation()) as u64;
+        if counts && !counted {
+            // The state that the first step to be counted starts from.
+            transitions.count(simulation.tessellation());
+            counted = true;
         }
         simulation.step(time_step)?;
         state.steps += 1;

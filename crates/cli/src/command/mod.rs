@@ -6,5 +6,7 @@ pub(crate) mod evaluate;
 mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
+pub(crate) mod merge;
+pub(crate) mod phase_diagram;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

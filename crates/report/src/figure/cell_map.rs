@@ -69,7 +69,7 @@ pub fn cell_map(frame: &FrameView, scalar: &CellScalar, units: &Units) -> String
     legend.svg.finish()
 }
 
-fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&CellScalar, &ColourScale)) {
+pub(super) fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&CellScalar, &ColourScale)) {
     let mut classes = vec![PathData::new(); ColourScale::LEVELS];
     let [mut hatching, mut outlines] = [PathData::new(), PathData::new()];
     for (cell, &value) in frame.cells.iter().zip(&scalar.values) {

@@ -7,12 +7,16 @@ mod directions;
 mod discover;
 mod infer;
 mod parameter_table;
+mod phase_diagram;
+mod simulate;
 mod spectrum;
 mod uncertainty;
 mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
+pub use phase_diagram::PhasePage;
+pub use simulate::SimulatePage;
 pub use spectrum::SpectrumPage;
 pub use uncertainty::Uncertainty;
 

@@ -22,6 +22,21 @@ pub struct LyapunovSchedule {
     pub renormalisation: usize,
 }
 
+impl LyapunovSchedule {
+    /// A measurement over a time: a fifth of it lets the tangent vector turn, and it is renormalised every ten steps.
+    ///
+    /// ```
+    /// use voronudge_simulate::measure::LyapunovSchedule;
+    /// let schedule = LyapunovSchedule::over(10.0, 0.01);
+    /// assert_eq!((schedule.transient, schedule.steps), (200, 800));
+    /// ```
+    pub fn over(time: f64, time_step: f64) -> Self {
+        let steps = (time / time_step * (1.0 - 1e-12)).ceil().max(1.0) as usize;
+        let transient = steps / 5;
+        Self { time_step, transient, steps: steps - transient, renormalisation: 10 }
+    }
+}
+
 /// The largest Lyapunov exponent.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LyapunovExponent {

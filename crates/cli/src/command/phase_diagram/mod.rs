@@ -1,0 +1,106 @@
+//! `voronudge phase-diagram`: measurements over preferred perimeter and chirality.
+
+mod diagram;
+mod outcome;
+mod point;
+pub(crate) mod points;
+pub(crate) mod request;
+mod scaling;
+mod work;
+
+pub(crate) use outcome::finish;
+pub(crate) use scaling::ScalingArguments;
+
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use clap::Args;
+use points::{Header, Points};
+use request::{GridArguments, Request, Shard};
+use std::collections::BTreeSet;
+use std::path::Path;
+use voronudge_io::{Journal, Recording};
+use work::{Ending, work};
+
+/// Phase diagram: velocities, order, T1 transitions and more over preferred perimeter and chirality.
+///
+/// Runs the model in a periodic box at every point of a grid. Writes each quantity and its standard error as .npy
+/// (n_alpha, n_P0), the axes P_0.npy and alpha.npy, points.jsonl with all runs, report.json and report.html.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    grid: GridArguments,
+    /// Go on with the diagram that was interrupted in --out; begin if there is none.
+    #[arg(long)]
+    resume: bool,
+    /// Make only a part of the runs, such as 1/4; `merge` puts all parts together.
+    #[arg(long, value_name = "PART/OF")]
+    shard: Option<Shard>,
+    #[command(flatten)]
+    scaling: ScalingArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("phase-diagram", &arguments.common)?;
+    let out = arguments.common.required_out()?;
+    let request = Request::new(&arguments.grid, arguments.common.seed)?;
+    let scaling = arguments.scaling.resolve()?;
+    let header = Header { request, shard: arguments.shard.unwrap_or(Shard::WHOLE) };
+    let (mut journal, mut points) = open(out, header, arguments.resume)?;
+    let request = points.header.request.clone();
+    let coarse = request.coarse_points();
+    if coarse > 0 {
+        run.warn(format!(
+            "the time step {} is above the one advised at {coarse} of {} points; velocities there can come out wrong by tens of per cent",
+            request.dt.unwrap_or(f64::NAN),
+            request.points()
+        ));
+    }
+    let done: BTreeSet<_> = points.records.iter().map(|record| (record.point, record.replica)).collect();
+    let mut jobs = request.jobs(points.header.shard);
+    let all = jobs.len();
+    jobs.retain(|job| !done.contains(&(job.point, job.replica)));
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let ending = work(&request, jobs, (&mut journal, &mut points.records), &mut progress)?;
+    if ending == Ending::Interrupted {
+        let text = format!("interrupted after {} of {all} runs, which are kept", points.records.len());
+        return Err(
+            Failure::interrupted_at(text).with_hint("the same command with --resume goes on from there")
+        );
+    }
+    points.sort();
+    let mut results = journal.results()?;
+    let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
+    run.finish(Some(results), &json, &summary)?;
+    journal.discard()?;
+    Ok(Answer::Positive)
+}
+
+/// Begins a journal, or goes on with one of the same request.
+fn open(out: &Path, header: Header, resume: bool) -> Result<(Journal, Points), Failure> {
+    let place = || out.display().to_string();
+    if Recording::find(out)?.is_some() {
+        return Err(Failure::new(format!("{} holds a run of simulate that was interrupted", place()))
+            .with_hint("give another --out, or remove its folder .voronudge-run"));
+    }
+    let Some(lines) = Journal::find(out)? else {
+        let journal = Journal::begin(out, &serde_json::to_string(&header)?)?;
+        return Ok((journal, Points { header, records: Vec::new() }));
+    };
+    if !resume {
+        return Err(Failure::new(format!("{} holds a diagram that was interrupted", place()))
+            .with_hint("add --resume to go on with it, or remove its folder .voronudge-run"));
+    }
+    let points = Points::parse(lines.iter().map(String::as_str), place())?;
+    if let Some(name) = points.header.difference(&header)? {
+        return Err(Failure::new(format!("the interrupted diagram has another \"{name}\""))
+            .at(place())
+            .with_hint("repeat the options of the interrupted diagram, or give another --out"));
+    }
+    let (journal, _) = Journal::resume(out)?;
+    Ok((journal, points))
+}

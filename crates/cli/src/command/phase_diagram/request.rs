@@ -1,0 +1,281 @@
+//! What a diagram is asked for.
+
+use crate::failure::Failure;
+use clap::{Args, ValueEnum};
+use serde::{Deserialize, Serialize};
+use voronudge_model::Parameters;
+use voronudge_report::chart::AxisScale;
+use voronudge_report::colour::Palette;
+use voronudge_simulate::{recommended_time_step, seed_of_run};
+
+/// Points along an axis, and runs at each, that nobody means.
+const MOST_POINTS: usize = 1000;
+/// Cells up to which all modes are computed.
+const MOST_CELLS_WITH_MODES: usize = 1000;
+
+/// What is measured at each point.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, ValueEnum, Serialize, Deserialize)]
+#[clap(rename_all = "snake_case")]
+#[serde(rename_all = "snake_case")]
+pub(crate) enum Quantity {
+    /// ⟨v²⟩.
+    MeanSquareVelocity,
+    /// Ψ₆, the modulus of the average of ψ_i.
+    HexaticOrder,
+    /// The average of the moduli |ψ_i|.
+    HexaticModulus,
+    /// T1 transitions per cell and time.
+    T1Rate,
+    /// The mean of P_i/√A_i.
+    ShapeIndex,
+    /// The largest Lyapunov exponent λ; about three times the cost of the run itself.
+    Lyapunov,
+    /// ⟨ω²⟩ over all modes of the Jacobian.
+    MeanSquareFrequency,
+}
+
+impl Quantity {
+    /// Name of its files and of its entry in the report.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MeanSquareVelocity => "mean_square_velocity",
+            Self::HexaticOrder => "hexatic_order",
+            Self::HexaticModulus => "hexatic_modulus",
+            Self::T1Rate => "t1_rate",
+            Self::ShapeIndex => "shape_index",
+            Self::Lyapunov => "lyapunov",
+            Self::MeanSquareFrequency => "mean_square_frequency",
+        }
+    }
+
+    /// Heading of its map, and label of its colour bar.
+    pub fn labels(self) -> [&'static str; 2] {
+        match self {
+            Self::MeanSquareVelocity => ["mean square velocity", "⟨v²⟩ ((K_P ℓ_0)²)"],
+            Self::HexaticOrder => ["hexatic order", "Ψ_6"],
+            Self::HexaticModulus => ["hexatic order of neighbourhoods", "⟨|ψ_i|⟩"],
+            Self::T1Rate => ["T1 transitions", "T1 transitions per cell and time (K_P)"],
+            Self::ShapeIndex => ["shape index", "⟨P_i/√A_i⟩"],
+            Self::Lyapunov => ["largest Lyapunov exponent", "λ (K_P)"],
+            Self::MeanSquareFrequency => ["mean square frequency", "⟨ω²⟩ (K_P²)"],
+        }
+    }
+
+    /// How its values are spread over colours.
+    pub fn colours(self) -> (AxisScale, Palette) {
+        match self {
+            Self::MeanSquareVelocity | Self::MeanSquareFrequency => {
+                (AxisScale::Logarithmic, Palette::Sequential)
+            }
+            Self::Lyapunov => (AxisScale::Linear, Palette::Diverging { centre: 0.0 }),
+            _ => (AxisScale::Linear, Palette::Sequential),
+        }
+    }
+}
+
+/// Evenly spaced values.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Range {
+    pub from: f64,
+    pub to: f64,
+    pub count: usize,
+}
+
+impl Range {
+    fn new(name: &str, typed: &[f64]) -> Result<Self, Failure> {
+        let hint = format!("write for example --{name} 3.4 4 13: thirteen values, 0.05 apart");
+        let fault = |text: String| Failure::new(format!("--{name} {text}")).with_hint(hint.clone());
+        let &[from, to, count] = typed else {
+            return Err(fault("needs three numbers".into()));
+        };
+        if !from.is_finite() || !to.is_finite() {
+            return Err(fault(format!("{from} {to}: both ends must be finite")));
+        }
+        if !(1.0..=MOST_POINTS as f64).contains(&count) || count.fract() != 0.0 {
+            return Err(fault(format!("has a count of {count}, but it must be 1 to {MOST_POINTS}")));
+        }
+        if (count == 1.0) != (from == to) || from > to {
+            return Err(fault(format!("{from} {to} {count}: values must rise, or be a single one")));
+        }
+        Ok(Self { from, to, count: count as usize })
+    }
+
+    pub fn values(&self) -> Vec<f64> {
+        let step = (self.to - self.from) / (self.count.max(2) - 1) as f64;
+        // Rounded so that 3 + 7 × 0.1 is 3.7.
+        let round = |value: f64| (value * 1e12).round() / 1e12;
+        (0..self.count).map(|index| round(self.from + index as f64 * step)).collect()
+    }
+}
+
+#[derive(Debug, Args)]
+#[allow(non_snake_case, reason = "the field's symbols are the names of the flags")]
+pub(crate) struct GridArguments {
+    /// Preferred perimeters, in ℓ_0: first, last, how many.
+    #[arg(long = "P_0", num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [3.0, 4.2, 16.0], allow_negative_numbers = true)]
+    P_0: Vec<f64>,
+    /// Chiralities: first, last, how many.
+    #[arg(long = "alpha", num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [0.0, 3.0, 16.0], allow_negative_numbers = true)]
+    alpha: Vec<f64>,
+    /// What to measure, separated by commas.
+    #[arg(long, value_enum, value_name = "QUANTITY,…", value_delimiter = ',', default_values_t = [Quantity::MeanSquareVelocity, Quantity::HexaticOrder, Quantity::HexaticModulus, Quantity::T1Rate, Quantity::ShapeIndex])]
+    quantities: Vec<Quantity>,
+    /// Runs at each point, each from other random positions.
+    #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
+    replicas: usize,
+    /// Cells of each run, in a square box.
+    #[arg(long, default_value_t = 100, allow_negative_numbers = true)]
+    cells: usize,
+    /// Duration of each run, in 1/K_P; the second half is measured.
+    #[arg(long, default_value_t = 100.0, allow_negative_numbers = true)]
+    time: f64,
+    /// Time step [default: at each point the one advised there, 0.01/max(1, |α|)].
+    #[arg(long, allow_negative_numbers = true)]
+    dt: Option<f64>,
+    /// Area elasticity, in K_P/ℓ_0².
+    #[arg(long = "K_A", default_value_t = 0.1, allow_negative_numbers = true)]
+    K_A: f64,
+    /// Least distance between random positions, in ℓ_0.
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
+    least_distance: f64,
+}
+
+/// Everything that the numbers of a diagram depend on.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+pub(crate) struct Request {
+    pub version: String,
+    #[serde(rename = "P_0")]
+    pub preferred_perimeters: Range,
+    #[serde(rename = "alpha")]
+    pub chiralities: Range,
+    pub quantities: Vec<Quantity>,
+    pub replicas: usize,
+    pub cells: usize,
+    pub time: f64,
+    pub dt: Option<f64>,
+    #[serde(rename = "K_A")]
+    pub area_elasticity: f64,
+    pub least_distance: f64,
+    pub seed: u64,
+}
+
+/// One run: a point of the grid, row by row along P_0, and which of the runs there.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) struct Job {
+    pub point: usize,
+    pub replica: usize,
+}
+
+impl Request {
+    pub fn new(typed: &GridArguments, seed: u64) -> Result<Self, Failure> {
+        let positive = |name: &str, value: f64, hint: &str| {
+            if value.is_finite() && value > 0.0 {
+                return Ok(());
+            }
+            Err(Failure::new(format!("--{name} is {value}, but it must be positive and finite"))
+                .with_hint(hint))
+        };
+        positive("time", typed.time, "100 is enough for most points; near the transition take more")?;
+        if let Some(dt) = typed.dt {
+            positive("dt", dt, "leave --dt out for the step that is advised at each point")?;
+        }
+        for (name, count, most) in
+            [("replicas", typed.replicas, MOST_POINTS), ("cells", typed.cells, usize::MAX)]
+        {
+            if count == 0 || count > most {
+                return Err(Failure::new(format!("--{name} is {count}, but it must be 1 or more"))
+                    .with_hint(format!("leave --{name} out for the default")));
+            }
+        }
+        for (name, value) in [("K_A", typed.K_A), ("least-distance", typed.least_distance)] {
+            if !(value.is_finite() && value >= 0.0) {
+                return Err(Failure::new(format!("--{name} is {value}, but it must not be negative"))
+                    .with_hint(format!("leave --{name} out for the default")));
+            }
+        }
+        let mut quantities = typed.quantities.clone();
+        quantities.sort();
+        quantities.dedup();
+        if quantities.contains(&Quantity::MeanSquareFrequency) && typed.cells > MOST_CELLS_WITH_MODES {
+            return Err(Failure::new(format!(
+                "mean_square_frequency needs all modes of {} cells, but {MOST_CELLS_WITH_MODES} are the most",
+                typed.cells
+            ))
+            .with_hint("ask for fewer cells, or leave mean_square_frequency out"));
+        }
+        Ok(Self {
+            version: env!("CARGO_PKG_VERSION").into(),
+            preferred_perimeters: Range::new("P_0", &typed.P_0)?,
+            chiralities: Range::new("alpha", &typed.alpha)?,
+            quantities,
+            replicas: typed.replicas,
+            cells: typed.cells,
+            time: typed.time,
+            dt: typed.dt,
+            area_elasticity: typed.K_A,
+            least_distance: typed.least_distance,
+            seed,
+        })
+    }
+
+    pub fn points(&self) -> usize {
+        self.preferred_perimeters.count * self.chiralities.count
+    }
+
+    /// All runs of a shard, in order.
+    pub fn jobs(&self, shard: Shard) -> Vec<Job> {
+        let all = (0..self.points())
+            .flat_map(|point| (0..self.replicas).map(move |replica| Job { point, replica }));
+        all.enumerate().filter(|(index, _)| index % shard.of == shard.part - 1).map(|(_, job)| job).collect()
+    }
+
+    /// The model at a point, with K_P and the mean area as units.
+    pub fn parameters(&self, point: usize) -> Parameters<f64> {
+        let (row, column) =
+            (point / self.preferred_perimeters.count, point % self.preferred_perimeters.count);
+        Parameters {
+            area_elasticity: self.area_elasticity,
+            preferred_perimeter: self.preferred_perimeters.values()[column],
+            chirality: self.chiralities.values()[row],
+            ..Parameters::default()
+        }
+    }
+
+    /// The time step at a point.
+    pub fn time_step(&self, point: usize) -> f64 {
+        self.dt.unwrap_or_else(|| recommended_time_step(&self.parameters(point), 1.0)).min(self.time)
+    }
+
+    /// Points at which the step is larger than advised.
+    pub fn coarse_points(&self) -> usize {
+        let advised = |point: usize| recommended_time_step(&self.parameters(point), 1.0) * (1.0 + 1e-9);
+        (0..self.points()).filter(|&point| self.time_step(point) > advised(point)).count()
+    }
+
+    pub fn seed(&self, job: Job) -> u64 {
+        seed_of_run(self.seed, job.point as u64, job.replica as u64)
+    }
+}
+
+/// Part `part` of `of`, from one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+pub(crate) struct Shard {
+    pub part: usize,
+    pub of: usize,
+}
+
+impl Shard {
+    pub const WHOLE: Self = Self { part: 1, of: 1 };
+}
+
+impl std::str::FromStr for Shard {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let parts = text.split_once('/').and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
+        match parts {
+            Some((part, of)) if 1 <= part && part <= of => Ok(Self { part, of }),
+            _ => Err("a shard is written 1/4, 2/4, 3/4 or 4/4".into()),
+        }
+    }
+}

@@ -1,0 +1,57 @@
+//! Cells as they lie and move: polygons coloured by one number, and velocities.
+
+use super::cell_map::{CellScalar, draw_cells};
+use super::no_data;
+use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
+use crate::colour::{ColourScale, INK};
+use crate::colour_bar::ColourBar;
+use crate::map::{MAP_WIDTH, Map};
+use crate::numbers::{tick_labels, ticks};
+use crate::view::{FrameView, Units};
+
+/// Cells coloured by a number, with their measured velocities as arrows; a scale bar, a colour bar and an arrow of round length
+/// state the scales. Without `arrows` nothing moves.
+#[must_use]
+pub fn configuration_map(
+    frame: &FrameView,
+    scalar: &CellScalar,
+    arrows: Option<&ArrowScale>,
+    units: &Units,
+) -> String {
+    let colours = ColourScale::robust(scalar.values.iter().copied(), scalar.palette);
+    let (Some(mut map), Some(colours)) = (Map::new(frame, &scalar.label), colours) else {
+        return no_data(&scalar.label);
+    };
+    draw_cells(&mut map, frame, (scalar, &colours));
+    if let Some(scale) = arrows {
+        let mut all = Arrows::default();
+        for cell in &frame.cells {
+            if let Some(velocity) = cell.measured {
+                all.push_on(&map.view, cell.centre, velocity, scale);
+            }
+        }
+        // A light rim keeps dark arrows legible on dark cells.
+        map.layer.raw("<g opacity=\".75\" stroke=\"#fff\" stroke-width=\"2.6\">");
+        all.draw(&mut map.layer, "#fff");
+        map.layer.raw("</g>\n");
+        all.draw(&mut map.layer, INK);
+    }
+    map.boundary(frame);
+    let mut legend = map.with_legend(82.0);
+    legend.scale_bar(units);
+    if let Some(scale) = arrows {
+        let unit = units.velocity_text();
+        let mark = ReferenceMark { unit: &unit, remark: "", colour: INK };
+        legend.reference_arrow(MAP_WIDTH / 2.0, scale, &mark);
+    }
+    let positions = ticks(colours.limits(), 5);
+    let labels = tick_labels(&positions);
+    let bar = ColourBar {
+        ends: [40.0, MAP_WIDTH - 40.0],
+        top: legend.top + 36.0,
+        ticks: positions.into_iter().zip(labels).collect(),
+        label: &scalar.label,
+    };
+    bar.draw(&mut legend.svg, &colours);
+    legend.svg.finish()
+}

@@ -1,0 +1,60 @@
+//! The page of the command `simulate`.
+
+use serde::Serialize;
+
+use super::{Card, Figure, PageHead, Template, render};
+use crate::error::ReportError;
+use crate::infer_report::RunRecord;
+
+const TEMPLATE: Template =
+    Template { name: "simulate.html", source: include_str!("../../templates/simulate.html") };
+
+/// Everything the page of `simulate` shows.
+#[derive(Debug, Clone, Copy)]
+pub struct SimulatePage<'a> {
+    /// Title of the page.
+    pub title: &'a str,
+    /// The answer in one plain sentence.
+    pub headline: &'a str,
+    /// Further plain sentences, one paragraph each.
+    pub summary: &'a [String],
+    /// Key numbers.
+    pub cards: &'a [Card],
+    /// The cells at the end of the run.
+    pub configuration: &'a Figure,
+    /// What happened in time.
+    pub course: &'a [Figure],
+    /// What the tissue is like at the end.
+    pub structure: &'a [Figure],
+    /// The run.
+    pub run: &'a RunRecord,
+}
+
+#[derive(Serialize)]
+struct Context<'a> {
+    head: PageHead<'a>,
+    configuration: &'a Figure,
+    course: &'a [Figure],
+    structure: &'a [Figure],
+}
+
+impl SimulatePage<'_> {
+    /// The HTML text of the page.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Template`] if the template cannot be filled.
+    pub fn render(&self) -> Result<String, ReportError> {
+        let head = PageHead {
+            title: self.title,
+            headline: self.headline,
+            summary: self.summary,
+            doubts: &[],
+            warnings: self.run.warnings.iter().map(String::as_str).collect(),
+            cards: self.cards.to_vec(),
+            run: self.run,
+        };
+        let Self { configuration, course, structure, .. } = *self;
+        render(TEMPLATE, &Context { head, configuration, course, structure })
+    }
+}
