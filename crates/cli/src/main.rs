@@ -27,6 +27,7 @@ enum Command {
     Evaluate(command::evaluate::Arguments),
     Spectrum(Box<command::spectrum::Arguments>),
     Simulate(command::simulate::Arguments),
+    Moduli(Box<command::moduli::Arguments>),
     CheckGradients(command::check_gradients::Arguments),
     Import(command::import::Arguments),
 }
@@ -68,6 +69,7 @@ fn run() -> Result<Answer, Failure> {
         Command::Evaluate(arguments) => command::evaluate::run(arguments),
         Command::Spectrum(arguments) => command::spectrum::run(*arguments),
         Command::Simulate(arguments) => command::simulate::run(arguments),
+        Command::Moduli(arguments) => command::moduli::run(*arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
         Command::Import(arguments) => command::import::run(arguments),
     }

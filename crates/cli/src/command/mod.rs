@@ -6,5 +6,6 @@ pub(crate) mod evaluate;
 mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
+pub(crate) mod moduli;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

@@ -6,6 +6,7 @@
 mod directions;
 mod discover;
 mod infer;
+mod moduli;
 mod parameter_table;
 mod spectrum;
 mod uncertainty;
@@ -13,6 +14,7 @@ mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
+pub use moduli::ModuliPage;
 pub use spectrum::SpectrumPage;
 pub use uncertainty::Uncertainty;
 
