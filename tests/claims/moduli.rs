@@ -2,7 +2,7 @@
 
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
-use voronudge_simulate::moduli::{self, Elastic, Moduli, Motion, Relaxation, Settings};
+use voronudge_simulate::moduli::{self, Elastic, Motion, Relaxation, Settings};
 use voronudge_simulate::{RandomPlacement, Simulation, generator, honeycomb};
 use voronudge_theory::MeanField;
 
@@ -20,16 +20,14 @@ fn theory(p: &Parameters<f64>) -> MeanField {
     .unwrap()
 }
 
-/// A disordered solid: random cells that came to rest.
-fn solid(cells: usize, seed: u64, p: &Parameters<f64>) -> Elastic {
+/// Random cells, brought to rest if that can be done.
+fn disordered(cells: usize, seed: u64, p: &Parameters<f64>) -> Elastic {
     let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2]).unwrap();
     let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(seed)).unwrap();
     let simulation =
         Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(p)).unwrap();
-    let relaxation = Relaxation { time_step: 0.04, ..Relaxation::default() };
-    let elastic = moduli::elastic(&simulation, &Settings { relaxation, ..Settings::default() }).unwrap();
-    assert_eq!((elastic.motion, elastic.restless), (Motion::AtRest, 0), "{elastic:?}");
-    elastic
+    let relaxation = Relaxation { time_step: 0.02, longest: 100.0, ..Relaxation::default() };
+    moduli::elastic(&simulation, &Settings { relaxation, ..Settings::default() }).unwrap()
 }
 
 #[test]
@@ -60,26 +58,31 @@ fn a_honeycomb_has_the_moduli_and_the_prestress_of_the_theory() {
     }
 }
 
-/// The mean of a few disordered solids at P_0 = 3.0 is within 15 % of the honeycomb; docs/commands/moduli.md has more of them.
+/// Disordered solids at P_0 = 3.0 against the honeycomb. Displacements that follow the strain give its moduli; in relaxing, a
+/// disordered solid loses a sixth to a third of |Kᵒ| and hardly any of μ. docs/commands/moduli.md has more of them.
 #[test]
 fn disordered_solids_are_about_as_stiff_as_the_honeycomb() {
-    let p = parameters(0.1, 3.0, 0.5);
-    let solids: Vec<Moduli> = (1..=4).map(|seed| solid(100, seed, &p).moduli).collect();
-    let mean = |of: fn(&Moduli) -> f64| solids.iter().map(of).sum::<f64>() / solids.len() as f64;
+    let p = parameters(0.1, 3.0, 2.0);
+    let solids: Vec<Elastic> = (1..=4).map(|seed| disordered(100, seed, &p)).collect();
+    assert!(solids.iter().all(|solid| solid.motion == Motion::AtRest && solid.restless == 0));
+    let ratio = |of: fn(&Elastic) -> f64, expected: f64| solids.iter().map(of).sum::<f64>() / 4.0 / expected;
     let expected = theory(&p).moduli();
-    let (shear, odd_shear) = (mean(|m| m.shear), mean(|m| m.odd_shear));
-    assert!((shear / expected.shear - 1.0).abs() < 0.15, "{shear} against {}", expected.shear);
-    assert!((odd_shear / expected.odd_shear - 1.0).abs() < 0.15, "{odd_shear} against {}", expected.odd_shear);
+    let near_one = |ratio: f64| (ratio - 1.0).abs() < 0.15;
+    assert!(near_one(ratio(|solid| solid.affine.shear, expected.shear)));
+    assert!(near_one(ratio(|solid| solid.affine.odd_shear, expected.odd_shear)));
+    assert!(near_one(ratio(|solid| solid.moduli.bulk, expected.bulk)));
+    assert!(near_one(ratio(|solid| solid.moduli.shear, expected.shear)));
+    let odd_shear = ratio(|solid| solid.moduli.odd_shear, expected.odd_shear);
+    assert!((0.65..1.0).contains(&odd_shear), "{odd_shear}");
 }
 
-/// A mirror turns the chirality round and with it the odd moduli; without chirality there are none.
+/// Beyond the limit of the solid a small shear modulus may be left: the cells need not have come to rest.
 #[test]
 fn without_chirality_nothing_is_odd_and_the_solid_softens_towards_the_liquid() {
-    let [stiff, soft] = [3.0, 4.0].map(|p_0| solid(64, 3, &parameters(0.1, p_0, 0.0)));
-    for elastic in [&stiff, &soft] {
-        // Forces with a potential: the response is that of a symmetric matrix.
-        let odd = [elastic.moduli.odd_bulk, elastic.moduli.odd_shear];
-        assert!(odd.iter().all(|x| x.abs() < 1e-4 * stiff.moduli.shear), "{elastic:?}");
-    }
+    let [stiff, soft] = [3.0, 4.0].map(|p_0| disordered(36, 3, &parameters(0.1, p_0, 0.0)));
+    assert_eq!(stiff.motion, Motion::AtRest);
+    // Forces with a potential: the response is that of a symmetric matrix.
+    let odd = [stiff.moduli.odd_bulk, stiff.moduli.odd_shear];
+    assert!(odd.iter().all(|x| x.abs() < 1e-4 * stiff.moduli.shear), "{stiff:?}");
     assert!(stiff.moduli.shear > 10.0 * soft.moduli.shear, "{} {}", stiff.moduli.shear, soft.moduli.shear);
 }

@@ -128,7 +128,7 @@ impl Error {
             ),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
-            Self::Strain { .. } => Some("1e-3 is usual for a tissue at rest, 0.1 for one that flows"),
+            Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
             Self::Driving { .. } | Self::Rate { .. } | Self::Interrupted => None,
             Self::State { .. } => Some("go on with the run that the state was taken from"),
             Self::Honeycomb { .. } => Some("take a multiple of four, such as 100"),

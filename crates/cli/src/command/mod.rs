@@ -8,5 +8,6 @@ pub(crate) mod import;
 pub(crate) mod infer;
 pub(crate) mod merge;
 pub(crate) mod phase_diagram;
+pub(crate) mod moduli;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

@@ -6,6 +6,7 @@
 mod directions;
 mod discover;
 mod infer;
+mod moduli;
 mod parameter_table;
 mod phase_diagram;
 mod simulate;
@@ -17,6 +18,7 @@ pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
 pub use phase_diagram::PhasePage;
 pub use simulate::SimulatePage;
+pub use moduli::ModuliPage;
 pub use spectrum::SpectrumPage;
 pub use uncertainty::Uncertainty;
 

@@ -43,10 +43,8 @@ impl Deformation {
         let u = strain.stretch(amount);
         let length = u[0][0].hypot(u[1][0]);
         let (cosine, sine) = (u[0][0] / length, u[1][0] / length);
-        let gradient = [
-            [length, cosine * u[0][1] + sine * u[1][1]],
-            [0.0, cosine * u[1][1] - sine * u[0][1]],
-        ];
+        let gradient =
+            [[length, cosine * u[0][1] + sine * u[1][1]], [0.0, cosine * u[1][1] - sine * u[0][1]]];
         Self { gradient, turn: [cosine, sine] }
     }
 

@@ -54,7 +54,7 @@ pub struct Settings {
 
 impl Default for Settings {
     fn default() -> Self {
-        Self { relaxation: Relaxation::default(), strain: 1e-3, flowing: Flowing::default() }
+        Self { relaxation: Relaxation::default(), strain: 1e-5, flowing: Flowing::default() }
     }
 }
 
@@ -76,7 +76,7 @@ impl Default for Flowing {
     }
 }
 
-/// Four numbers, one for each modulus of an isotropic plane medium (rate × area).
+/// Four numbers, one for each modulus of an isotropic plane medium (rate: friction is absorbed).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Moduli {
     /// Bulk modulus `B`.
@@ -90,7 +90,7 @@ pub struct Moduli {
 }
 
 /// Derivatives of stresses, row = `(σ_xx + σ_yy)/2`, `(σ_yx − σ_xy)/2`, `(σ_xx − σ_yy)/2`, `(σ_xy + σ_yx)/2`, by strains without
-/// rotation, column = `∇·u`, `e_1`, `e_2` (rate × area).
+/// rotation, column = `∇·u`, `e_1`, `e_2` (rate: friction is absorbed).
 pub type Response = [[f64; 3]; 4];
 
 impl Moduli {
@@ -206,9 +206,9 @@ pub fn elastic_until(simulation: &Simulation, settings: &Settings, stop: Stop<'_
         .collect::<Result<_, Error>>()?;
     let prestress = match motion {
         Motion::AtRest => stress_of(&base),
-        Motion::Flowing => {
-            whole(std::array::from_fn(|k| ends.iter().map(|end| end.after[k]).sum::<f64>() / ends.len() as f64))
-        }
+        Motion::Flowing => whole(std::array::from_fn(|k| {
+            ends.iter().map(|end| end.after[k]).sum::<f64>() / ends.len() as f64
+        })),
     };
     let slopes = |share: usize, of: fn(&StrainedState) -> [f64; 4]| -> Response {
         std::array::from_fn(|part| {

@@ -4,39 +4,41 @@ use super::Observer;
 use crate::{Error, Simulation, State};
 use voronudge_geometry::{Domain, Vector};
 use voronudge_linalg::{BlockSparse, LinearSystem};
-use voronudge_model::jacobian;
+use voronudge_model::{BlockMatrix, jacobian};
 
 /// When a tissue counts as being at rest, and how it is brought there.
 ///
-/// The equation of motion is integrated in time. Once all cells are slow, Newton's method goes on, `J δ = −v`, which gets over the
-/// slowest modes at once; if it does not lead to rest near by, time goes on.
+/// The equation of motion is integrated in time. Once all cells are slow, implicit steps go on, `(1/h − J) δ = v`, whose size `h`
+/// grows as the cells slow down: they follow the motion, get over the slowest modes quickly, and end as Newton's method. Where
+/// they do not lead to lower speeds, time goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Relaxation {
     /// The time step.
     pub time_step: f64,
-    /// The longest time a tissue is given to come to rest.
+    /// The longest time a tissue is given to come to rest, implicit steps not counted.
     pub longest: f64,
     /// A tissue in which no cell is faster is at rest (length/time).
     pub tolerance: f64,
-    /// Below this speed of the fastest cell Newton's method is tried (length/time).
+    /// Below this speed of the fastest cell implicit steps are tried (length/time).
     pub slow: f64,
 }
 
 impl Default for Relaxation {
     /// For unit cells and `K_P = 1`.
     fn default() -> Self {
-        Self { time_step: 0.02, longest: 300.0, tolerance: 1e-10, slow: 1e-3 }
+        Self { time_step: 0.01, longest: 300.0, tolerance: 1e-10, slow: 1e-2 }
     }
 }
 
 /// Steps between two looks at the speed.
 const STEPS: usize = 100;
-/// Most iterations of Newton's method.
-const ITERATIONS: usize = 12;
-/// Halvings of a step that does not lead to lower speed.
-const HALVINGS: usize = 4;
-/// Farthest that Newton's method may take a cell, in mean spacings: a rest farther away may be another one.
-const FARTHEST: f64 = 0.1;
+/// Most implicit steps in a row.
+const MOST: usize = 200;
+/// The first implicit step and the largest, in time steps.
+const FIRST: f64 = 100.0;
+const LARGEST: f64 = 1e10;
+/// Farthest that one implicit step may take a cell, in mean spacings.
+const FARTHEST: f64 = 0.05;
 
 /// Largest speed.
 pub(super) fn fastest(velocities: &[Vector<f64>]) -> f64 {
@@ -48,17 +50,12 @@ impl Relaxation {
     pub(super) fn relax(&self, simulation: &mut Simulation, observer: Observer<'_>) -> Result<f64, Error> {
         let end = simulation.time() + self.longest;
         loop {
-            let speed = fastest(simulation.velocities());
-            if speed <= self.tolerance {
-                return Ok(speed);
+            let mut speed = fastest(simulation.velocities());
+            if speed > self.tolerance && speed <= self.slow {
+                self.implicit(simulation, observer)?;
+                speed = fastest(simulation.velocities());
             }
-            if speed <= self.slow
-                && let Some(rest) = self.newton(simulation)
-            {
-                *simulation = rest;
-                return Ok(fastest(simulation.velocities()));
-            }
-            if simulation.time() >= end {
+            if speed <= self.tolerance || simulation.time() >= end {
                 return Ok(speed);
             }
             for _ in 0..STEPS {
@@ -68,52 +65,48 @@ impl Relaxation {
         }
     }
 
-    /// The rest near by, if Newton's method finds one.
-    fn newton(&self, from: &Simulation) -> Option<Simulation> {
-        let mut now = from.clone();
-        for _ in 0..ITERATIONS {
-            let speed = fastest(now.velocities());
+    /// Implicit steps for as long as they lead to lower speeds.
+    fn implicit(&self, simulation: &mut Simulation, observer: Observer<'_>) -> Result<(), Error> {
+        let first = FIRST * self.time_step;
+        let mut h = first;
+        for _ in 0..MOST {
+            let speed = fastest(simulation.velocities());
             if speed <= self.tolerance {
-                return Some(now);
+                return Ok(());
             }
-            let step = newton_step(&now)?;
-            now = (0..HALVINGS).find_map(|halvings| {
-                let share = 0.5f64.powi(halvings as i32);
-                let moved = |(r, d): (&Vector<f64>, &Vector<f64>)| r + d * share;
-                let positions: Vec<_> = now.positions().iter().zip(&step).map(moved).collect();
-                let far = |(r, from): (&Vector<f64>, &Vector<f64>)| (r - from).norm();
-                let farthest = positions.iter().zip(from.positions()).map(far).fold(0.0, f64::max);
-                if farthest.is_nan() || farthest > FARTHEST * now.spacing() {
-                    return None;
-                }
-                let next = now.clone().in_state(State { positions, ..now.state().clone() }).ok()?;
-                (fastest(next.velocities()) < speed).then_some(next)
-            })?;
+            observer.look()?;
+            let next = implicit_step(simulation, h);
+            let Some((after, next)) = next.map(|next| (fastest(next.velocities()), next)) else {
+                return Ok(());
+            };
+            let moved =
+                next.positions().iter().zip(simulation.positions()).map(|(r, from)| (r - from).norm());
+            let near = moved.fold(0.0, f64::max) < FARTHEST * simulation.spacing();
+            if near && after < 2.0 * speed {
+                *simulation = next;
+                h = (h * (2.0 * speed / after).clamp(1.0, 100.0)).min(LARGEST * self.time_step);
+            } else if h > first {
+                h = (0.1 * h).max(first);
+            } else {
+                return Ok(());
+            }
         }
-        None
+        Ok(())
     }
 }
 
-/// The displacement `δ` with `J δ = −v`. The first cell stays: translations are free.
-fn newton_step(simulation: &Simulation) -> Option<Vec<Vector<f64>>> {
+/// The state after an implicit step of size `h`; none if it cannot be made.
+fn implicit_step(simulation: &Simulation, h: f64) -> Option<Simulation> {
     let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
-    let matrix = jacobian(tessellation, positions, simulation.model());
-    let (mut row_start, mut column, mut block) = (vec![0], Vec::new(), Vec::new());
-    for row in 1..positions.len() {
-        for (other, entries) in matrix.row(row).filter(|(other, _)| *other > 0) {
-            column.push(other as u32 - 1);
-            block.push(*entries);
-        }
-        row_start.push(column.len());
-    }
     let Domain::Periodic(cell_box) = tessellation.domain() else {
         return None;
     };
-    let places: Vec<[f64; 2]> = positions[1..].iter().map(|r| cell_box.wrap(*r).into()).collect();
-    let system = LinearSystem::new(&BlockSparse::new(row_start, column, block).ok()?, &places).ok()?;
-    let mut solution: Vec<f64> = simulation.velocities()[1..].iter().flat_map(|v| [-v.x, -v.y]).collect();
-    system.solve(&mut solution);
-    let mut step = vec![Vector::zeros()];
-    step.extend(solution.chunks_exact(2).map(|d| Vector::new(d[0], d[1])));
-    Some(step)
+    let BlockMatrix { row_start, column, block } = jacobian(tessellation, positions, simulation.model());
+    let places: Vec<[f64; 2]> = positions.iter().map(|r| cell_box.wrap(*r).into()).collect();
+    let matrix = BlockSparse::new(row_start, column, block).ok()?;
+    let mut step: Vec<f64> = simulation.velocities().iter().flat_map(|v| [-v.x, -v.y]).collect();
+    LinearSystem::new(&matrix, 1.0 / h, &places).ok()?.solve(&mut step);
+    let moved = |(r, d): (&Vector<f64>, &[f64])| r + Vector::new(d[0], d[1]);
+    let positions = positions.iter().zip(step.chunks_exact(2)).map(moved).collect();
+    simulation.clone().in_state(State { positions, ..simulation.state().clone() }).ok()
 }
