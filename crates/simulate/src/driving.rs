@@ -185,6 +185,6 @@ impl Driving {
 }
 
 /// The random numbers of one chunk of cells in one step.
-fn stream(seed: u64, step: u64, chunk: u64) -> Pcg64 {
+pub(crate) fn stream(seed: u64, step: u64, chunk: u64) -> Pcg64 {
     Pcg64::new(u128::from(seed) << 64 | 0x5851_F42D_4C95_7F2D, u128::from(step) << 64 | u128::from(chunk))
 }

@@ -90,6 +90,54 @@ pub enum Error {
         /// Number of cells asked for.
         cells: usize,
     },
+    /// A rate or a length of the turnover of cells that cannot be.
+    #[error("the {name} is {value}, but it must be {required}")]
+    Turnover {
+        /// What it is.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+        /// What it must be.
+        required: &'static str,
+    },
+    /// A sheared box has no straight edges.
+    #[error("the upper image of the box is displaced by {offset}, but a channel has straight edges along y")]
+    ShearedChannel {
+        /// The displacement.
+        offset: f64,
+    },
+    /// All cells are gone.
+    #[error("at time {time} the last cell is extruded")]
+    Extinct {
+        /// When.
+        time: f64,
+    },
+    /// More cells than are allowed.
+    #[error("at time {time} there would be {cells} cells (limit {limit})")]
+    TooManyCells {
+        /// When.
+        time: f64,
+        /// How many there would be.
+        cells: usize,
+        /// How many are allowed.
+        limit: usize,
+    },
+    /// More births in one step than there are places apart from each other.
+    #[error("at time {time} there is no place left for one of {births} new cells in one step of {time_step}")]
+    NoPlace {
+        /// When.
+        time: f64,
+        /// New cells of the step.
+        births: usize,
+        /// The time step `Δt`.
+        time_step: f64,
+    },
+    /// Bins that cannot be.
+    #[error("{bins} bins across the channel, but the number must be even and at least 2")]
+    Bins {
+        /// The number given.
+        bins: usize,
+    },
     /// A cell that moves too far in one step: the time step is too large for the forces.
     #[error(
         "at time {time}, cell {cell} would move by {distance} in one step of {time_step} (limit {limit}): the time step \
@@ -130,6 +178,14 @@ impl Error {
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
             Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
             Self::Driving { .. } | Self::Rate { .. } | Self::Interrupted => None,
+            Self::Driving { .. } | Self::Turnover { .. } => None,
+            Self::ShearedChannel { .. } => Some("give a box with a right angle"),
+            Self::Extinct { .. } => Some("lower the rate of extrusion, or raise that of proliferation"),
+            Self::TooManyCells { .. } => {
+                Some("lower the rate of proliferation, raise that of extrusion, or allow more cells")
+            }
+            Self::NoPlace { .. } => Some("take a smaller time step, or lower the rates"),
+            Self::Bins { .. } => Some("take an even number, such as two for each cell size"),
             Self::State { .. } => Some("go on with the run that the state was taken from"),
             Self::Honeycomb { .. } => Some("take a multiple of four, such as 100"),
             Self::NoFrames => Some("ask for one frame to get the end of the run"),

@@ -33,6 +33,8 @@
 //! ```
 
 pub mod collapse;
+mod channel;
+mod channel_run;
 mod driving;
 mod error;
 mod honeycomb;
@@ -44,7 +46,10 @@ mod schedule;
 mod simulation;
 mod spatial_order;
 mod time_step;
+mod turnover;
 
+pub use channel::Channel;
+pub use channel_run::{ChannelRun, ChannelSchedule, run_channel};
 pub use driving::{Driving, Shear};
 pub use error::Error;
 pub use honeycomb::honeycomb;
@@ -54,3 +59,4 @@ pub use schedule::{Completion, Event, Frame, RunState, Schedule, Summary, resume
 pub use simulation::{Simulation, State};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
+pub use turnover::{EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Proliferation, Turnover};

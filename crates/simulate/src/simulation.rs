@@ -1,5 +1,7 @@
 //! The state of a simulation and one step of it.
 
+mod replacement;
+
 use crate::method::{THIRD_ORDER, change_of_step, largest_error};
 use crate::{Driving, Error, Method, Shear};
 use rayon::prelude::*;

@@ -71,4 +71,20 @@ impl MeanField {
         let longitudinal = bulk + shear;
         (longitudinal > 0.0).then(|| (odd_bulk - odd_shear) / longitudinal)
     }
+
+    /// The chirality at which the ratio `v_y/v_x` of [`transverse_flow`](Self::transverse_flow) would be that; the chirality of the
+    /// theory itself plays no part. `α = (v_y/v_x) (3 − a P_0/ℓ_0)` for K_A = 0.
+    ///
+    /// `None` if `B + μ` is not positive.
+    ///
+    /// ```
+    /// use voronudge_theory::{MeanField, Parameters};
+    /// let theory = MeanField::new(Parameters { preferred_perimeter: 4.0, chirality: 2.9, ..Parameters::default() })?;
+    /// let ratio = theory.transverse_flow().unwrap();
+    /// assert!((theory.chirality_of_flow(ratio).unwrap() - 2.9).abs() < 1e-12);
+    /// # Ok::<(), voronudge_theory::Error>(())
+    /// ```
+    pub fn chirality_of_flow(&self, ratio: f64) -> Option<f64> {
+        self.with_chirality(1.0).transverse_flow().map(|of_one| ratio / of_one)
+    }
 }

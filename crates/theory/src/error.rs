@@ -24,4 +24,18 @@ pub enum Error {
         /// What was given.
         q: [f64; 2],
     },
+    /// A number of a channel that cannot be.
+    #[error("the {name} is {value}")]
+    Channel {
+        /// What it is.
+        name: &'static str,
+        /// What was given.
+        value: f64,
+    },
+    /// A grid too coarse to have a face inside.
+    #[error("{cells} grid cells from the edge to the middle, but at least 2 are needed")]
+    Grid {
+        /// What was given.
+        cells: usize,
+    },
 }

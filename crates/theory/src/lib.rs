@@ -25,6 +25,7 @@
 //! # Ok::<(), voronudge_theory::Error>(())
 //! ```
 
+mod channel;
 mod continuum;
 mod dynamical_matrix;
 mod edge;
@@ -34,6 +35,7 @@ mod parameters;
 mod spectrum;
 mod stability;
 
+pub use channel::{ChannelEvolution, ChannelMedium, ChannelTurnover};
 pub use continuum::Moduli;
 pub use edge::EdgeRow;
 pub use error::Error;

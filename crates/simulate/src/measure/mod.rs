@@ -1,6 +1,7 @@
 //! Measurements on a state: numbers of a field or of a tissue.
 
 mod block_average;
+mod channel;
 mod displacement;
 mod hexatic;
 mod lyapunov;
@@ -9,6 +10,7 @@ mod structure_factor;
 mod transitions;
 
 pub use block_average::BlockAverage;
+pub use channel::{ChannelProfile, ChannelRecorder, DecayFit, DecayPoint, DecayShape, Estimate, fit_decay};
 pub use displacement::mean_square_displacement;
 pub use hexatic::{Hexatic, hexatic};
 pub use lyapunov::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};

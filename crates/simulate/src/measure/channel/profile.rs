@@ -1,0 +1,103 @@
+//! Time averages across a channel.
+
+use super::Estimate;
+use super::recorder::Sample;
+use crate::Channel;
+
+/// Averages over time and the length of a channel as functions of `x`.
+///
+/// Over bins:
+///
+/// ```text
+/// ρ = ⟨N_b⟩/(h L)        v = ⟨Σ_b Δr/Δt⟩/⟨N_b⟩        k_prolif, k_extr = births, extrusions per cell and time
+/// ```
+///
+/// with the number of cells `N_b` in a bin of width `h` and the displacements `Δr` of steps `Δt`. The displacement of a step is the
+/// average of the model's velocity over it; births and deaths move no cell. Between bins, weighted by the distance from the face:
+///
+/// ```text
+/// ∂_x(ρ v_x)/ρ        and        k_prolif − k_extr
+/// ```
+///
+/// which agree in the steady state, since cells are conserved (continuity equation of the main text).
+#[derive(Debug, Clone, PartialEq)]
+pub struct ChannelProfile {
+    /// Centres of the bins, from the left edge.
+    pub centres: Vec<f64>,
+    /// Cells per area ρ.
+    pub density: Vec<Estimate>,
+    /// Velocities v_x and v_y.
+    pub velocity: [Vec<Estimate>; 2],
+    /// Births per cell and time.
+    pub birth_rate: Vec<Estimate>,
+    /// Extrusions per cell and time.
+    pub death_rate: Vec<Estimate>,
+    /// Places between bins.
+    pub faces: Vec<f64>,
+    /// ∂_x(ρ v_x)/ρ there.
+    pub flux_rate: Vec<Estimate>,
+    /// k_prolif − k_extr there, as counted.
+    pub net_rate: Vec<Estimate>,
+    /// The difference of both: the rate at which cells become fewer there.
+    pub imbalance: Vec<Estimate>,
+}
+
+impl ChannelProfile {
+    pub(super) fn over_bins(channel: Channel, samples: &[Sample]) -> Self {
+        let bins = samples.first().map_or(0, |sample| sample.residence.len());
+        let width = channel.width() / bins as f64;
+        let area = width * channel.length();
+        let around = |face: usize| [((face + bins - 1) % bins, 1.0), (face, 1.0)];
+        Self::over(samples, (width, area), (0..bins).map(around).collect())
+    }
+
+    pub(super) fn over_half(channel: Channel, samples: &[Sample]) -> Self {
+        let bins = samples.first().map_or(0, |sample| sample.residence.len());
+        let width = 0.5 * channel.width() / bins as f64;
+        let area = 2.0 * width * channel.length();
+        // Beyond the edge and beyond the middle is the other half, where velocities are opposite. Faces there are counted twice.
+        let around = |face: usize| match face {
+            0 => [(0, -1.0), (0, 1.0)],
+            face if face == bins => [(bins - 1, 1.0), (bins - 1, -1.0)],
+            face => [(face - 1, 1.0), (face, 1.0)],
+        };
+        Self::over(samples, (width, area), (0..=bins).map(around).collect())
+    }
+
+    /// `around` names the bins left and right of each face, with the sign of the velocity there.
+    fn over(samples: &[Sample], (width, area): (f64, f64), around: Vec<[(usize, f64); 2]>) -> Self {
+        let bins = samples.first().map_or(0, |sample| sample.residence.len());
+        let over_bins = |pair: &dyn Fn(&Sample, usize) -> (f64, f64)| -> Vec<Estimate> {
+            let series = |bin| samples.iter().map(|sample| pair(sample, bin)).collect::<Vec<_>>();
+            (0..bins).map(|bin| Estimate::ratio(&series(bin))).collect()
+        };
+        let over_faces = |pair: &dyn Fn(&Sample, usize) -> (f64, f64)| -> Vec<Estimate> {
+            let series = |face| samples.iter().map(|sample| pair(sample, face)).collect::<Vec<_>>();
+            (0..around.len()).map(|face| Estimate::ratio(&series(face))).collect()
+        };
+        let there = |sample: &Sample, face: usize| {
+            around[face].iter().map(|&(bin, _)| 0.5 * sample.residence[bin]).sum::<f64>()
+        };
+        let flux = |sample: &Sample, face: usize| {
+            let [left, right] = around[face].map(|(bin, sign)| sign * sample.displacement[0][bin]);
+            (right - left) / width
+        };
+        Self {
+            centres: (0..bins).map(|bin| (bin as f64 + 0.5) * width).collect(),
+            density: over_bins(&|sample, bin| (sample.residence[bin] / area, sample.duration)),
+            velocity: [0, 1].map(|axis| {
+                over_bins(&move |sample: &Sample, bin| {
+                    (sample.displacement[axis][bin], sample.residence[bin])
+                })
+            }),
+            birth_rate: over_bins(&|sample, bin| (sample.births[bin], sample.residence[bin])),
+            death_rate: over_bins(&|sample, bin| (sample.deaths[bin], sample.residence[bin])),
+            faces: (0..around.len()).map(|face| face as f64 * width).collect(),
+            flux_rate: over_faces(&|sample, face| (flux(sample, face), there(sample, face))),
+            net_rate: over_faces(&|sample, face| (sample.net_at_face[face], there(sample, face))),
+            imbalance: over_faces(&|sample, face| {
+                (flux(sample, face) - sample.net_at_face[face], there(sample, face))
+            }),
+        }
+    }
+}

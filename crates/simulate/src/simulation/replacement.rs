@@ -1,0 +1,49 @@
+//! Other cells in place of those of a simulation.
+
+use super::Simulation;
+use crate::Error;
+use voronudge_geometry::{MovingTessellation, PeriodicBox, Vector};
+
+impl Simulation {
+    /// The periodic box, as it was before any shear.
+    pub fn cell_box(&self) -> PeriodicBox {
+        self.cell_box
+    }
+
+    /// Goes on from now with other cells: `positions` (N, in the unit of the box) in place of those that are there, and
+    /// `headings` (N, radians) if cells propel themselves, otherwise none. The number of cells may change; time and steps
+    /// go on.
+    ///
+    /// # Errors
+    /// [`Error::State`] if the directions are not those of as many cells; [`Error::Tessellation`] if the positions cannot be
+    /// tessellated (not finite, coincident, none). The simulation is then as it was.
+    ///
+    /// ```
+    /// use voronudge_geometry::{Domain, PeriodicBox, Vector};
+    /// use voronudge_model::{Model, Parameters};
+    /// use voronudge_simulate::{RandomPlacement, Simulation, generator};
+    /// let cell_box = PeriodicBox::new([6.0, 6.0])?;
+    /// let positions = RandomPlacement::new(36, cell_box).draw(&mut generator(1))?;
+    /// let model = Model::chiral_voronoi(&Parameters::default());
+    /// let mut simulation = Simulation::new(positions.clone(), Domain::Periodic(cell_box), model)?;
+    /// simulation.step(0.01)?;
+    /// simulation.replace_cells(simulation.positions()[1..].to_vec(), Vec::new())?;
+    /// assert_eq!(simulation.velocities().len(), 35);
+    /// assert_eq!(simulation.time(), 0.01);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    pub fn replace_cells(&mut self, positions: Vec<Vector<f64>>, headings: Vec<f64>) -> Result<(), Error> {
+        let cells = positions.len();
+        let directions = if self.driving.speed == 0.0 { 0 } else { cells };
+        if headings.len() != directions {
+            return Err(Error::State { cells, positions: cells, headings: headings.len() });
+        }
+        let time = self.now.time;
+        let domain = self.domain_at(time).map_err(|source| Error::Tessellation { time, source })?;
+        self.tessellation = MovingTessellation::new(&positions, domain)
+            .map_err(|source| Error::Tessellation { time, source })?;
+        self.spacing = (self.cell_box.area() / cells as f64).sqrt();
+        (self.now.positions, self.now.headings) = (positions, headings);
+        self.settle()
+    }
+}

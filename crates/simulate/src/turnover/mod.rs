@@ -1,0 +1,233 @@
+//! Extrusion and proliferation of cells between the steps of a simulation.
+
+mod disturbance;
+mod lineage;
+mod places;
+mod rates;
+
+pub use lineage::{Life, Origin};
+pub use rates::{EdgeRate, Injection, Proliferation, Turnover};
+
+use crate::driving::stream;
+use crate::{Channel, Error, Simulation};
+use places::{Birth, Demand, Places};
+use rand::Rng;
+use voronudge_geometry::Vector;
+
+/// Parts into which a step is cut at most if a cell moves too far in it.
+const MOST_PARTS: u32 = 1024;
+
+/// A simulation whose cells are extruded and born, in a channel.
+///
+/// A step moves the cells and then draws the events of the step, each cell with the probability `1 − exp(−k Δt)`. The cells of the
+/// tessellation keep their numbers 0 … N − 1; [`LivingTissue::identities`] tells which life each number stands for at the moment.
+/// Random numbers come from the seed and the step.
+///
+/// ```
+/// use voronudge_geometry::{Domain, PeriodicBox};
+/// use voronudge_model::{Model, Parameters};
+/// use voronudge_simulate::{
+///     EdgeRate, Injection, LivingTissue, Proliferation, RandomPlacement, Simulation, Turnover, generator,
+/// };
+/// let cell_box = PeriodicBox::new([8.0, 6.0])?;
+/// let positions = RandomPlacement::new(48, cell_box).draw(&mut generator(1))?;
+/// let model = Model::chiral_voronoi(&Parameters { chirality: 1.0, ..Parameters::default() });
+/// let simulation = Simulation::new(positions, Domain::Periodic(cell_box), model)?;
+/// let turnover = Turnover {
+///     extrusion: EdgeRate { rate: 1.0, decay_length: 1.4 },
+///     proliferation: Proliferation::Replacing { decay_length: 0.25 },
+///     injection: Injection::Vertex,
+///     most_cells: 1000,
+///     seed: 1,
+/// };
+/// let mut tissue = LivingTissue::new(simulation, turnover)?;
+/// for _ in 0..200 {
+///     tissue.step(0.01)?;
+/// }
+/// assert_eq!(tissue.simulation().positions().len(), 48); // one is born for each that is extruded
+/// assert!(tissue.lives().len() > 48);
+/// # Ok::<(), Box<dyn std::error::Error>>(())
+/// ```
+#[derive(Debug, Clone)]
+pub struct LivingTissue {
+    simulation: Simulation,
+    turnover: Turnover,
+    channel: Channel,
+    identities: Vec<usize>,
+    lives: Vec<Life>,
+    last: LastStep,
+}
+
+/// What happened in a step: how each cell moved, and then which were extruded and born.
+#[derive(Debug, Clone, Default)]
+pub struct LastStep {
+    /// The time step `Δt`.
+    pub time_step: f64,
+    /// Positions (N) before the step, unwrapped.
+    pub from: Vec<Vector<f64>>,
+    /// Positions of the same cells after they moved, before anything else.
+    pub to: Vec<Vector<f64>>,
+    /// Where cells were extruded.
+    pub extrusions: Vec<Vector<f64>>,
+    /// Where cells were born.
+    pub births: Vec<Vector<f64>>,
+}
+
+impl LivingTissue {
+    /// Turnover of the cells of a simulation from now on, in the channel of its box.
+    ///
+    /// # Errors
+    /// [`Error::Turnover`] if a rate is negative or not finite, or a length not positive; [`Error::ShearedChannel`] for a
+    /// sheared box; [`Error::TooManyCells`] if there are too many already.
+    pub fn new(simulation: Simulation, turnover: Turnover) -> Result<Self, Error> {
+        turnover.check()?;
+        let channel = Channel::new(&simulation.cell_box())?;
+        let (cells, time) = (simulation.positions().len(), simulation.time());
+        if cells > turnover.most_cells {
+            return Err(Error::TooManyCells { time, cells, limit: turnover.most_cells });
+        }
+        let founder = Life { origin: Origin::Founder, born: time, extruded: None, mother: None };
+        let lives = vec![founder; cells];
+        let identities = (0..cells).collect();
+        Ok(Self { simulation, turnover, channel, identities, lives, last: LastStep::default() })
+    }
+
+    /// The simulation: positions, velocities and tessellation of the cells alive.
+    pub fn simulation(&self) -> &Simulation {
+        &self.simulation
+    }
+
+    /// The channel.
+    pub fn channel(&self) -> Channel {
+        self.channel
+    }
+
+    /// The life (index into [`LivingTissue::lives`]) of each cell of the simulation (N).
+    pub fn identities(&self) -> &[usize] {
+        &self.identities
+    }
+
+    /// All cells that ever lived, in the order of birth.
+    pub fn lives(&self) -> &[Life] {
+        &self.lives
+    }
+
+    /// What happened in the last step.
+    pub fn last_step(&self) -> &LastStep {
+        &self.last
+    }
+
+    /// Moves the cells by a step `Δt` and then extrudes and adds cells.
+    ///
+    /// A step in which a cell would move by more than the mean spacing, as may happen next to a new cell, is cut into 2, 4, … 1024
+    /// parts.
+    ///
+    /// # Errors
+    /// Those of [`Simulation::step`]; [`Error::Extinct`], [`Error::TooManyCells`] and [`Error::NoPlace`] if the events of the
+    /// step cannot be. The cells have moved then, and none is extruded or born.
+    pub fn step(&mut self, time_step: f64) -> Result<(), Error> {
+        self.last.time_step = time_step;
+        self.last.from.clear();
+        self.last.from.extend_from_slice(self.simulation.positions());
+        self.last.extrusions.clear();
+        self.last.births.clear();
+        let moved = self.move_in_parts(time_step, 1);
+        self.last.to.clear();
+        self.last.to.extend_from_slice(self.simulation.positions());
+        moved?;
+        self.turn_over(time_step)
+    }
+
+    fn move_in_parts(&mut self, time_step: f64, parts: u32) -> Result<(), Error> {
+        match self.simulation.step(time_step) {
+            Err(Error::StepTooLarge { .. }) if parts < MOST_PARTS => {
+                self.move_in_parts(0.5 * time_step, 2 * parts)?;
+                self.move_in_parts(0.5 * time_step, 2 * parts)
+            }
+            other => other,
+        }
+    }
+
+    fn turn_over(&mut self, time_step: f64) -> Result<(), Error> {
+        let mut rng = stream(self.turnover.seed, self.simulation.state().steps, u64::MAX);
+        let extruded = self.drawn(self.turnover.extrusion, time_step, &mut rng);
+        let demand = Demand::of(self, &extruded, time_step, &mut rng);
+        let births = match &demand {
+            Demand::Replacing { .. } => extruded.len(),
+            Demand::Mothers(mothers) => mothers.len(),
+        };
+        if extruded.is_empty() && births == 0 {
+            return Ok(());
+        }
+        let (time, limit) = (self.simulation.time(), self.turnover.most_cells);
+        match self.identities.len() + births - extruded.len() {
+            0 => return Err(Error::Extinct { time }),
+            cells if cells > limit => return Err(Error::TooManyCells { time, cells, limit }),
+            _ => {}
+        }
+        let mut places = Places::new(self, &extruded, births, time_step);
+        let born = match demand {
+            Demand::Replacing { decay_length } => places.weighted(decay_length, &mut rng)?,
+            Demand::Mothers(mothers) => mothers
+                .into_iter()
+                .map(|mother| places.of_mother(mother, &mut rng))
+                .collect::<Result<_, _>>()?,
+        };
+        self.exchange(&extruded, &born, &mut rng)
+    }
+
+    /// The cells for which an event of a rate happens in a step, ascending.
+    fn drawn(&self, rate: EdgeRate, time_step: f64, rng: &mut impl Rng) -> Vec<usize> {
+        if rate.rate == 0.0 {
+            return Vec::new();
+        }
+        let positions = self.simulation.positions().iter().enumerate();
+        let happens = |&(_, r): &(usize, &Vector<f64>)| {
+            rng.random::<f64>() < rate.probability(self.channel.edge_distance(*r), time_step)
+        };
+        positions.filter(happens).map(|(cell, _)| cell).collect()
+    }
+
+    /// New cells take the numbers of extruded ones; the rest is appended or closed up.
+    fn exchange(&mut self, extruded: &[usize], born: &[Birth], rng: &mut impl Rng) -> Result<(), Error> {
+        let time = self.simulation.time();
+        let state = self.simulation.state();
+        let (mut positions, mut headings) = (state.positions.clone(), state.headings.clone());
+        let mut identities = self.identities.clone();
+        let origin = match self.turnover.injection {
+            Injection::Vertex => Origin::Vertex,
+            Injection::Division { .. } => Origin::Division,
+        };
+        for (order, birth) in born.iter().enumerate() {
+            let life = self.lives.len() + order;
+            let heading = (!state.headings.is_empty()).then(|| rng.random_range(0.0..std::f64::consts::TAU));
+            if let Some(&cell) = extruded.get(order) {
+                (positions[cell], identities[cell]) = (birth.place, life);
+                headings.iter_mut().skip(cell).take(1).zip(heading).for_each(|(old, new)| *old = new);
+            } else {
+                positions.push(birth.place);
+                identities.push(life);
+                headings.extend(heading);
+            }
+        }
+        for &cell in extruded.iter().skip(born.len()).rev() {
+            positions.remove(cell);
+            identities.remove(cell);
+            if !headings.is_empty() {
+                headings.remove(cell);
+            }
+        }
+        self.simulation.replace_cells(positions, headings)?;
+        for &cell in extruded {
+            self.lives[self.identities[cell]].extruded = Some(time);
+            self.last.extrusions.push(self.last.to[cell]);
+        }
+        for birth in born {
+            let mother = birth.mother.map(|cell| self.identities[cell]);
+            self.lives.push(Life { origin, born: time, extruded: None, mother });
+            self.last.births.push(birth.place);
+        }
+        self.identities = identities;
+        Ok(())
+    }
+}
