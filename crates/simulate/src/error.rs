@@ -177,8 +177,7 @@ impl Error {
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
             Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
-            Self::Driving { .. } | Self::Rate { .. } | Self::Interrupted => None,
-            Self::Driving { .. } | Self::Turnover { .. } => None,
+            Self::Driving { .. } | Self::Rate { .. } | Self::Turnover { .. } | Self::Interrupted => None,
             Self::ShearedChannel { .. } => Some("give a box with a right angle"),
             Self::Extinct { .. } => Some("lower the rate of extrusion, or raise that of proliferation"),
             Self::TooManyCells { .. } => {
