@@ -1,6 +1,7 @@
 //! Automation of this repository: `cargo xtask <command>`.
 
 mod check;
+mod figures;
 mod fixtures;
 mod oracle;
 mod study;
@@ -25,6 +26,8 @@ enum Command {
         #[arg(long, value_delimiter = ',', value_enum)]
         only: Vec<check::Check>,
     },
+    /// Make figures of the paper anew, and the page of them.
+    Figures(figures::Arguments),
     /// Run a statistical study and print its table.
     Study(study::Arguments),
     /// Make everything in fixtures/ from recorded seeds; twice gives the same bytes.
@@ -42,6 +45,7 @@ fn main() -> ExitCode {
     let root = root();
     let outcome = match Arguments::parse().command {
         Command::Check { only } => check::run(&root, &only),
+        Command::Figures(arguments) => figures::run(&root, &arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),
     };

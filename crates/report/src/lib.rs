@@ -44,10 +44,10 @@ pub use before_after::BeforeAfter;
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
+pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use page::{
     DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SimulatePage, SpectrumPage, Uncertainty,
 };
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};
-pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

@@ -32,9 +32,9 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
-pub mod collapse;
 mod channel;
 mod channel_run;
+pub mod collapse;
 mod driving;
 mod error;
 mod honeycomb;

@@ -16,9 +16,9 @@ mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
+pub use moduli::ModuliPage;
 pub use phase_diagram::PhasePage;
 pub use simulate::SimulatePage;
-pub use moduli::ModuliPage;
 pub use spectrum::SpectrumPage;
 pub use uncertainty::Uncertainty;
 
