@@ -183,7 +183,7 @@ fn lines(request: &Request, diagram: &Diagram) -> Vec<MapLine> {
     lines.push(line(
         "P_{MF}, honeycomb",
         LineStyle::Dashed,
-        vec![[limit, low - margin], [limit, high + margin]],
+        along(low - margin, high + margin).map(|alpha| [limit, alpha]).collect(),
     ));
     lines.push(line("exceptional line", LineStyle::DashDotted, exceptional(request, diagram)));
     lines
