@@ -3,5 +3,6 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
 
 mod mean_field;
+mod moduli;
 mod recovery;
 mod spectrum;

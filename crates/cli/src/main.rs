@@ -29,6 +29,7 @@ enum Command {
     Simulate(command::simulate::Arguments),
     PhaseDiagram(Box<command::phase_diagram::Arguments>),
     Merge(command::merge::Arguments),
+    Moduli(Box<command::moduli::Arguments>),
     CheckGradients(command::check_gradients::Arguments),
     Import(command::import::Arguments),
 }
@@ -72,6 +73,7 @@ fn run() -> Result<Answer, Failure> {
         Command::Simulate(arguments) => command::simulate::run(arguments),
         Command::PhaseDiagram(arguments) => command::phase_diagram::run(*arguments),
         Command::Merge(arguments) => command::merge::run(arguments),
+        Command::Moduli(arguments) => command::moduli::run(*arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
         Command::Import(arguments) => command::import::run(arguments),
     }

@@ -18,6 +18,7 @@ mod dense_eigen;
 mod dissection;
 mod eigenpairs;
 mod error;
+mod linear_system;
 mod partial_eigen;
 #[cfg(test)]
 mod sample;
@@ -28,5 +29,6 @@ pub use cholesky::{Cholesky, CholeskyPattern, SymmetricMatrix};
 pub use dense_eigen::{Wanted, eigen};
 pub use eigenpairs::Eigenpairs;
 pub use error::Error;
+pub use linear_system::LinearSystem;
 pub use num_complex::Complex64;
 pub use partial_eigen::{PartialEigenpairs, Progress, RESIDUAL_LIMIT, nearest, rightmost};

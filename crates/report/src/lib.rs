@@ -32,6 +32,7 @@ pub mod infer_report;
 pub mod key;
 pub mod map;
 pub mod markers;
+pub mod moduli_report;
 pub mod numbers;
 pub mod page;
 pub mod phase_report;
@@ -46,8 +47,9 @@ pub use before_after::BeforeAfter;
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
+pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use page::{
-    DiscoverFigures, DiscoverPage, InferPage, PhasePage, SimulatePage, SpectrumPage, Uncertainty,
+    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SimulatePage, SpectrumPage, Uncertainty,
 };
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};

@@ -24,8 +24,7 @@ const SIDES: [usize; 2] = [10, 100];
 
 fn liquid(side: usize) -> Simulation {
     let cell_box = PeriodicBox::new([side as f64; 2]).expect("a positive box");
-    let mut positions =
-        RandomPlacement::new(side * side, cell_box).draw(&mut generator(7)).expect("cells");
+    let mut positions = RandomPlacement::new(side * side, cell_box).draw(&mut generator(7)).expect("cells");
     sort_in_space(&mut positions, &cell_box);
     let model = Model::chiral_voronoi(&Parameters { chirality: 1.0, ..Parameters::default() });
     let mut simulation =

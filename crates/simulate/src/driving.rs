@@ -33,6 +33,13 @@ pub enum Shear {
         /// The angular frequency ω, in 1/time.
         angular_frequency: f64,
     },
+    /// `γ̇ = ±rate`, positive in the first half of each period: `γ` goes from 0 to `rate · period/2` and back, a triangle wave.
+    SquareWave {
+        /// The strain rate of the first half, in 1/time.
+        rate: f64,
+        /// The period, in units of time.
+        period: f64,
+    },
 }
 
 impl Shear {
@@ -43,6 +50,10 @@ impl Shear {
             Self::Steady { rate } => rate * time,
             Self::Oscillatory { amplitude, angular_frequency } => {
                 amplitude * (angular_frequency * time).sin()
+            }
+            Self::SquareWave { rate, period } => {
+                let phase = (time / period).rem_euclid(1.0);
+                rate * period * phase.min(1.0 - phase)
             }
         }
     }
@@ -61,6 +72,13 @@ impl Shear {
             Self::Steady { rate } => rate,
             Self::Oscillatory { amplitude, angular_frequency } => {
                 amplitude * angular_frequency * (angular_frequency * time).cos()
+            }
+            Self::SquareWave { rate, period } => {
+                if (time / period).rem_euclid(1.0) < 0.5 {
+                    rate
+                } else {
+                    -rate
+                }
             }
         }
     }

@@ -55,6 +55,25 @@ pub enum Error {
         /// The value given.
         value: f64,
     },
+    /// A strain that is not small.
+    #[error("the strain is {strain}, but it must be positive and at most {limit}")]
+    Strain {
+        /// The strain given.
+        strain: f64,
+        /// The largest that is taken.
+        limit: f64,
+    },
+    /// An amount of a measurement under shear that is not a positive finite number.
+    #[error("the {name} is {value}, but it must be positive and finite")]
+    Rate {
+        /// What it is.
+        name: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// Whoever watched a measurement broke it off.
+    #[error("interrupted")]
+    Interrupted,
     /// A state of other cells.
     #[error("a state of {positions} positions and {headings} directions is not one of these {cells} cells")]
     State {
@@ -109,7 +128,8 @@ impl Error {
             ),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
-            Self::Driving { .. } => None,
+            Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
+            Self::Driving { .. } | Self::Rate { .. } | Self::Interrupted => None,
             Self::State { .. } => Some("go on with the run that the state was taken from"),
             Self::Honeycomb { .. } => Some("take a multiple of four, such as 100"),
             Self::NoFrames => Some("ask for one frame to get the end of the run"),

@@ -38,6 +38,7 @@ mod error;
 mod honeycomb;
 pub mod measure;
 mod method;
+pub mod moduli;
 mod placement;
 mod schedule;
 mod simulation;

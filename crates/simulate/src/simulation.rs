@@ -205,6 +205,11 @@ impl Simulation {
         self.now.time
     }
 
+    /// Mean spacing of the cells: the root of the mean area, in the unit of the box.
+    pub(crate) fn spacing(&self) -> f64 {
+        self.spacing
+    }
+
     /// What is needed to go on from here.
     pub fn state(&self) -> &State {
         &self.now

@@ -8,6 +8,7 @@ mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
 pub(crate) mod merge;
+pub(crate) mod moduli;
 pub(crate) mod phase_diagram;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

@@ -6,6 +6,7 @@
 mod directions;
 mod discover;
 mod infer;
+mod moduli;
 mod parameter_table;
 mod phase_diagram;
 mod simulate;
@@ -15,6 +16,7 @@ mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
+pub use moduli::ModuliPage;
 pub use phase_diagram::PhasePage;
 pub use simulate::SimulatePage;
 pub use spectrum::SpectrumPage;

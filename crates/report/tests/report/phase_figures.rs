@@ -61,11 +61,10 @@ fn curves_leave_out_what_a_logarithm_cannot_show() {
         points: vec![[1.0, 1.0], [2.0, 0.0], [3.0, 0.01]],
         role: CurveRole::First,
     };
-    let axes = CurveAxes {
-        title: "course",
-        x: ("time", AxisScale::Linear),
-        y: ("⟨v²⟩", AxisScale::Logarithmic),
-    };
+    let axes =
+        CurveAxes {
+            title: "course", x: ("time", AxisScale::Linear), y: ("⟨v²⟩", AxisScale::Logarithmic)
+        };
     let svg = curves(&axes, &[curve]);
     assert_has(&svg, &["course", "time", "0.01"]);
     assert!(!svg.contains("NaN") && !svg.contains("inf"));

@@ -152,6 +152,11 @@ fn caption(quantity: Quantity) -> &'static str {
         Quantity::MeanSquareFrequency => {
             "Mean square frequency of the modes of the Jacobian. In a liquid it is dominated by few modes on short sides."
         }
+        Quantity::ShearModulus => "Shear modulus of the state at the end of the run: zero in a liquid.",
+        Quantity::OddShearModulus => {
+            "Odd shear modulus: the shear stress at 45° to the strain. On the honeycomb it is −√3 α."
+        }
+        Quantity::BulkModulus => "Bulk modulus of the state at the end of the run.",
     }
 }
 

@@ -18,7 +18,7 @@ use clap::{Args, ValueEnum};
 use outcome::Finished;
 use recorder::{Kept, Recorder};
 use report::Request;
-use start::Start;
+pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use voronudge_geometry::{Domain, FieldOfView, Tessellation};
@@ -31,18 +31,8 @@ use voronudge_simulate::{
 /// Simulates the chiral Voronoi model in a periodic box. The output is a data set.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Number of cells [default: 100].
-    #[arg(long, allow_negative_numbers = true)]
-    cells: Option<usize>,
-    /// Periodic box [default: unit area per cell, a square unless the start is a honeycomb].
-    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
-    box_lengths: Option<Vec<f64>>,
-    /// Starting positions: `random`, `honeycomb`, or the last frame of a data set.
-    #[arg(long, value_name = "random|honeycomb|DATASET", default_value = "random")]
-    start: String,
-    /// Least distance between random positions, in mean spacings.
-    #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
-    least_distance: f64,
+    #[command(flatten)]
+    start: StartArguments,
     /// Duration.
     #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
     time: f64,
@@ -101,7 +91,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", arguments.checkpoint))
             .with_hint("leave --checkpoint out for 30 seconds")
     })?;
-    let start = Start::of(&arguments)?;
+    let start = Start::of(&arguments.start, arguments.common.seed, arguments.frames)?;
     let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;

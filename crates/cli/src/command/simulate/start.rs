@@ -1,16 +1,45 @@
 //! Where the cells begin.
 
-use super::Arguments;
 use crate::failure::Failure;
 use crate::snapshot::{Snapshot, domain};
+use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_io::Source;
 use voronudge_simulate::{RandomPlacement, generator, honeycomb, sort_in_space};
 
+/// Where to begin.
+#[derive(Debug, Args)]
+pub(crate) struct StartArguments {
+    /// Number of cells [default: 100].
+    #[arg(long, allow_negative_numbers = true)]
+    cells: Option<usize>,
+    /// Periodic box [default: unit area per cell, a square unless the start is a honeycomb].
+    #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
+    box_lengths: Option<Vec<f64>>,
+    /// Starting positions: `random`, `honeycomb`, or the last frame of a data set.
+    #[arg(long, value_name = "random|honeycomb|DATASET", default_value = "random")]
+    start: String,
+    /// Least distance between random positions, in mean spacings.
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
+    least_distance: f64,
+}
+
+impl StartArguments {
+    /// Whether positions depend on the seed.
+    pub fn is_random(&self) -> bool {
+        self.start == "random"
+    }
+
+    /// The start as given.
+    pub fn name(&self) -> &str {
+        &self.start
+    }
+}
+
 /// Starting positions and their box.
-pub(super) struct Start {
+pub(crate) struct Start {
     pub positions: Vec<Vector<f64>>,
     pub cell_box: PeriodicBox,
     pub origin: Origin,
@@ -21,7 +50,7 @@ pub(super) struct Start {
 /// Where the positions come from, as the report tells it.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Origin {
+pub(crate) enum Origin {
     Random { least_distance: f64 },
     Honeycomb,
     Data { sha256: Vec<String>, frame: usize },
@@ -31,11 +60,12 @@ pub(super) enum Origin {
 const LARGEST_RUN: usize = 500_000_000;
 
 impl Start {
-    pub fn of(arguments: &Arguments) -> Result<Self, Failure> {
+    /// The starting positions, for a run that keeps a number of frames.
+    pub fn of(arguments: &StartArguments, seed: u64, frames: usize) -> Result<Self, Failure> {
         match arguments.start.as_str() {
-            "random" => random(arguments),
-            "honeycomb" => lattice(arguments),
-            folder => from_data(arguments, PathBuf::from(folder)),
+            "random" => random(arguments, seed, frames),
+            "honeycomb" => lattice(arguments, frames),
+            folder => from_data(arguments, frames, PathBuf::from(folder)),
         }
     }
 }
@@ -44,13 +74,13 @@ fn own_units(positions: Vec<Vector<f64>>, cell_box: PeriodicBox, origin: Origin)
     Start { positions, cell_box, origin, length_unit: "length".into(), time_unit: "time".into() }
 }
 
-fn cells(arguments: &Arguments) -> Result<usize, Failure> {
+fn cells(arguments: &StartArguments, frames: usize) -> Result<usize, Failure> {
     match arguments.cells {
         Some(0) => Err(Failure::new("--cells is 0, but at least one cell is needed")
             .with_hint("leave --cells out for 100 cells")),
         cells => {
             let cells = cells.unwrap_or(100);
-            check_size(&format!("--cells {cells}"), cells, arguments.frames).map(|()| cells)
+            check_size(&format!("--cells {cells}"), cells, frames).map(|()| cells)
         }
     }
 }
@@ -65,21 +95,21 @@ fn check_size(named: &str, cells: usize, frames: usize) -> Result<(), Failure> {
     Ok(())
 }
 
-fn random(arguments: &Arguments) -> Result<Start, Failure> {
-    let cells = cells(arguments)?;
+fn random(arguments: &StartArguments, seed: u64, frames: usize) -> Result<Start, Failure> {
+    let cells = cells(arguments, frames)?;
     let cell_box = match arguments.box_lengths.as_deref() {
         Some(&[x, y]) => PeriodicBox::new([x, y])?,
         _ => PeriodicBox::new([(cells as f64).sqrt(); 2])?,
     };
     let least_distance = arguments.least_distance;
     let placement = RandomPlacement { cells, cell_box, least_distance };
-    let mut positions = placement.draw(&mut generator(arguments.common.seed))?;
+    let mut positions = placement.draw(&mut generator(seed))?;
     sort_in_space(&mut positions, &cell_box);
     Ok(own_units(positions, cell_box, Origin::Random { least_distance }))
 }
 
-fn lattice(arguments: &Arguments) -> Result<Start, Failure> {
-    let (mut positions, mut cell_box) = honeycomb(cells(arguments)?)?;
+fn lattice(arguments: &StartArguments, frames: usize) -> Result<Start, Failure> {
+    let (mut positions, mut cell_box) = honeycomb(cells(arguments, frames)?)?;
     if let Some(&[x, y]) = arguments.box_lengths.as_deref() {
         let [width, height] = cell_box.lengths();
         cell_box = PeriodicBox::new([x, y])?;
@@ -88,7 +118,7 @@ fn lattice(arguments: &Arguments) -> Result<Start, Failure> {
     Ok(own_units(positions, cell_box, Origin::Honeycomb))
 }
 
-fn from_data(arguments: &Arguments, folder: PathBuf) -> Result<Start, Failure> {
+fn from_data(arguments: &StartArguments, frames: usize, folder: PathBuf) -> Result<Start, Failure> {
     let place = folder.display().to_string();
     if arguments.cells.is_some() || arguments.box_lengths.is_some() {
         return Err(Failure::new(format!("--start {place} has its own cells and box"))
@@ -100,7 +130,7 @@ fn from_data(arguments: &Arguments, folder: PathBuf) -> Result<Start, Failure> {
             .at(place)
             .with_hint("give a data set with a periodic box"));
     };
-    check_size(&format!("{} cells", data.cells()), data.cells(), arguments.frames)?;
+    check_size(&format!("{} cells", data.cells()), data.cells(), frames)?;
     let frame = data.frames() - 1;
     let snapshot = Snapshot::new(&data, frame);
     if snapshot.positions.len() != data.cells() {

@@ -17,6 +17,7 @@ use crate::run::Run;
 use clap::Args;
 use frame::Solved;
 use lattice::Lattice;
+pub(crate) use report::{mean_field, named};
 use request::SelectionArguments;
 use voronudge_io::{FrameSelection, OutputDirectory};
 

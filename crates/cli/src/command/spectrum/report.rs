@@ -53,7 +53,7 @@ pub(super) fn report(
 }
 
 /// The theory at these parameters for cells of a size, if it has any.
-pub(super) fn mean_field(parameters: &Parameters<f64>, length: f64) -> Option<MeanField> {
+pub(crate) fn mean_field(parameters: &Parameters<f64>, length: f64) -> Option<MeanField> {
     MeanField::new(voronudge_theory::Parameters {
         area_elasticity: parameters.area_elasticity * length * length,
         perimeter_elasticity: parameters.perimeter_elasticity,
@@ -63,7 +63,8 @@ pub(super) fn mean_field(parameters: &Parameters<f64>, length: f64) -> Option<Me
     .ok()
 }
 
-fn named(p: &Parameters<f64>) -> std::collections::BTreeMap<&'static str, f64> {
+/// Parameters by the names of the interface.
+pub(crate) fn named(p: &Parameters<f64>) -> std::collections::BTreeMap<&'static str, f64> {
     [
         ("K_A", p.area_elasticity),
         ("K_P", p.perimeter_elasticity),

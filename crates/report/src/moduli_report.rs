@@ -1,0 +1,92 @@
+//! `report.json` of the command `moduli`.
+//!
+//! Field names are the interface that scripts use; [`MODULI_SCHEMA`] describes them. Numbers that are not finite are
+//! written as `null`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::error::ReportError;
+use crate::infer_report::RunRecord;
+use crate::view::Units;
+
+/// JSON Schema (draft 2020-12) of [`ModuliReport`].
+pub const MODULI_SCHEMA: &str = include_str!("../schema/moduli.schema.json");
+
+/// Everything `moduli` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModuliReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units; moduli and stresses are in 1/time.
+    pub units: Units,
+    /// Number of cells.
+    pub cells: usize,
+    /// Parameters as used, by the names of the interface.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// How it was measured: amounts and times by the names of the options.
+    pub settings: BTreeMap<&'static str, f64>,
+    /// Bulk modulus, odd bulk modulus, shear modulus, odd shear modulus.
+    pub moduli: Vec<ModulusRecord>,
+    /// Mean stress before the strain, row = component of the force.
+    pub prestress: [[f64; 2]; 2],
+    /// That of the honeycomb, where the theory has one.
+    pub mean_field_prestress: Option<[[f64; 2]; 2]>,
+    /// Viscosities, where asked for.
+    pub viscosities: Vec<ModulusRecord>,
+    /// Each replica.
+    pub replicas: Vec<ReplicaRecord>,
+}
+
+impl ModuliReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}
+
+/// One modulus or viscosity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ModulusRecord {
+    /// `bulk`, `odd_bulk`, `shear`, `odd_shear`, `shear_viscosity` or `odd_shear_viscosity`.
+    pub name: &'static str,
+    /// Symbol; `_x` sets a subscript.
+    pub symbol: &'static str,
+    /// Mean over replicas.
+    pub value: f64,
+    /// Standard error of the mean over replicas; of a single one its own.
+    pub error: f64,
+    /// Mean without relaxation; null for viscosities.
+    pub affine: Option<f64>,
+    /// What the larger strain gives less what the smaller gives, largest over replicas in magnitude; null for viscosities.
+    pub nonlinearity: Option<f64>,
+    /// The value of the honeycomb in mean-field theory, where there is one.
+    pub mean_field: Option<f64>,
+    /// The value of each replica.
+    pub replicas: Vec<f64>,
+    /// The error of each replica.
+    pub replica_errors: Vec<f64>,
+}
+
+/// One replica.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ReplicaRecord {
+    /// Seed of its starting positions.
+    pub seed: u64,
+    /// `at_rest` or `flowing`.
+    pub motion: &'static str,
+    /// Largest speed before the strain.
+    pub speed: f64,
+    /// Strained states that did not come to rest.
+    pub restless: usize,
+    /// Stress before the strain.
+    pub prestress: [[f64; 2]; 2],
+    /// Derivatives of (σ_xx + σ_yy)/2, (σ_yx − σ_xy)/2, (σ_xx − σ_yy)/2, (σ_xy + σ_yx)/2 by ∇·u, e_1, e_2.
+    pub response: [[f64; 3]; 4],
+}

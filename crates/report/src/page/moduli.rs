@@ -1,0 +1,95 @@
+//! The page of the command `moduli`.
+
+use serde::Serialize;
+
+use super::{Card, Figure, PageHead, Template, render};
+use crate::error::ReportError;
+use crate::figure::moduli;
+use crate::moduli_report::{ModuliReport, ModulusRecord};
+use crate::numbers::{NO_VALUE, significant, unit_text};
+
+const TEMPLATE: Template =
+    Template { name: "moduli.html", source: include_str!("../../templates/moduli.html") };
+
+/// Everything the page of `moduli` shows.
+#[derive(Debug, Clone, Copy)]
+pub struct ModuliPage<'a> {
+    /// Title, for example the start.
+    pub title: &'a str,
+    /// The answer in one plain sentence.
+    pub headline: &'a str,
+    /// Further plain sentences, one paragraph each.
+    pub summary: &'a [String],
+    /// What `report.json` holds.
+    pub report: &'a ModuliReport,
+}
+
+#[derive(Serialize)]
+struct Context<'a> {
+    head: PageHead<'a>,
+    report: &'a ModuliReport,
+    figure: Figure,
+    rows: Vec<Row>,
+    viscosities: Vec<Row>,
+    unit: String,
+}
+
+#[derive(Serialize)]
+struct Row {
+    symbol: &'static str,
+    name: String,
+    cells: Vec<String>,
+}
+
+impl ModuliPage<'_> {
+    /// The HTML text of the page.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Template`] if the template cannot be filled.
+    pub fn render(&self) -> Result<String, ReportError> {
+        let report = self.report;
+        let unit = format!("1/{}", report.units.time);
+        let cards = report.moduli.iter().chain(&report.viscosities).map(|record| Card {
+            label: record.symbol.into(),
+            value: significant(record.value, 3),
+            note: format!("± {}", significant(record.error, 1)),
+        });
+        let context = Context {
+            head: PageHead {
+                title: self.title,
+                headline: self.headline,
+                summary: self.summary,
+                doubts: &[],
+                warnings: report.run.warnings.iter().map(String::as_str).collect(),
+                cards: cards.collect(),
+                run: &report.run,
+            },
+            report,
+            figure: Figure::new(
+                moduli(&report.moduli, &unit),
+                "Change of the mean stress by strain. B: pressure of a dilation, A: torque of a dilation, μ: shear stress along a \
+                 shear, Kᵒ: shear stress at 45° to it.",
+            ),
+            rows: report.moduli.iter().map(row).collect(),
+            viscosities: report.viscosities.iter().map(row).collect(),
+            unit: unit_text(&unit),
+        };
+        render(TEMPLATE, &context)
+    }
+}
+
+fn row(record: &ModulusRecord) -> Row {
+    let text = |value: Option<f64>| value.map_or(NO_VALUE.into(), |value| significant(value, 4));
+    Row {
+        symbol: record.symbol,
+        name: record.name.replace('_', " "),
+        cells: vec![
+            significant(record.value, 4),
+            significant(record.error, 2),
+            text(record.mean_field),
+            text(record.affine),
+            record.nonlinearity.map_or(NO_VALUE.into(), |value| significant(value, 2)),
+        ],
+    }
+}
