@@ -40,6 +40,9 @@ pub mod spectrum_report;
 pub mod svg;
 mod view;
 
+/// JSON Schema (draft 2020-12) of the report of `simulate`, which the command line writes by itself.
+pub const SIMULATE_SCHEMA: &str = include_str!("../schema/simulate.schema.json");
+
 pub use before_after::BeforeAfter;
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;

@@ -79,6 +79,12 @@ pub(crate) struct ModelParameters {
     alpha: f64,
 }
 
+impl ModelParameters {
+    pub fn perimeter_elasticity(&self) -> f64 {
+        self.K_P
+    }
+}
+
 impl From<&Parameters<f64>> for ModelParameters {
     fn from(p: &Parameters<f64>) -> Self {
         Self {

@@ -2,6 +2,7 @@
 
 pub(crate) mod check_gradients;
 pub(crate) mod discover;
+mod drawing;
 pub(crate) mod evaluate;
 mod fit;
 pub(crate) mod import;

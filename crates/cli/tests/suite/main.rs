@@ -17,6 +17,7 @@ mod inferences;
 #[cfg(unix)]
 mod interruption;
 mod layouts;
+mod phase_diagrams;
 mod program;
 mod refusal;
 mod resumption;

@@ -9,10 +9,10 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// Runs with checkpoints, killed after one random time after another, until it ends by itself; how often it was killed.
-fn run_to_the_end(line: &str, out: &Path, mut random: u64) -> usize {
+fn run_to_the_end(line: &str, flags: &[&str], out: &Path, mut random: u64) -> usize {
     for kills in 0..200 {
         let mut command = command();
-        command.args(line.split_whitespace()).args(["--checkpoint", "0.02", "--resume", "--out"]).arg(out);
+        command.args(line.split_whitespace()).args(flags).args(["--resume", "--out"]).arg(out);
         let mut run = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         let patience = Duration::from_millis(100 + (random >> 33) % 400 + 20 * kills as u64);
@@ -39,14 +39,15 @@ fn run_to_the_end(line: &str, out: &Path, mut random: u64) -> usize {
 }
 
 fn assert_killed_and_resumed_is_the_same(line: &str) {
-    let names = ["positions.npy", "velocities.npy", "dataset.toml"];
+    let names = crate::simulations::FILES.into_iter().filter(|name| !name.starts_with("report"));
+    let names: Vec<_> = names.collect();
     let whole = Folder::new();
     succeed(&format!("{line} --quiet"), &[("--out", whole.path())]);
     let mut kills = 0;
     for seed in 0..3 {
         let parts = Folder::new();
-        kills += run_to_the_end(line, parts.path(), seed);
-        for name in names {
+        kills += run_to_the_end(line, &["--checkpoint", "0.02"], parts.path(), seed);
+        for name in &names {
             assert!(
                 fs::read(parts.file(name)).unwrap() == fs::read(whole.file(name)).unwrap(),
                 "{name}, seed {seed}"
@@ -61,7 +62,7 @@ fn assert_killed_and_resumed_is_the_same(line: &str) {
         {
             assert_eq!(value(&parts, key), value(&whole, key), "{key}");
         }
-        assert_eq!(parts.names(), ["dataset.toml", "positions.npy", "report.json", "velocities.npy"]);
+        assert_eq!(parts.names(), crate::simulations::FILES);
     }
     assert!(kills >= 3, "killed {kills} times only");
 }
@@ -78,4 +79,25 @@ fn a_killed_run_with_noise_and_adaptive_steps_goes_on_to_the_same_bytes() {
     assert_killed_and_resumed_is_the_same(
         "simulate --cells 200 --time 10 --dt 0.02 --frames 50 --method adaptive --tolerance 1e-3 --alpha 1 --seed 6 --self-propulsion 0.5 --rotational-diffusion 1 --diffusion 0.01 --threads 2",
     );
+}
+
+#[test]
+fn a_killed_diagram_goes_on_to_the_same_bytes() {
+    let line = "phase-diagram --P_0 3.6 4 3 --alpha -0.2 0.2 3 --replicas 2 --cells 64 --time 6 --seed 3";
+    let names = |folder: &Folder| -> Vec<String> {
+        folder.names().into_iter().filter(|name| !name.starts_with("report")).collect()
+    };
+    let whole = Folder::new();
+    succeed(&format!("{line} --threads 1 --quiet"), &[("--out", whole.path())]);
+    let mut kills = 0;
+    for seed in 0..2 {
+        let parts = Folder::new();
+        kills += run_to_the_end(line, &["--threads", "2"], parts.path(), seed);
+        assert_eq!(parts.names(), whole.names());
+        for name in names(&whole) {
+            let bytes = |folder: &Folder| fs::read(folder.file(&name)).unwrap();
+            assert!(bytes(&parts) == bytes(&whole), "{name}, seed {seed}");
+        }
+    }
+    assert!(kills >= 2, "killed {kills} times only");
 }

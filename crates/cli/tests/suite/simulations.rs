@@ -2,10 +2,23 @@
 
 use crate::program::{fixture, succeed};
 use crate::scratch::{Folder, number, read, report};
-use ndarray::Array3;
+use ndarray::{Array2, Array3};
 use std::fs;
+use std::path::Path;
 
 const LINE: &str = "simulate --cells 60 --box 10 6 --time 2 --dt 0.01 --frames 4 --P_0 4 --quiet";
+
+/// Everything that a run leaves.
+pub const FILES: [&str; 8] = [
+    "dataset.toml",
+    "mean_square_displacement.npy",
+    "mean_square_velocity.npy",
+    "positions.npy",
+    "report.html",
+    "report.json",
+    "structure_factor.npy",
+    "velocities.npy",
+];
 
 fn simulate(flags: &str) -> Folder {
     let out = Folder::new();
@@ -16,7 +29,7 @@ fn simulate(flags: &str) -> Folder {
 #[test]
 fn the_output_is_a_data_set_that_other_commands_read() {
     let run = simulate("--alpha 2");
-    assert_eq!(run.names(), ["dataset.toml", "positions.npy", "report.json", "velocities.npy"]);
+    assert_eq!(run.names(), FILES);
     let positions: Array3<f64> = read(&run.file("positions.npy"));
     assert_eq!(positions.dim(), (4, 60, 2));
     let report_of_run = report(run.path());
@@ -71,5 +84,66 @@ fn a_time_step_too_large_is_told() {
     crate::refusal::assert_arguments_refused(
         "simulate --cells 20 --time 100 --dt 10 --K_P 50 --quiet".split_whitespace(),
         &["at time", "time step"],
+    );
+}
+
+/// Asserts that a report is as the schema says.
+fn assert_described(report: &serde_json::Value) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/simulate.schema.json");
+    let schema: serde_json::Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> =
+        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn reports_are_as_the_schema_says() {
+    for flags in [
+        "--alpha 1 --lyapunov",
+        "--method adaptive --frames 1 --effect drift=0.1,0",
+        "--self-propulsion 0.3 --rotational-diffusion 1 --diffusion 0.01",
+    ] {
+        assert_described(&report(simulate(flags).path()));
+    }
+    let out = Folder::new();
+    succeed("simulate --start honeycomb --cells 64 --time 1 --frames 2", &[("--out", out.path())]);
+    assert_described(&report(out.path()));
+}
+
+#[test]
+fn series_are_those_of_the_frames() {
+    let run = simulate("--alpha 2 --frames 8");
+    let positions: Array3<f64> = read(&run.file("positions.npy"));
+    let velocities: Array3<f64> = read(&run.file("velocities.npy"));
+    let course: Array2<f64> = read(&run.file("mean_square_velocity.npy"));
+    assert_eq!(course.dim(), (8, 2));
+    for (frame, row) in course.rows().into_iter().enumerate() {
+        assert!((row[0] - 0.25 * (frame + 1) as f64).abs() < 1e-12);
+        let square: f64 = velocities.index_axis(ndarray::Axis(0), frame).iter().map(|v| v * v).sum();
+        assert!((row[1] * 60.0 / square - 1.0).abs() < 1e-12);
+    }
+    // The longest lag: from the first frame to the last.
+    let moved: Array2<f64> = read(&run.file("mean_square_displacement.npy"));
+    assert_eq!(moved.dim(), (7, 2));
+    let [first, last] = [0, 7].map(|frame| positions.index_axis(ndarray::Axis(0), frame));
+    let square: f64 = (&last - &first).iter().map(|d| d * d).sum();
+    assert!((moved[(6, 0)] - 1.75).abs() < 1e-12 && (moved[(6, 1)] * 60.0 / square - 1.0).abs() < 1e-12);
+    let report = report(run.path());
+    let counts: f64 =
+        report["area"]["histogram"]["counts"].as_array().unwrap().iter().map(|n| n.as_f64().unwrap()).sum();
+    assert_eq!(counts, 60.0);
+    // Neighbours at a distance of about one: the density scatters most at q near 2π.
+    assert!((5.0..8.5).contains(&number(&report, "/structure/peak/wave_number")));
+}
+
+#[test]
+fn a_liquid_has_a_positive_lyapunov_exponent_and_noise_has_none() {
+    let liquid = report(simulate("--alpha 2 --time 6 --lyapunov").path());
+    let error = number(&liquid, "/lyapunov/standard_error");
+    assert!(number(&liquid, "/lyapunov/value") > 3.0 * error);
+    crate::refusal::assert_arguments_refused(
+        "simulate --cells 20 --time 1 --lyapunov --diffusion 0.1".split_whitespace(),
+        &["--lyapunov", "noise"],
     );
 }

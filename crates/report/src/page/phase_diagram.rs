@@ -4,7 +4,7 @@ use serde::Serialize;
 
 use super::{Card, Figure, PageHead, Template, render};
 use crate::error::ReportError;
-use crate::numbers::significant;
+use crate::numbers::{as_given, significant};
 use crate::phase_report::PhaseReport;
 
 const TEMPLATE: Template =
@@ -46,16 +46,19 @@ impl PhasePage<'_> {
         let [columns, rows] = [report.preferred_perimeters.len(), report.chiralities.len()];
         let card = |label: &str, value: String, note: String| Card { label: label.into(), value, note };
         let mut cards = vec![
-            card("points", format!("{columns} × {rows}"), format!("{} runs each", report.replicas)),
-            card("cells", report.cells.to_string(), "periodic square box".into()),
             card(
-                "duration of a run",
-                format!("{} / K_P", significant(report.time, 4)).replace("K_P", "Kₚ"),
-                {
-                    let [low, high] = report.steps.map(|step| significant(step, 2));
-                    if low == high { format!("steps of {low}") } else { format!("steps of {low} to {high}") }
+                "points",
+                format!("{columns} × {rows}"),
+                match report.replicas {
+                    1 => "one run each".into(),
+                    replicas => format!("{replicas} runs each"),
                 },
             ),
+            card("cells", report.cells.to_string(), "periodic square box".into()),
+            card("duration of a run", format!("{} / K_P", as_given(report.time)).replace("K_P", "Kₚ"), {
+                let [low, high] = report.steps.map(|step| as_given((step * 1e4).round() / 1e4));
+                if low == high { format!("steps of {low}") } else { format!("steps of {low} to {high}") }
+            }),
         ];
         if let Some(collapse) = &report.collapse {
             let fitted = collapse.fitted;

@@ -7,5 +7,6 @@ mod figure_sample;
 mod figures;
 mod inference_figures;
 mod pages;
+mod phase_figures;
 mod sample;
 mod spectrum_figures;

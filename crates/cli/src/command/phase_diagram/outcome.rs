@@ -152,6 +152,11 @@ fn caption(quantity: Quantity) -> &'static str {
         Quantity::MeanSquareFrequency => {
             "Mean square frequency of the modes of the Jacobian. In a liquid it is dominated by few modes on short sides."
         }
+        Quantity::ShearModulus => "Shear modulus of the state at the end of the run: zero in a liquid.",
+        Quantity::OddShearModulus => {
+            "Odd shear modulus: the shear stress at 45° to the strain. On the honeycomb it is −√3 α."
+        }
+        Quantity::BulkModulus => "Bulk modulus of the state at the end of the run.",
     }
 }
 
@@ -183,7 +188,7 @@ fn lines(request: &Request, diagram: &Diagram) -> Vec<MapLine> {
     lines.push(line(
         "P_{MF}, honeycomb",
         LineStyle::Dashed,
-        vec![[limit, low - margin], [limit, high + margin]],
+        along(low - margin, high + margin).map(|alpha| [limit, alpha]).collect(),
     ));
     lines.push(line("exceptional line", LineStyle::DashDotted, exceptional(request, diagram)));
     lines

@@ -11,6 +11,7 @@ use voronudge_model::Model;
 use voronudge_simulate::measure::{
     BlockAverage, LyapunovSchedule, hexatic, largest_lyapunov_exponent, shape_indices,
 };
+use voronudge_simulate::moduli::{Elastic, Moduli, Settings, elastic_until};
 use voronudge_simulate::{
     Completion, Event, RandomPlacement, Schedule, Simulation, generator, run, sort_in_space,
 };
@@ -156,6 +157,7 @@ fn values(
             Quantity::T1Rate => [summary.transition_rate, None],
             Quantity::ShapeIndex => measured(&averages.shape),
             Quantity::MeanSquareFrequency => measured(&averages.frequency),
+            Quantity::ShearModulus | Quantity::OddShearModulus | Quantity::BulkModulus => continue,
             Quantity::Lyapunov => match lyapunov(request, job, &simulation, watch)? {
                 Some(value) => value,
                 None => return Ok(None),
@@ -163,7 +165,32 @@ fn values(
         };
         values.insert(quantity, value);
     }
+    if request.quantities.iter().any(|quantity| quantity.is_modulus()) {
+        let Some(elastic) = elastic(&simulation, request.time_step(job.point), watch)? else {
+            return Ok(None);
+        };
+        for &quantity in &request.quantities {
+            let of: fn(&Moduli) -> f64 = match quantity {
+                Quantity::ShearModulus => |moduli| moduli.shear,
+                Quantity::OddShearModulus => |moduli| moduli.odd_shear,
+                Quantity::BulkModulus => |moduli| moduli.bulk,
+                _ => continue,
+            };
+            values.insert(quantity, [Some(of(&elastic.moduli)), Some(of(&elastic.errors))]);
+        }
+    }
     Ok(Some(values))
+}
+
+/// The moduli of the state at the end of a run.
+fn elastic(simulation: &Simulation, time_step: f64, watch: &Watch) -> Result<Option<Elastic>, Failure> {
+    let mut settings = Settings::default();
+    settings.relaxation.time_step = time_step;
+    match elastic_until(simulation, &settings, &|| watch.after(0)) {
+        Ok(elastic) => Ok(Some(elastic)),
+        Err(voronudge_simulate::Error::Interrupted) => Ok(None),
+        Err(error) => Err(error.into()),
+    }
 }
 
 /// λ over a further run as long as the first.

@@ -32,6 +32,12 @@ pub(crate) enum Quantity {
     Lyapunov,
     /// ⟨ω²⟩ over all modes of the Jacobian.
     MeanSquareFrequency,
+    /// The shear modulus μ of the state at the end; many times the cost of the run where it flows.
+    ShearModulus,
+    /// The odd shear modulus Kᵒ, at the same cost for all moduli.
+    OddShearModulus,
+    /// The bulk modulus B.
+    BulkModulus,
 }
 
 impl Quantity {
@@ -45,6 +51,9 @@ impl Quantity {
             Self::ShapeIndex => "shape_index",
             Self::Lyapunov => "lyapunov",
             Self::MeanSquareFrequency => "mean_square_frequency",
+            Self::ShearModulus => "shear_modulus",
+            Self::OddShearModulus => "odd_shear_modulus",
+            Self::BulkModulus => "bulk_modulus",
         }
     }
 
@@ -58,7 +67,15 @@ impl Quantity {
             Self::ShapeIndex => ["shape index", "⟨P_i/√A_i⟩"],
             Self::Lyapunov => ["largest Lyapunov exponent", "λ (K_P)"],
             Self::MeanSquareFrequency => ["mean square frequency", "⟨ω²⟩ (K_P²)"],
+            Self::ShearModulus => ["shear modulus", "μ (K_P)"],
+            Self::OddShearModulus => ["odd shear modulus", "Kᵒ (K_P)"],
+            Self::BulkModulus => ["bulk modulus", "B (K_P)"],
         }
+    }
+
+    /// Whether it is one of the elastic moduli.
+    pub fn is_modulus(self) -> bool {
+        matches!(self, Self::ShearModulus | Self::OddShearModulus | Self::BulkModulus)
     }
 
     /// How its values are spread over colours.
@@ -67,7 +84,7 @@ impl Quantity {
             Self::MeanSquareVelocity | Self::MeanSquareFrequency => {
                 (AxisScale::Logarithmic, Palette::Sequential)
             }
-            Self::Lyapunov => (AxisScale::Linear, Palette::Diverging { centre: 0.0 }),
+            Self::Lyapunov | Self::OddShearModulus => (AxisScale::Linear, Palette::Diverging { centre: 0.0 }),
             _ => (AxisScale::Linear, Palette::Sequential),
         }
     }

@@ -1,5 +1,9 @@
 //! `voronudge simulate`: trajectories of the model in a periodic box.
 
+mod chaos;
+mod measurements;
+mod outcome;
+mod page;
 mod recorder;
 mod report;
 mod start;
@@ -9,17 +13,17 @@ use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, env
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
+use chaos::Measure;
 use clap::{Args, ValueEnum};
-use ndarray::Array3;
+use outcome::Finished;
 use recorder::{Kept, Recorder};
-use report::{Report, Request, Spread};
+use report::Request;
 pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
-use voronudge_geometry::{Domain, FieldOfView, Tessellation, areas};
-use voronudge_io::{Boundary, DataSet, YAxis};
-use voronudge_model::{Model, stress};
-use voronudge_simulate::measure::{hexatic, shape_indices};
+use voronudge_geometry::{Domain, FieldOfView, Tessellation};
+use voronudge_model::Model;
+use voronudge_report::Units;
 use voronudge_simulate::{
     Completion, Driving, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
 };
@@ -53,6 +57,9 @@ pub(crate) struct Arguments {
     /// Translational diffusion: noise of the positions.
     #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true)]
     diffusion: f64,
+    /// Also measure the largest Lyapunov exponent, over a further run as long as this one: about four times its cost.
+    #[arg(long)]
+    lyapunov: bool,
     /// Go on with the run that was interrupted in --out.
     #[arg(long)]
     resume: bool,
@@ -112,6 +119,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             seed: arguments.common.seed,
         },
     };
+    let measure_chaos = chaos::asked(arguments.lyapunov, &request.driving)?;
     let mut simulation = Simulation::new(start.positions, domain, model)?
         .with_method(request.method)?
         .with_driving(request.driving)?;
@@ -133,11 +141,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let steps_before = so_far.steps;
     let mut progress = Progress::new(arguments.common.verbosity());
     let begun = Instant::now();
-    let mut fault = None;
+    let (mut fault, mut last) = (None, so_far.clone());
     let outcome = resume(&mut simulation, &schedule, so_far, |event| {
         let written = match event {
             Event::Frame(frame) => recorder.frame(frame.simulation),
             Event::Step { done, total, simulation, state } => {
+                if done == total {
+                    last = state.clone();
+                }
                 if progress.step("simulate", done as u64, total as u64).is_break() {
                     let kept = recorder.checkpoint(simulation, state);
                     fault = Some(kept.err().unwrap_or_else(|| interrupted(simulation.time())));
@@ -154,8 +165,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             }
         }
     });
-    progress.finish();
     if let Some(failure) = fault {
+        progress.finish();
         return Err(failure);
     }
     let summary = match outcome {
@@ -168,36 +179,19 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     debug_assert_eq!(summary.completion, Completion::Finished);
     let seconds = begun.elapsed().as_secs_f64();
-    let mut results = recorder.results()?;
-    settings(&simulation, lengths, &schedule, start.length_unit, start.time_unit)
-        .save_settings(&mut results)?;
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
-    let hexatic = hexatic(tessellation, positions);
-    let report = Report {
-        run: run.record(None),
-        request,
-        mean_square_velocity: summary.mean_square_velocity,
-        mean_square_velocity_error: summary.mean_square_velocity_error,
-        t1_rate: summary.transition_rate,
-        hexatic_order: hexatic.order(),
-        hexatic_mean_modulus: hexatic.mean_modulus,
-        stress: stress(tessellation, positions, simulation.model(), |_| true),
-        area: Spread::of(&areas(tessellation, positions)),
-        shape_index: Spread::of(&shape_indices(tessellation, positions)),
-        steps: summary.steps,
-        steps_per_second: (summary.steps - steps_before) as f64 / seconds,
+    let lyapunov = match measure_chaos {
+        Measure::Chaos => {
+            // So that an interruption finds the run complete.
+            recorder.checkpoint(&simulation, &last)?;
+            Some(chaos::exponent(&simulation, &request, &mut progress)?)
+        }
+        Measure::NoChaos => None,
     };
-    let json = serde_json::to_string_pretty(&report)?;
-    results.write_text("report.json", &json)?;
-    let text = format!(
-        "{cells} cells, {} steps, {:.0} steps per second\nmean square velocity over the second half: {}{}\nwritten to {}\n",
-        report.steps,
-        report.steps_per_second,
-        report.mean_square_velocity.map_or("none".into(), |v| format!("{v:.4e}")),
-        report.mean_square_velocity_error.map_or(String::new(), |e| format!(" ± {e:.1e}")),
-        results.path().display()
-    );
-    run.finish(Some(results), &json, &text)?;
+    progress.finish();
+    let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
+    let finished = Finished { simulation: &simulation, schedule, summary, lyapunov, steps_per_second };
+    let units = Units { length: start.length_unit, time: start.time_unit };
+    outcome::finish(&run, &mut recorder, (request, units), finished)?;
     recorder.discard()?;
     Ok(Answer::Positive)
 }
@@ -205,32 +199,4 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
 fn interrupted(time: f64) -> Failure {
     Failure::interrupted_at(format!("interrupted at time {time:.6}; the run so far is kept"))
         .with_hint("the same command with --resume goes on from there")
-}
-
-/// The data set without its frames, which are written as the run goes on.
-fn settings(
-    simulation: &Simulation,
-    lengths: [f64; 2],
-    schedule: &Schedule,
-    length_unit: String,
-    time_unit: String,
-) -> DataSet {
-    let cells = simulation.positions().len();
-    let positions =
-        Array3::from_shape_fn((1, cells, 2), |(_, cell, axis)| simulation.positions()[cell][axis]);
-    DataSet {
-        positions,
-        velocities: None,
-        flow: None,
-        labels: None,
-        boundary: Boundary::Periodic { lengths },
-        frame_interval: schedule.frame_interval(),
-        length_unit,
-        time_unit,
-        y_axis: YAxis::Up,
-        unwrapped: true,
-        position_noise: None,
-        velocity_noise: None,
-        inputs: Vec::new(),
-    }
 }

@@ -106,6 +106,16 @@ impl Recorder {
         Ok(())
     }
 
+    /// Positions (N) of a frame that was written, unwrapped.
+    pub fn positions(&mut self, frame: usize) -> Result<Vec<Vector<f64>>, Failure> {
+        Ok(vectors(&self.recording.frame(0, frame)?))
+    }
+
+    /// Velocities (N) of a frame that was written.
+    pub fn velocities(&mut self, frame: usize) -> Result<Vec<Vector<f64>>, Failure> {
+        Ok(vectors(&self.recording.frame(1, frame)?))
+    }
+
     /// The results, with the frames among them.
     pub fn results(&mut self) -> Result<OutputDirectory, Failure> {
         Ok(self.recording.results()?)
@@ -115,6 +125,10 @@ impl Recorder {
     pub fn discard(self) -> Result<(), Failure> {
         Ok(self.recording.discard()?)
     }
+}
+
+fn vectors(row: &[f64]) -> Vec<Vector<f64>> {
+    row.chunks_exact(2).map(|r| Vector::new(r[0], r[1])).collect()
 }
 
 fn unreadable(out: &Path) -> Failure {

@@ -4,6 +4,7 @@ use super::start::Origin;
 use crate::arguments::ChosenEffects;
 use crate::command::evaluate::ModelParameters;
 use serde::Serialize;
+use voronudge_report::histogram::Histogram;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_simulate::{Driving, Method};
 
@@ -24,6 +25,7 @@ pub(super) struct Request {
     pub driving: Driving,
 }
 
+/// What came of a run, described by a schema beside those of the other reports.
 #[derive(Serialize)]
 pub(super) struct Report {
     #[serde(flatten)]
@@ -38,22 +40,86 @@ pub(super) struct Report {
     pub stress: [[f64; 2]; 2],
     pub area: Spread,
     pub shape_index: Spread,
+    pub displacement: Displacement,
+    pub structure: Structure,
+    pub lyapunov: Option<Exponent>,
     pub steps: usize,
     pub steps_per_second: f64,
 }
 
-/// Mean and standard deviation over cells.
+impl Report {
+    /// The cell size ℓ₀.
+    pub fn spacing(&self) -> f64 {
+        let [width, height] = self.request.box_lengths;
+        (width * height / self.request.cells as f64).sqrt()
+    }
+}
+
+/// How far the cells get, in short.
+#[derive(Serialize)]
+pub(super) struct Displacement {
+    /// Frames between which displacements were taken.
+    pub frames: usize,
+    pub longest_lag: Option<f64>,
+    pub mean_square: Option<f64>,
+}
+
+/// The structure factor of the density, in short.
+#[derive(Serialize)]
+pub(super) struct Structure {
+    /// Frames that were averaged.
+    pub frames: usize,
+    pub largest_wave_number: Option<f64>,
+    pub peak: Option<Peak>,
+}
+
+#[derive(Serialize)]
+pub(super) struct Peak {
+    pub wave_number: f64,
+    pub value: f64,
+}
+
+#[derive(Serialize)]
+pub(super) struct Exponent {
+    pub value: f64,
+    pub standard_error: Option<f64>,
+}
+
+/// Mean and standard deviation over cells, and a histogram.
 #[derive(Serialize)]
 pub(super) struct Spread {
     pub mean: f64,
     pub standard_deviation: f64,
+    pub histogram: Option<Counts>,
 }
+
+/// Number of cells in each bin.
+#[derive(Serialize)]
+pub(super) struct Counts {
+    pub from: f64,
+    pub width: f64,
+    pub counts: Vec<usize>,
+}
+
+/// Bins of a histogram in the report, about.
+const BINS: usize = 30;
 
 impl Spread {
     pub fn of(values: &[f64]) -> Self {
         let count = values.len().max(1) as f64;
         let mean = values.iter().sum::<f64>() / count;
         let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / count;
-        Self { mean, standard_deviation: variance.sqrt() }
+        let [low, high] = values
+            .iter()
+            .fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &x| [low.min(x), high.max(x)]);
+        // A lattice has cells of one size to rounding.
+        let room = 1e-6 * high.abs() + 1e-9 * (high - low);
+        let bins = Histogram::new(values.iter().copied(), [low - room, high + room], BINS);
+        let histogram = bins.map(|bins| Counts {
+            from: bins.range()[0],
+            width: bins.width(),
+            counts: bins.counts.iter().map(|&count| count as usize).collect(),
+        });
+        Self { mean, standard_deviation: variance.sqrt(), histogram }
     }
 }

@@ -1,0 +1,106 @@
+//! A run as files and a summary.
+
+use super::measurements::Measurements;
+use super::page::{cell_box, page};
+use super::recorder::Recorder;
+use super::report::{Displacement, Exponent, Report, Request, Spread, Structure};
+use crate::failure::Failure;
+use crate::run::Run;
+use ndarray::Array3;
+use voronudge_geometry::areas;
+use voronudge_io::{Boundary, DataSet, YAxis};
+use voronudge_model::stress;
+use voronudge_report::Units;
+use voronudge_simulate::measure::{hexatic, shape_indices};
+use voronudge_simulate::{Schedule, Simulation, Summary};
+
+/// A run at its end.
+pub(super) struct Finished<'a> {
+    pub simulation: &'a Simulation,
+    pub schedule: Schedule,
+    pub summary: Summary,
+    pub lyapunov: Option<Exponent>,
+    pub steps_per_second: f64,
+}
+
+/// Measures what the frames tell, writes all results and prints the summary.
+pub(super) fn finish(
+    run: &Run,
+    recorder: &mut Recorder,
+    (request, units): (Request, Units),
+    finished: Finished<'_>,
+) -> Result<(), Failure> {
+    let Finished { simulation, schedule, summary, lyapunov, steps_per_second } = finished;
+    let measurements = Measurements::new(recorder, &schedule, &cell_box(simulation)?)?;
+    let mut results = recorder.results()?;
+    settings(simulation, &request, &schedule, &units).save_settings(&mut results)?;
+    measurements.write(&mut results)?;
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
+    let hexatic = hexatic(tessellation, positions);
+    let farthest = measurements.displacements.last();
+    let report = Report {
+        run: run.record(None),
+        request,
+        mean_square_velocity: summary.mean_square_velocity,
+        mean_square_velocity_error: summary.mean_square_velocity_error,
+        t1_rate: summary.transition_rate,
+        hexatic_order: hexatic.order(),
+        hexatic_mean_modulus: hexatic.mean_modulus,
+        stress: stress(tessellation, positions, simulation.model(), |_| true),
+        area: Spread::of(&areas(tessellation, positions)),
+        shape_index: Spread::of(&shape_indices(tessellation, positions)),
+        displacement: Displacement {
+            frames: measurements.displacement_frames,
+            longest_lag: farthest.map(|row| row[0]),
+            mean_square: farthest.map(|row| row[1]),
+        },
+        structure: Structure {
+            frames: measurements.structure_frames,
+            largest_wave_number: measurements.structure.last().map(|shell| shell.wave_number),
+            peak: measurements.peak(),
+        },
+        lyapunov,
+        steps: summary.steps,
+        steps_per_second,
+    };
+    let json = serde_json::to_string_pretty(&report)?;
+    results.write_text("report.json", &json)?;
+    results.write_text("report.html", &page(&report, &measurements, simulation, &units)?)?;
+    let error = |error: Option<f64>| error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
+    let mut text = format!(
+        "{} cells, {} steps, {:.0} steps per second\nmean square velocity over the second half: {}{}\n",
+        positions.len(),
+        report.steps,
+        report.steps_per_second,
+        report.mean_square_velocity.map_or("none".into(), |v| format!("{v:.4e}")),
+        error(report.mean_square_velocity_error),
+    );
+    if let Some(exponent) = &report.lyapunov {
+        text +=
+            &format!("largest Lyapunov exponent: {:.3e}{}\n", exponent.value, error(exponent.standard_error));
+    }
+    text += &format!("written to {}, figures in report.html\n", results.path().display());
+    run.finish(Some(results), &json, &text)
+}
+
+/// The data set without its frames, which are written as the run goes on.
+fn settings(simulation: &Simulation, request: &Request, schedule: &Schedule, units: &Units) -> DataSet {
+    let cells = simulation.positions().len();
+    let positions =
+        Array3::from_shape_fn((1, cells, 2), |(_, cell, axis)| simulation.positions()[cell][axis]);
+    DataSet {
+        positions,
+        velocities: None,
+        flow: None,
+        labels: None,
+        boundary: Boundary::Periodic { lengths: request.box_lengths },
+        frame_interval: schedule.frame_interval(),
+        length_unit: units.length.clone(),
+        time_unit: units.time.clone(),
+        y_axis: YAxis::Up,
+        unwrapped: true,
+        position_noise: None,
+        velocity_noise: None,
+        inputs: Vec::new(),
+    }
+}
