@@ -28,7 +28,8 @@ enum Command {
     Spectrum(Box<command::spectrum::Arguments>),
     Simulate(command::simulate::Arguments),
     CheckGradients(command::check_gradients::Arguments),
-    Import(command::import::Arguments),
+    Import(Box<command::import::Arguments>),
+    PhaseDiffusion(command::phase_diffusion::Arguments),
 }
 
 /// What a command that ran has to say.
@@ -69,6 +70,7 @@ fn run() -> Result<Answer, Failure> {
         Command::Spectrum(arguments) => command::spectrum::run(*arguments),
         Command::Simulate(arguments) => command::simulate::run(arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
-        Command::Import(arguments) => command::import::run(arguments),
+        Command::Import(arguments) => command::import::run(*arguments),
+        Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
     }
 }

@@ -56,10 +56,8 @@ pub fn agreement(
     shapes: &[Option<MeasuredShape>],
     contacts: &BTreeSet<[usize; 2]>,
 ) -> Agreement {
-    // The centroid of a cell that is cut off is not where it should be, which its neighbours feel.
-    let sound =
-        |cell: usize| tessellation.neighbours(cell).iter().all(|&other| shapes[other as usize].is_some());
-    let counts = |cell: usize| view.counts(cell) && shapes[cell].is_some() && sound(cell);
+    let comparable = comparable(tessellation, view, shapes);
+    let counts = |cell: usize| comparable[cell];
     let judged = |pair: &[usize; 2]| pair.iter().any(|&cell| counts(cell));
     let voronoi: BTreeSet<[usize; 2]> = tessellation
         .edges()
@@ -88,6 +86,19 @@ pub fn agreement(
         area_ratio: ratio(&area_pairs),
         perimeter_ratio: ratio(&perimeter_pairs),
     }
+}
+
+/// The cells whose Voronoi polygon can be compared: they count in the field of view, and they and their neighbours are seen as a whole.
+/// The centroid of a cell that is cut off is not where it should be, which its neighbours feel.
+pub fn comparable(
+    tessellation: &Tessellation,
+    view: &FieldOfView,
+    shapes: &[Option<MeasuredShape>],
+) -> Vec<bool> {
+    let is_whole = |cell: usize| shapes[cell].is_some();
+    let neighbours_whole =
+        |cell: usize| tessellation.neighbours(cell).iter().all(|&other| is_whole(other as usize));
+    (0..shapes.len()).map(|cell| view.counts(cell) && is_whole(cell) && neighbours_whole(cell)).collect()
 }
 
 /// Pearson's correlation; not finite where one of the two does not vary.

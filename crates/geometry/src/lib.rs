@@ -45,7 +45,7 @@ mod scalar;
 mod side;
 mod tessellation;
 
-pub use agreement::{Agreement, MeasuredShape, agreement};
+pub use agreement::{Agreement, MeasuredShape, agreement, comparable};
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
 pub use extrema::{Extremum, ExtremumKind, ExtremumSearch, extrema};

@@ -1,10 +1,12 @@
 //! The commands: arguments as typed, a checked request, one library call, and its result rendered.
 
+mod cells_view;
 pub(crate) mod check_gradients;
 pub(crate) mod discover;
 pub(crate) mod evaluate;
 mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
+pub(crate) mod phase_diffusion;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;
