@@ -31,7 +31,8 @@ enum Command {
     Merge(command::merge::Arguments),
     Moduli(Box<command::moduli::Arguments>),
     CheckGradients(command::check_gradients::Arguments),
-    Import(command::import::Arguments),
+    Import(Box<command::import::Arguments>),
+    PhaseDiffusion(command::phase_diffusion::Arguments),
 }
 
 /// What a command that ran has to say.
@@ -75,6 +76,7 @@ fn run() -> Result<Answer, Failure> {
         Command::Merge(arguments) => command::merge::run(arguments),
         Command::Moduli(arguments) => command::moduli::run(*arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
-        Command::Import(arguments) => command::import::run(arguments),
+        Command::Import(arguments) => command::import::run(*arguments),
+        Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
     }
 }

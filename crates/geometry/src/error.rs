@@ -79,6 +79,16 @@ pub enum Error {
         /// A cell where two images disagree.
         cell: usize,
     },
+    /// Values that do not fill the rows of an image.
+    #[error("{values} values do not fill an image of {columns} columns and {rows} rows")]
+    Raster {
+        /// Number of values given.
+        values: usize,
+        /// Pixels in a row.
+        columns: usize,
+        /// Number of rows.
+        rows: usize,
+    },
     /// More cells than 32-bit indices can address.
     #[error("{cells} cells are more than the {limit} that can be addressed")]
     TooManyCells {
@@ -111,6 +121,7 @@ impl Error {
             Self::Inconsistent { .. } => {
                 "several cells lie on one circle to rounding precision; move them by a tiny random amount"
             }
+            Self::Raster { .. } => "give one value for each pixel, row after row",
             Self::TooManyCells { .. } => "split the data",
         })
     }

@@ -25,29 +25,41 @@
 //! # Ok::<(), voronudge_geometry::Error>(())
 //! ```
 
+mod agreement;
 mod builder;
 mod domain;
 mod error;
+mod extrema;
 mod field_of_view;
 mod grid;
 mod honeycomb;
+mod linking;
+mod mask;
 mod moving;
+mod outline;
 mod overlap;
 mod plane;
 mod polygon;
+mod raster;
 mod scalar;
 mod side;
 mod tessellation;
 
+pub use agreement::{Agreement, MeasuredShape, agreement, comparable};
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
+pub use extrema::{Extremum, ExtremumKind, ExtremumSearch, extrema};
 pub use field_of_view::{FieldOfView, Visibility};
 pub use grid::Grid;
 pub use honeycomb::honeycomb;
+pub use linking::{link_nearest, link_overlapping};
+pub use mask::{Mask, MaskedCell};
 pub use moving::{MovingTessellation, Renewal};
+pub use outline::{Outline, outline_contacts};
 pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
 pub use plane::{Corner, Vector, circumcentre, cross, dot, quarter_turn, side_direction};
 pub use polygon::{CellPolygon, Shape, areas, perimeters};
+pub use raster::{Edge, smooth};
 pub use scalar::{Scalar, lift};
 pub use side::Side;
 pub use tessellation::{Tessellation, Triangle};

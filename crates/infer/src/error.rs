@@ -35,6 +35,32 @@ pub enum Error {
     /// All velocities are zero.
     #[error("all measured velocities are zero")]
     NothingMoves,
+    /// Fewer frames than a course needs.
+    #[error("{found} frames, but the course of a pattern needs at least {required}")]
+    TooFewFrames {
+        /// Number of frames.
+        found: usize,
+        /// Number needed.
+        required: usize,
+    },
+    /// Fewer cells than waves are asked for.
+    #[error("{found} cells are present in all frames, but {waves} wave vectors need at least {required}")]
+    TooFewPatternCells {
+        /// Number of cells.
+        found: usize,
+        /// Number of wave vectors.
+        waves: usize,
+        /// Number of cells needed.
+        required: usize,
+    },
+    /// A pattern that stays as it is.
+    #[error("none of {cells} cells is displaced in any of {frames} frames by a long wave")]
+    NoDeformation {
+        /// Number of cells.
+        cells: usize,
+        /// Number of frames.
+        frames: usize,
+    },
     /// Every parameter is fixed.
     #[error("every parameter is fixed, so there is nothing to fit")]
     NothingToFit,
@@ -72,6 +98,11 @@ impl Error {
                 "choose frames with velocities and more cells whose neighbours are all seen, or give more frames",
             ),
             Self::NothingMoves => Some("check the velocities, or give frames in which cells move"),
+            Self::TooFewFrames { .. } => Some("choose more frames"),
+            Self::TooFewPatternCells { .. } => Some(
+                "ask for fewer wave vectors, or choose frames in which more cells are tracked throughout",
+            ),
+            Self::NoDeformation { .. } => Some("choose frames in which the pattern deforms"),
             Self::NothingToFit => Some("leave at least one of K_A, K_P, P_0, alpha free"),
             Self::Constraint(_) => Some("check --fix, --bounds and --prior; K_P must not be held at zero"),
             Self::Degenerate => Some("fix one of the parameters, for example K_A, or give more cells"),

@@ -30,6 +30,7 @@ mod noisy_fit;
 mod normal_equations;
 mod objective;
 mod observation;
+pub mod phase_diffusion;
 mod predictive;
 mod quadratic;
 mod quantity;

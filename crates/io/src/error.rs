@@ -3,6 +3,7 @@
 mod arrays;
 mod files;
 mod grids;
+mod images;
 mod settings;
 mod tables;
 
@@ -12,6 +13,7 @@ use std::path::{Path, PathBuf};
 pub use arrays::{FormatFault, ShapeFault, ValueFault};
 pub use files::{FileFault, OutputFault};
 pub use grids::GridFault;
+pub use images::ImageFault;
 pub use settings::{SelectionFault, SettingFault, TomlFault};
 pub use tables::TableFault;
 
@@ -60,6 +62,14 @@ pub enum Error {
         path: PathBuf,
         /// What is wrong with it.
         fault: GridFault,
+    },
+    /// An image, its labels or its outlines cannot be used.
+    #[error("{}: {fault}", path.display())]
+    Image {
+        /// The file as given.
+        path: PathBuf,
+        /// What is wrong with it.
+        fault: ImageFault,
     },
     /// A `dataset.toml` is malformed or says something impossible.
     #[error("{}: {fault}", Place(path, *line))]
@@ -122,6 +132,7 @@ impl Error {
             Self::Shape { fault, .. } => fault.hint(),
             Self::Value { fault, .. } => fault.hint(),
             Self::Grid { fault, .. } => fault.hint(),
+            Self::Image { fault, .. } => fault.hint(),
             Self::Toml { fault, .. } => fault.hint(),
             Self::Setting(fault) => fault.hint(),
             Self::Table { fault, .. } => fault.hint(),

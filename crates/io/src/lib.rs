@@ -8,6 +8,8 @@
 //! | read a data set (folder, single files, or both) | [`Source::load`] |
 //! | turn a spots or tracks table into a data set | [`import_trackmate`], [`import_tracks`] |
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
+//! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_outlines`] |
+//! | turn maxima and minima of a field into a data set | [`import_field`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
 //! | read which frames the user wants | [`FrameSelection`] |
 //! | read one array | [`read_reals`], [`read_integers`], [`read_vectors`] |
@@ -28,16 +30,22 @@
 mod array;
 mod dataset;
 mod error;
+mod field_import;
 mod flow;
 mod flow_import;
 mod frames;
+mod image;
+mod image_scale;
 mod input;
 mod journal;
+mod label_import;
 mod noise;
+mod outline_import;
 mod output;
 mod recording;
 mod save;
 mod settings;
+mod shapes;
 mod source;
 mod table;
 mod tracks;
@@ -47,17 +55,22 @@ mod velocity;
 pub use array::{read_integers, read_reals, read_vectors};
 pub use dataset::{Boundary, DataSet, YAxis};
 pub use error::{
-    Error, FileFault, FormatFault, GridFault, OutputFault, SelectionFault, SettingFault, ShapeFault,
-    TableFault, TomlFault, ValueFault,
+    Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
+    ShapeFault, TableFault, TomlFault, ValueFault,
 };
+pub use field_import::{FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field};
 pub use flow::FlowField;
 pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
 pub use frames::FrameSelection;
+pub use image_scale::ImageScale;
 pub use input::InputFile;
 pub use journal::Journal;
+pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_labels};
 pub use noise::Noise;
+pub use outline_import::{OutlineOptions, import_outlines};
 pub use output::OutputDirectory;
 pub use recording::Recording;
+pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
 pub use source::Source;
 pub use table::{ColumnNames, FlowColumnNames};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};

@@ -68,7 +68,7 @@ fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, 
     let mut table = SpotTable { spots: Vec::new(), untracked: 0, length_unit: None };
     let mut extra_rows = match layout {
         Layout::TrackMate => EXTRA_HEADER_ROWS,
-        Layout::Tracks => 0,
+        Layout::Tracks | Layout::Outlines => 0,
     };
     for row in rows {
         let row = row.map_err(csv_fault)?;

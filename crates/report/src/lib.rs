@@ -35,7 +35,9 @@ pub mod markers;
 pub mod moduli_report;
 pub mod numbers;
 pub mod page;
+pub mod phase_diffusion_report;
 pub mod phase_report;
+pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;
 mod view;
@@ -49,8 +51,11 @@ pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
 pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use page::{
-    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SimulatePage, SpectrumPage, Uncertainty,
+    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, ResultPage, SimulatePage, SpectrumPage,
+    Uncertainty,
 };
+pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};
+pub use shape_report::{FIELD_SCHEMA, FieldReport, SHAPE_SCHEMA, ShapeReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

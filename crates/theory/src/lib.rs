@@ -32,6 +32,7 @@ mod edge;
 mod error;
 mod lattice;
 mod parameters;
+mod phase_diffusion;
 mod spectrum;
 mod stability;
 
@@ -41,5 +42,6 @@ pub use edge::EdgeRow;
 pub use error::Error;
 pub use lattice::{Orientation, PathPoint, SymmetryPoint, hexagon_perimeter, hexagon_side, symmetry_path};
 pub use parameters::{MeanField, Parameters};
+pub use phase_diffusion::PhaseDiffusivities;
 pub use spectrum::Eigenvalue;
 pub use stability::{Mode, Phase};

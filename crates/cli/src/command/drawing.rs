@@ -1,7 +1,32 @@
 //! Cells of a tessellation as figures show them.
 
 use voronudge_geometry::{CellPolygon, Domain, Tessellation, Vector};
-use voronudge_report::{CellStatus, CellView};
+use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView};
+
+/// The cells of a tessellation with their polygons; those that are not used are shown as left out.
+pub(crate) fn cells_view(
+    label: String,
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    is_used: impl Fn(usize) -> bool,
+) -> FrameView {
+    let mut polygon = CellPolygon::default();
+    let cells = (0..positions.len())
+        .map(|cell| {
+            let status = if is_used(cell) { CellStatus::Used } else { CellStatus::LeftOut };
+            CellView { status, ..cell_view(tessellation, positions, cell, &mut polygon) }
+        })
+        .collect();
+    FrameView {
+        label,
+        cells,
+        changed_edges: ChangedEdges::default(),
+        outline: match tessellation.domain() {
+            Domain::Periodic(cell_box) => Some([[0.0; 2], cell_box.lengths()]),
+            Domain::Open => None,
+        },
+    }
+}
 
 /// A cell without velocities, as used; its centre inside the box.
 pub(crate) fn cell_view(

@@ -10,5 +10,6 @@ pub(crate) mod infer;
 pub(crate) mod merge;
 pub(crate) mod moduli;
 pub(crate) mod phase_diagram;
+pub(crate) mod phase_diffusion;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

@@ -26,6 +26,8 @@ pub struct ColumnNames {
 pub(crate) enum Layout {
     TrackMate,
     Tracks,
+    /// Corners of outlines, row after row; without a column of frames all are in one.
+    Outlines,
 }
 
 /// A spot that belongs to a track.
@@ -46,7 +48,7 @@ pub(super) struct Column {
 /// The four columns of a table that matter.
 pub(super) struct Columns {
     track: Column,
-    frame: Column,
+    frame: Option<Column>,
     x: Column,
     y: Column,
 }
@@ -57,7 +59,7 @@ impl Columns {
         const Y: &[&str] = &["y", "position_y", "pos_y", "y_position", "centroid_y"];
         let (track, frame, x, y): (&[&str], &[&str], &[&str], &[&str]) = match layout {
             Layout::TrackMate => (&["track_id"], &["frame"], &["position_x", "x"], &["position_y", "y"]),
-            Layout::Tracks => (
+            Layout::Tracks | Layout::Outlines => (
                 &["track_id", "track", "particle", "particle_id", "cell_id", "cell", "id"],
                 &["frame", "t", "time_index", "time_point"],
                 X,
@@ -78,7 +80,10 @@ impl Columns {
         };
         Ok(Self {
             track: find("track", &names.track, track)?,
-            frame: find("frame", &names.frame, frame)?,
+            frame: match find("frame", &names.frame, frame) {
+                Err(_) if layout == Layout::Outlines && names.frame.is_none() => None,
+                found => Some(found?),
+            },
             x: find("x coordinate", &names.x, x)?,
             y: find("y coordinate", &names.y, y)?,
         })
@@ -86,7 +91,7 @@ impl Columns {
 
     /// Whether a row repeats names or units rather than giving a spot.
     pub(super) fn all_texts(&self, row: &ByteRecord) -> bool {
-        [&self.frame, &self.x, &self.y].iter().all(|column| column.text(row).parse::<f64>().is_err())
+        self.frame.iter().chain([&self.x, &self.y]).all(|column| column.text(row).parse::<f64>().is_err())
     }
 
     /// What a row has under x, where TrackMate's extra header rows put the unit of length.
@@ -108,7 +113,7 @@ impl Columns {
         }
         Ok(Some(Spot {
             track: self.track.whole(row)?,
-            frame: self.frame.whole(row)?,
+            frame: self.frame.as_ref().map_or(Ok(0), |frame| frame.whole(row))?,
             x: self.x.finite(row)?,
             y: self.y.finite(row)?,
         }))

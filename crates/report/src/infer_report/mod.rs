@@ -4,9 +4,11 @@
 //! are not finite are written as `null`.
 
 mod constraints;
+mod implied;
 mod uncertainty;
 
 pub use constraints::{GivenConstraints, GivenPrior};
+pub use implied::ImpliedByMeanField;
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
 
 use std::collections::BTreeMap;
@@ -67,6 +69,8 @@ pub struct InferReport {
     pub constraints: GivenConstraints,
     /// The nudged estimate.
     pub parameters: Parameters,
+    /// Moduli and phase diffusivities that the parameters imply by the mean-field theory; `null` where it has none.
+    pub implied_moduli: Option<ImpliedByMeanField>,
     /// The estimate at the measured positions.
     pub naive: NaiveParameters,
     /// Normalised errors.

@@ -163,6 +163,7 @@ pub fn report() -> InferReport {
             K_P_alpha: fitted(0.0714, 0.0031, "1/min"),
             shape_index: fitted(3.97, 0.14, ""),
         },
+        implied_moduli: None,
         naive: NaiveParameters {
             K_A: f64::NAN,
             K_P: 0.012,

@@ -4,7 +4,7 @@
 //! |---|---|
 //! | `arguments`, `constraints`, `flow`, `search` | options: which data, what is known of the parameters, velocities on a grid, how long to search |
 //! | `measured`, `prepare`, `scaling` | from the data set to the problem in scaled units, and back |
-//! | `outcome`, `words` | a fitted model as reports tell it |
+//! | `outcome`, `implied`, `words` | a fitted model as reports tell it |
 //! | `arrays`, `views`, `browser` | arrays, frames to be drawn, the page on the screen |
 
 mod arguments;
@@ -12,6 +12,7 @@ pub(crate) mod arrays;
 pub(crate) mod browser;
 mod constraints;
 mod flow;
+pub(crate) mod implied;
 mod measured;
 pub(crate) mod outcome;
 mod prepare;

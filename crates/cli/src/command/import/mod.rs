@@ -1,14 +1,18 @@
 //! `voronudge import`: files of other programs into data sets.
 
+mod field;
 mod flow;
+mod labels;
+mod outlines;
+mod shapes;
 mod tracks;
 
 use crate::Answer;
 use crate::failure::Failure;
 use clap::{Args, Subcommand};
-use voronudge_io::{Boundary, YAxis};
+use voronudge_io::{Boundary, ImageScale, YAxis};
 
-/// Turns tracks or flow fields of other programs into a data set.
+/// Turns tracks, flow fields, label images, outlines or fields of other programs into a data set.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -23,6 +27,12 @@ enum What {
     Tracks(tracks::Arguments),
     /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
     Flow(flow::Arguments),
+    /// Label images, as segmentations make them (.npy or .tif): every pixel carries the number of its cell, or 0.
+    Labels(labels::Arguments),
+    /// Outlines of cells (.csv or .csv.gz), a row for each corner: cell, x, y.
+    Outlines(outlines::Arguments),
+    /// A field, such as a stream function or an intensity (.npy or .tif): cells are its maxima or minima.
+    Field(field::Arguments),
 }
 
 /// What files of other programs do not say about themselves.
@@ -48,6 +58,38 @@ struct ScaleArguments {
     box_lengths: Option<Vec<f64>>,
 }
 
+/// What images do not say about themselves.
+#[derive(Debug, Args)]
+struct ImageArguments {
+    /// Length of a pixel [default: 1].
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pixel_size: Option<f64>,
+    /// Time between frames.
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    frame_interval: Option<f64>,
+    /// Unit of length after scaling.
+    #[arg(long, value_name = "UNIT")]
+    length_unit: Option<String>,
+    /// Unit of time.
+    #[arg(long, value_name = "UNIT")]
+    time_unit: Option<String>,
+    /// Direction in which rows are counted, or y grows [default: down, as in images].
+    #[arg(long, value_name = "up|down")]
+    y_axis: Option<YAxis>,
+}
+
+impl ImageArguments {
+    fn scale(&self) -> ImageScale {
+        ImageScale {
+            pixel_size: self.pixel_size,
+            length_unit: self.length_unit.clone(),
+            time_unit: self.time_unit.clone(),
+            frame_interval: self.frame_interval,
+            y_axis: self.y_axis,
+        }
+    }
+}
+
 impl ScaleArguments {
     fn boundary(&self) -> Option<Boundary> {
         self.box_lengths.as_ref().map(|l| Boundary::Periodic { lengths: [l[0], l[1]] })
@@ -59,5 +101,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         What::Trackmate(arguments) => tracks::run(arguments, voronudge_io::import_trackmate),
         What::Tracks(arguments) => tracks::run(arguments, voronudge_io::import_tracks),
         What::Flow(arguments) => flow::run(arguments),
+        What::Labels(arguments) => labels::run(arguments),
+        What::Outlines(arguments) => outlines::run(arguments),
+        What::Field(arguments) => field::run(arguments),
     }
 }

@@ -3,7 +3,7 @@
 use super::answers;
 use super::questions::Answers;
 use crate::command::fit::scaling::factor;
-use crate::command::fit::{OrderedField, Prepared, outcome};
+use crate::command::fit::{OrderedField, Prepared, implied, outcome};
 use crate::run::Run;
 use voronudge_infer::{Inference, NoiseSource, Quantity as What};
 use voronudge_io::DataSet;
@@ -26,6 +26,7 @@ pub(super) fn report(
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         parameters: outcome::parameters(prepared, result, &units),
+        implied_moduli: implied::implied(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),
             K_P: naive.perimeter_elasticity * factor(scale, What::PerimeterElasticity),

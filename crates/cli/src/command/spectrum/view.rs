@@ -1,33 +1,16 @@
 //! A frame and its modes as figures show them.
 
 use super::frame::Solved;
-use crate::command::drawing::cell_view;
+use crate::command::drawing::cells_view;
 use std::f64::consts::TAU;
-use voronudge_geometry::{CellPolygon, Domain};
+use voronudge_report::FrameView;
 use voronudge_report::figure::{DrawnMode, SpectrumPoint};
-use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView};
 use voronudge_spectrum::Complex64;
 
 /// The cells of a frame; those that are held in the modes are left out.
 pub(super) fn frame_view(solved: &Solved) -> FrameView {
-    let domain = solved.tessellation.domain();
-    let positions = &solved.snapshot.positions;
-    let mut polygon = CellPolygon::default();
-    let cells = (0..positions.len())
-        .map(|cell| {
-            let status = if solved.view.counts(cell) { CellStatus::Used } else { CellStatus::LeftOut };
-            CellView { status, ..cell_view(&solved.tessellation, positions, cell, &mut polygon) }
-        })
-        .collect();
-    FrameView {
-        label: format!("frame {}", solved.frame),
-        cells,
-        changed_edges: ChangedEdges::default(),
-        outline: match domain {
-            Domain::Periodic(cell_box) => Some([[0.0; 2], cell_box.lengths()]),
-            Domain::Open => None,
-        },
-    }
+    let label = format!("frame {}", solved.frame);
+    cells_view(label, &solved.tessellation, &solved.snapshot.positions, |cell| solved.view.counts(cell))
 }
 
 /// A mode on the cells of its frame, with the phase at which its real part is largest.

@@ -1,0 +1,201 @@
+//! `import field`: extrema of a stream function or of an intensity.
+
+use super::ImageArguments;
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::command::drawing::cells_view;
+use crate::failure::Failure;
+use crate::run::Run;
+use crate::snapshot::{Snapshot, domain, y_sign};
+use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
+use voronudge_geometry::{Edge, FieldOfView, Tessellation};
+use voronudge_io::{FieldImport, FieldLinking, FieldOptions, OutputDirectory, WantedExtrema, import_field};
+use voronudge_report::figure::{ExtremaMap, extrema_map};
+use voronudge_report::numbers::significant;
+use voronudge_report::page::{Card, Figure, ResultSection};
+use voronudge_report::{FieldReport, ResultPage, Units};
+
+/// Polygons larger than this multiple of the median area are taken for the rim of the field of view.
+const LARGEST_AREA: f64 = 3.0;
+
+const GUIDE: &[[&str; 2]] = &[
+    [
+        "Cells",
+        "Maxima or minima of the smoothed field, refined by a quadratic through the nine pixels around.",
+    ],
+    [
+        "Prominence",
+        "How far one must go down from a maximum to get to a higher one. Extrema of less prominence than was asked for are taken for noise.",
+    ],
+];
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// The field (ny, nx) or (frames, ny, nx), .npy, or a grey .tif of one page or several.
+    file: PathBuf,
+    #[command(flatten)]
+    image: ImageArguments,
+    /// Which extrema are cells.
+    #[arg(long, value_enum, default_value_t = Kind::Maxima)]
+    extrema: Kind,
+    /// Standard deviation of a Gaussian average taken first, in units after scaling; 0 for none.
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.0, allow_negative_numbers = true)]
+    smoothing: f64,
+    /// Least prominence, in units of the field [default: a tenth of the range of the smoothed field].
+    #[arg(long, value_name = "HEIGHT", allow_negative_numbers = true)]
+    prominence: Option<f64>,
+    /// Least distance of two extrema of a kind, in units after scaling; 0 for none.
+    #[arg(long, value_name = "LENGTH", default_value_t = 0.0, allow_negative_numbers = true)]
+    distance: f64,
+    /// The field repeats; the periodic box is the image.
+    #[arg(long)]
+    periodic: bool,
+    /// Which cells of different frames are one.
+    #[arg(long, value_enum, default_value_t = Link::Nearest)]
+    link: Link,
+    /// The farthest that a cell moves between frames, in units after scaling [default: half the mean distance of cells].
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    link_limit: Option<f64>,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Kind {
+    /// Maxima.
+    Maxima,
+    /// Minima.
+    Minima,
+    /// Both; maxima get the label 0, minima the label 1.
+    Both,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Link {
+    /// None: each frame has cells of its own.
+    None,
+    /// The nearest of the same kind in the next frame.
+    Nearest,
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("import", &arguments.common)?;
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let options = FieldOptions {
+        scale: arguments.image.scale(),
+        extrema: match arguments.extrema {
+            Kind::Maxima => WantedExtrema::Maxima,
+            Kind::Minima => WantedExtrema::Minima,
+            Kind::Both => WantedExtrema::Both,
+        },
+        smoothing: arguments.smoothing,
+        prominence: arguments.prominence,
+        distance: arguments.distance,
+        edge: if arguments.periodic { Edge::Periodic } else { Edge::Open },
+        linking: match arguments.link {
+            Link::None => FieldLinking::Separate,
+            Link::Nearest => FieldLinking::Nearest { limit: arguments.link_limit },
+        },
+    };
+    let import = import_field(&arguments.file, &options)?;
+    let data = &import.dataset;
+    let expected: usize = import.counts.iter().skip(1).sum();
+    if arguments.link == Link::Nearest && import.linked < expected {
+        run.warn(format!(
+            "{} of {expected} extrema after the first frame continue none of the frame before; each begins a cell of its own",
+            expected - import.linked
+        ));
+    }
+    data.save(&mut out)?;
+    out.write_array("heights.npy", import.heights.view())?;
+    out.write_array("prominences.npy", import.prominences.view())?;
+    let (rows, columns) = import.first.dim();
+    let report = FieldReport {
+        run: run.record(Some(data)),
+        units: Units { length: data.length_unit.clone(), time: data.time_unit.clone() },
+        frames: import.counts.clone(),
+        tracks: data.cells(),
+        linked: import.linked,
+        size: [columns, rows],
+        pixel_size: import.pixel_size,
+        smallest_prominence: import
+            .prominences
+            .iter()
+            .copied()
+            .filter(|x| x.is_finite())
+            .fold(f64::INFINITY, f64::min),
+    };
+    let json = serde_json::to_string_pretty(&report)?;
+    out.write_text("report.json", &json)?;
+    out.write_text("report.html", &page(&arguments.file, &import, &report)?)?;
+    let extrema: usize = report.frames.iter().sum();
+    let text = format!(
+        "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\nwritten to {}\n",
+        report.frames.len(),
+        report.tracks,
+        report.linked,
+        out.path().display()
+    );
+    run.finish(Some(out), &json, &text)?;
+    Ok(Answer::Positive)
+}
+
+fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<String, Failure> {
+    let data = &import.dataset;
+    let snapshot = Snapshot::new(data, 0);
+    let tessellation = Tessellation::new(&snapshot.positions, domain(data)?)
+        .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(file.display()))?;
+    let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
+    let mut frame =
+        cells_view("frame 0".into(), &tessellation, &snapshot.positions, |cell| view.counts(cell));
+    let up = y_sign(data);
+    let values: Vec<f64> = import.first.iter().copied().collect();
+    let height = report.size[1] as f64 * import.pixel_size;
+    if let (Some(_), true) = (frame.outline, up < 0.0) {
+        // The image lies below the axis where y points down; its cells were wrapped above it.
+        frame.outline = Some([[0.0, -height], [report.size[0] as f64 * import.pixel_size, 0.0]]);
+        for cell in &mut frame.cells {
+            cell.centre[1] -= height;
+            cell.polygon.iter_mut().for_each(|vertex| vertex[1] -= height);
+        }
+    }
+    let field = ExtremaMap {
+        values: &values,
+        size: report.size,
+        corner: [0.0, 0.0],
+        step: [import.pixel_size, up * import.pixel_size],
+    };
+    let first = report.frames.first().copied().unwrap_or(0);
+    let headline =
+        format!("{first} cells are found in the first frame, {} in all frames together.", report.tracks);
+    let page = ResultPage {
+        title: &file.display().to_string(),
+        headline: &headline,
+        summary: &[format!(
+            "{} frames; {} extrema were followed from the frame before.",
+            report.frames.len(),
+            report.linked
+        )],
+        cards: vec![
+            Card { label: "cells".into(), value: first.to_string(), note: "in the first frame".into() },
+            Card {
+                label: "least prominence".into(),
+                value: significant(report.smallest_prominence, 3),
+                note: "of an extremum taken".into(),
+            },
+        ],
+        guide: GUIDE,
+        sections: vec![ResultSection {
+            heading: "The field and its cells",
+            text: Vec::new(),
+            table: None,
+            figures: vec![Figure::new(
+                extrema_map(&frame, &field, &report.units),
+                "The field in the first frame, with the extrema taken for cells (dots) and their Voronoi polygons.",
+            )],
+        }],
+        run: &report.run,
+    };
+    Ok(page.render()?)
+}

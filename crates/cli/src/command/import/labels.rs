@@ -1,0 +1,77 @@
+//! `import labels`: label images of a segmentation.
+
+use super::ImageArguments;
+use super::shapes::{self, Source};
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use crate::run::Run;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+use voronudge_io::{BorderCells, LabelLinking, LabelOptions, OutputDirectory, import_labels};
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, or a grey .tif of one page or several.
+    file: PathBuf,
+    #[command(flatten)]
+    image: ImageArguments,
+    /// Cells touch across at most so many pixels of background, counted from side to side.
+    #[arg(long, value_name = "PIXELS", default_value_t = 2, allow_negative_numbers = true)]
+    gap: usize,
+    /// Which cells of different frames are one.
+    #[arg(long, value_enum, default_value_t = Link::None)]
+    link: Link,
+    /// What becomes of cells at the border of the image.
+    #[arg(long, value_enum, default_value_t = Border::Keep)]
+    border: Border,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Link {
+    /// None: each frame has cells of its own.
+    None,
+    /// The same label is the same cell.
+    Labels,
+    /// Cells that share most pixels with each other from one frame to the next.
+    Overlap,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Border {
+    /// They are cells, but their shapes are not compared.
+    Keep,
+    /// They are left out.
+    LeaveOut,
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("import", &arguments.common)?;
+    let out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let options = LabelOptions {
+        scale: arguments.image.scale(),
+        gap: arguments.gap,
+        linking: match arguments.link {
+            Link::None => LabelLinking::Separate,
+            Link::Labels => LabelLinking::SameLabel,
+            Link::Overlap => LabelLinking::Overlap,
+        },
+        border: match arguments.border {
+            Border::Keep => BorderCells::Kept,
+            Border::LeaveOut => BorderCells::LeftOut,
+        },
+    };
+    let import = import_labels(&arguments.file, &options)?;
+    if import.summary.in_pieces > 0 {
+        run.warn(format!(
+            "{} labels lie in several pieces; centroid, area and perimeter are those of all pieces together",
+            import.summary.in_pieces
+        ));
+    }
+    if import.frames.len() > 1 && arguments.link == Link::None {
+        run.warn("each frame has cells of its own, so nothing moves; --link labels or --link overlap follows cells");
+    }
+    shapes::finish(run, out, &Source { file: &arguments.file, gap: Some(arguments.gap) }, &import)
+}

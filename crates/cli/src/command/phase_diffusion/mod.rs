@@ -1,0 +1,129 @@
+//! `voronudge phase-diffusion`: how deformations of a pattern of cells relax.
+
+mod page;
+mod pattern;
+mod report;
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, DataSetArguments};
+use crate::failure::Failure;
+use crate::run::Run;
+use clap::{Args, ValueEnum};
+use pattern::TrackedPattern;
+use std::path::PathBuf;
+use voronudge_infer::phase_diffusion::{
+    Fluctuations, PhaseRequest, RateOrder, ReferencePlaces, phase_diffusion,
+};
+use voronudge_io::{FrameSelection, OutputDirectory};
+
+/// Residuals of consecutive frames that correlate by more than this are not independent.
+const CORRELATED: f64 = 0.3;
+
+/// Phase diffusivities of a slowly deforming periodic pattern of cells, such as convection cells: compression, shear, and their chiral
+/// counterparts.
+///
+/// Writes report.json and report.html.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    data: DataSetArguments,
+    /// Frames: `4..16`, `4,7,9`; zero-based, end excluded [default: all].
+    #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
+    frames: Option<FrameSelection>,
+    /// Places (cells, 2) at which the pattern rests, .npy, y as in the data set [default: a constant displacement is fitted].
+    #[arg(long, value_name = "FILE")]
+    reference: Option<PathBuf>,
+    /// Number of wave vectors, the longest waves first; those of one length are taken all.
+    #[arg(long, value_name = "NUMBER", default_value_t = 12, allow_negative_numbers = true)]
+    wave_vectors: usize,
+    /// Highest power of the wave vector in the rates.
+    #[arg(long, value_enum, default_value_t = Order::Second)]
+    order: Order,
+    /// What makes the residuals.
+    #[arg(long, value_enum, default_value_t = Cause::Measurement)]
+    fluctuations: Cause,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Order {
+    /// q²: the phase diffusion equation.
+    Second,
+    /// q² and q⁴, for waves that are not very long against the cells.
+    Fourth,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Cause {
+    /// Errors of measurement about a smooth relaxation.
+    Measurement,
+    /// Random forces that keep the pattern moving.
+    Driving,
+}
+
+impl Arguments {
+    fn request(&self) -> Result<PhaseRequest, Failure> {
+        if self.wave_vectors == 0 {
+            return Err(
+                Failure::new("--wave-vectors is 0, but at least one is needed").with_hint("12 is usual")
+            );
+        }
+        Ok(PhaseRequest {
+            wave_vectors: self.wave_vectors,
+            order: match self.order {
+                Order::Second => RateOrder::Second,
+                Order::Fourth => RateOrder::Fourth,
+            },
+            fluctuations: match self.fluctuations {
+                Cause::Measurement => Fluctuations::Measurement,
+                Cause::Driving => Fluctuations::Driving,
+            },
+            reference: if self.reference.is_some() { ReferencePlaces::Given } else { ReferencePlaces::Free },
+        })
+    }
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("phase-diffusion", &arguments.common)?;
+    let request = arguments.request()?;
+    let data = arguments.data.load()?;
+    let place = arguments.data.positions_file().display().to_string();
+    let frames = match &arguments.frames {
+        Some(selection) => {
+            selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
+        }
+        None => (0..data.frames()).collect(),
+    };
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let tracked = TrackedPattern::new(&data, &frames, arguments.reference.as_deref())
+        .map_err(|failure| failure.at(&place))?;
+    let present = data.cells();
+    if tracked.cells.len() < present {
+        run.warn(format!(
+            "{} of {present} cells are missing from a frame and are left out",
+            present - tracked.cells.len()
+        ));
+    }
+    let found =
+        phase_diffusion(&tracked.pattern, &request).map_err(|error| Failure::from(error).at(&place))?;
+    match (request.fluctuations, found.residual_correlation) {
+        (Fluctuations::Measurement, r) if r > CORRELATED => run.warn(format!(
+            "residuals of consecutive frames correlate by {r:.2}, so they are not errors of measurement: the standard errors are too \
+             small; try --fluctuations driving, --order fourth or fewer --wave-vectors"
+        )),
+        (Fluctuations::Driving, r) if r < -CORRELATED => run.warn(format!(
+            "residuals of consecutive frames correlate by {r:.2}, as errors of measurement make them: rates are overestimated; try \
+             --fluctuations measurement"
+        )),
+        _ => {}
+    }
+    let report = report::report(&run, &data, &request, &tracked, &frames, &found);
+    let json = serde_json::to_string_pretty(&report)?;
+    out.write_text("report.json", &json)?;
+    let title = arguments.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
+    out.write_text("report.html", &page::page(&title, &report, &found)?)?;
+    let summary = page::summary(&report, out.path());
+    run.finish(Some(out), &json, &summary)?;
+    Ok(Answer::Positive)
+}

@@ -1,0 +1,88 @@
+//! Cells given by the corners of their outlines.
+
+use crate::{Vector, cross};
+use std::collections::{BTreeMap, BTreeSet};
+
+/// Measures of a polygon.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outline {
+    /// Centre of its area.
+    pub centroid: Vector<f64>,
+    /// Its area, positive whichever way round the corners are given.
+    pub area: f64,
+    /// Its perimeter.
+    pub perimeter: f64,
+}
+
+impl Outline {
+    /// The measures of a polygon with these corners in order, in either sense; `None` for fewer than three, or no area.
+    pub fn new(corners: &[Vector<f64>]) -> Option<Self> {
+        let first = *corners.first().filter(|_| corners.len() >= 3)?;
+        let (mut twice_area, mut perimeter, mut moment) = (0.0, 0.0, Vector::zeros());
+        for (index, &a) in corners.iter().enumerate() {
+            let b = corners[(index + 1) % corners.len()];
+            perimeter += (b - a).norm();
+            // Relative to the first corner, so that a place far from the origin costs no digits.
+            let (a, b) = (a - first, b - first);
+            let piece = cross(a, b);
+            twice_area += piece;
+            moment += (a + b) * piece;
+        }
+        let usable = twice_area.abs() > f64::EPSILON * perimeter * perimeter;
+        usable.then(|| Self {
+            centroid: first + moment / (3.0 * twice_area),
+            area: 0.5 * twice_area.abs(),
+            perimeter,
+        })
+    }
+}
+
+/// Pairs of polygons, the lower index first, with a side in common: two corners that follow each other in both and lie within
+/// `tolerance` of each other.
+pub fn outline_contacts(outlines: &[Vec<Vector<f64>>], tolerance: f64) -> BTreeSet<[usize; 2]> {
+    let tolerance = tolerance.max(f64::MIN_POSITIVE);
+    // Corners that round to one place are one corner.
+    let key = |corner: &Vector<f64>| [corner.x, corner.y].map(|x| (x / (2.0 * tolerance)).round() as i64);
+    let mut sides: BTreeMap<[[i64; 2]; 2], Vec<usize>> = BTreeMap::new();
+    for (cell, corners) in outlines.iter().enumerate() {
+        let keys: Vec<[i64; 2]> = corners.iter().map(key).collect();
+        for (index, &a) in keys.iter().enumerate() {
+            let b = keys[(index + 1) % keys.len()];
+            if a != b {
+                sides.entry([a.min(b), a.max(b)]).or_default().push(cell);
+            }
+        }
+    }
+    let mut contacts = BTreeSet::new();
+    for cells in sides.values() {
+        for (index, &a) in cells.iter().enumerate() {
+            contacts.extend(cells[index + 1..].iter().filter(|&&b| a != b).map(|&b| [a.min(b), a.max(b)]));
+        }
+    }
+    contacts
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_rectangle_far_away() {
+        let corners =
+            [[0.0, 0.0], [0.0, 2.0], [3.0, 2.0], [3.0, 0.0]].map(|[x, y]| Vector::new(x + 1e6, y - 1e6));
+        let outline = Outline::new(&corners).unwrap();
+        assert!((outline.area - 6.0).abs() < 1e-9 && (outline.perimeter - 10.0).abs() < 1e-9);
+        assert!((outline.centroid - Vector::new(1e6 + 1.5, 1.0 - 1e6)).norm() < 1e-9);
+        assert_eq!(Outline::new(&corners[..2]), None);
+        assert_eq!(Outline::new(&[corners[0], corners[1], corners[0]]), None);
+    }
+
+    #[test]
+    fn cells_touch_along_sides_and_not_at_corners() {
+        let square = |x: f64, y: f64| {
+            [[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]].map(|[a, b]| Vector::new(x + a, y + b)).to_vec()
+        };
+        let contacts = outline_contacts(&[square(0.0, 0.0), square(1.0, 0.0), square(1.0, 1.0)], 1e-6);
+        assert_eq!(contacts.into_iter().collect::<Vec<_>>(), [[0, 1], [1, 2]]);
+    }
+}

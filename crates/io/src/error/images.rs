@@ -1,0 +1,157 @@
+//! Faults of images: labels, fields, outlines.
+
+/// Why an image or the outlines of cells cannot be used.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum ImageFault {
+    /// Neither `.npy` nor TIFF.
+    #[error("is neither a .npy array nor a TIFF image")]
+    UnknownFormat,
+    /// A pickled Python object, such as Cellpose's `_seg.npy`.
+    #[error("holds a pickled Python object, not an array of numbers")]
+    Pickled,
+    /// A TIFF file that cannot be decoded.
+    #[error("is not a whole TIFF image: page {page}: {detail}")]
+    Tiff {
+        /// Page, from zero.
+        page: usize,
+        /// What the decoder says.
+        detail: String,
+    },
+    /// A page with several numbers for each pixel.
+    #[error("page {page} is a colour image ({colour}), one number for each pixel is needed")]
+    Colour {
+        /// Page, from zero.
+        page: usize,
+        /// The kind of pixels.
+        colour: String,
+    },
+    /// Pages of different size.
+    #[error("page {page} has {} × {} pixels, but the first has {} × {}", found[0], found[1], expected[0], expected[1])]
+    OtherSize {
+        /// Page, from zero.
+        page: usize,
+        /// Columns and rows of the page.
+        found: [usize; 2],
+        /// Columns and rows of the first.
+        expected: [usize; 2],
+    },
+    /// More pixels than fit in memory.
+    #[error("page {page} of {} × {} pixels brings it to {bytes} bytes, the limit is {limit}", size[0], size[1])]
+    TooLarge {
+        /// Page, from zero.
+        page: usize,
+        /// Columns and rows.
+        size: [usize; 2],
+        /// Bytes needed.
+        bytes: u64,
+        /// The most bytes taken.
+        limit: u64,
+    },
+    /// Labels with a fraction.
+    #[error("holds real numbers ({found}), labels are integers")]
+    RealLabels {
+        /// The type of the pixels.
+        found: String,
+    },
+    /// A label below zero.
+    #[error(
+        "frame {frame}, row {row}, column {column}: the label is {label}, labels are 0 (background) or above"
+    )]
+    NegativeLabel {
+        /// Frame, from zero.
+        frame: usize,
+        /// Row, from zero.
+        row: usize,
+        /// Column, from zero.
+        column: usize,
+        /// The label.
+        label: i64,
+    },
+    /// A pixel of a field that is NaN or infinite.
+    #[error("frame {frame}, row {row}, column {column}: the value is {value}")]
+    NotFinite {
+        /// Frame, from zero.
+        frame: usize,
+        /// Row, from zero.
+        row: usize,
+        /// Column, from zero.
+        column: usize,
+        /// The value.
+        value: f64,
+    },
+    /// A frame without cells.
+    #[error("frame {frame} is all background: no pixel has a label")]
+    NoCells {
+        /// Frame, from zero.
+        frame: usize,
+    },
+    /// A frame with too few cells for a tessellation.
+    #[error("frame {frame} has {found} cells, at least {needed} are needed")]
+    TooFewCells {
+        /// Frame, from zero.
+        frame: usize,
+        /// Cells found.
+        found: usize,
+        /// Cells needed.
+        needed: usize,
+    },
+    /// A cell whose corners enclose nothing.
+    #[error("frame {frame}, cell {cell}: {corners} corners enclose no area")]
+    NoArea {
+        /// Frame, as numbered in the file.
+        frame: i64,
+        /// The cell's number.
+        cell: i64,
+        /// Its corners.
+        corners: usize,
+    },
+    /// Too many cells times frames.
+    #[error("{frames} frames of {cells} cells need {bytes} bytes, the limit is {limit}")]
+    TooManyCells {
+        /// Frames.
+        frames: usize,
+        /// Cells.
+        cells: usize,
+        /// Bytes of the positions.
+        bytes: u64,
+        /// The most bytes taken.
+        limit: u64,
+    },
+}
+
+impl ImageFault {
+    pub(super) fn hint(&self) -> Option<String> {
+        let text = match self {
+            Self::UnknownFormat => "save it as TIFF, or with numpy.save",
+            Self::Pickled => {
+                "take the masks out of a _seg.npy of Cellpose: \
+                 np.save(\"masks.npy\", np.load(\"x_seg.npy\", allow_pickle=True).item()[\"masks\"])"
+            }
+            Self::Tiff { .. } => {
+                "the file was probably cut while it was written or copied, or is compressed in a way that is not read; \
+                 write it again without compression"
+            }
+            Self::Colour { .. } => "save one channel as a grey image of 8, 16 or 32 bits",
+            Self::OtherSize { .. } => "all frames must be of one size; import them one by one otherwise",
+            Self::TooLarge { .. } => "cut the image or import fewer frames at a time",
+            Self::RealLabels { .. } => {
+                "convert labels with numpy.astype(\"int32\"); for a measured intensity use import field"
+            }
+            Self::NegativeLabel { .. } => "number cells from 1 and background 0",
+            Self::NotFinite { .. } => "fill missing pixels before, for instance by the mean of those around",
+            Self::NoCells { .. } => {
+                "is this the mask, and not the image or an empty channel? leave empty frames out"
+            }
+            Self::TooFewCells { .. } => {
+                "a Voronoi tessellation needs at least three cells; is each cell labelled by a number of its own, and \
+                 are prominence and smoothing not too large?"
+            }
+            Self::NoArea { .. } => "give the corners of each cell in order around it, one row for each",
+            Self::TooManyCells { .. } => {
+                "import fewer frames at a time, or link cells over frames with --link"
+            }
+        };
+        Some(text.into())
+    }
+}

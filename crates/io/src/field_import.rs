@@ -1,0 +1,255 @@
+//! Importing a field: cells are its maxima or minima.
+
+use std::path::Path;
+
+use ndarray::{Array2, Array3, ArrayView2, Axis};
+use voronudge_geometry::{
+    Domain, Edge, ExtremumKind, ExtremumSearch, PeriodicBox, Vector, extrema, link_nearest, smooth,
+};
+
+use crate::dataset::{Boundary, DataSet};
+use crate::error::{Error, ImageFault, SettingFault};
+use crate::flow::FlowNames;
+use crate::image::{image_error, parse_field_images};
+use crate::image_scale::ImageScale;
+use crate::input::read_input;
+use crate::shapes::check_size;
+use crate::validate::{self, ArrayNames};
+
+/// Prominence asked for by default, as a share of the range of the smoothed field.
+const PROMINENCE: f64 = 0.1;
+/// How far a cell may move from frame to frame by default, as a share of the mean distance of cells.
+const LINK_LIMIT: f64 = 0.5;
+/// The fewest cells with a tessellation.
+const FEWEST_CELLS: usize = 3;
+
+/// Which extrema are cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum WantedExtrema {
+    /// Maxima.
+    #[default]
+    Maxima,
+    /// Minima.
+    Minima,
+    /// Both; maxima get the label 0, minima the label 1.
+    Both,
+}
+
+/// How cells of different frames are taken for one.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum FieldLinking {
+    /// Not at all: each frame has cells of its own.
+    Separate,
+    /// The nearest of the same kind, if it is within a limit in units of length; default half the mean distance of cells.
+    Nearest {
+        /// The farthest that a cell moves between frames.
+        limit: Option<f64>,
+    },
+}
+
+/// What is taken for a cell, and what a field does not say about itself.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldOptions {
+    /// Units and directions.
+    pub scale: ImageScale,
+    /// Which extrema.
+    pub extrema: WantedExtrema,
+    /// Standard deviation, in units of length, of the Gaussian average that is taken first; 0 for none.
+    pub smoothing: f64,
+    /// Least prominence in units of the field; default a tenth of the range of the smoothed field, frame by frame.
+    pub prominence: Option<f64>,
+    /// Least distance of two extrema of a kind, in units of length; 0 for none.
+    pub distance: f64,
+    /// Whether the field repeats.
+    pub edge: Edge,
+    /// Which cells of different frames are one.
+    pub linking: FieldLinking,
+}
+
+/// An imported data set, with the height and prominence of each extremum.
+#[derive(Debug, Clone, PartialEq)]
+pub struct FieldImport {
+    /// The data set; with both kinds of extrema it has labels.
+    pub dataset: DataSet,
+    /// (frames, cells): the smoothed field at the extremum; NaN where a cell is absent.
+    pub heights: Array2<f64>,
+    /// (frames, cells): its prominence.
+    pub prominences: Array2<f64>,
+    /// Extrema in each frame.
+    pub counts: Vec<usize>,
+    /// Cells linked to one of the frame before, over all frames.
+    pub linked: usize,
+    /// The first frame (rows, columns), as read.
+    pub first: Array2<f64>,
+    /// Length of a pixel.
+    pub pixel_size: f64,
+}
+
+/// An extremum on its way into a data set.
+struct Found {
+    position: Vector<f64>,
+    value: f64,
+    prominence: f64,
+    label: i64,
+    track: usize,
+}
+
+/// Imports extrema of a field, `.npy` or TIFF, of one frame or several.
+///
+/// Pixel (row, column) has its centre at (column + ½, row + ½) pixels. See [`extrema`] for what counts and [`link_nearest`] for how cells
+/// are followed.
+///
+/// # Errors
+/// [`Error::File`]; [`Error::Format`], [`Error::Shape`] and [`Error::Image`] for a file that is no field, or frames with fewer than three
+/// extrema; [`Error::Setting`] for options out of range.
+pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, Error> {
+    for (key, value) in [("smoothing", options.smoothing), ("distance", options.distance)] {
+        if value != 0.0 {
+            validate::positive(key, value).map_err(Error::Setting)?;
+        }
+    }
+    if let Some(prominence) = options.prominence {
+        validate::positive("prominence", prominence).map_err(Error::Setting)?;
+    }
+    if let FieldLinking::Nearest { limit: Some(limit) } = options.linking {
+        validate::positive("link_limit", limit).map_err(Error::Setting)?;
+    }
+    let (pixel, mut dataset) = options.scale.begin(Boundary::Open)?;
+    let (bytes, record) = read_input(path)?;
+    dataset.inputs.push(record);
+    let field = parse_field_images(path, &bytes)?;
+    let (_, rows, columns) = field.dim();
+    let lengths = [columns as f64 * pixel, rows as f64 * pixel];
+    let domain = match options.edge {
+        Edge::Open => Domain::Open,
+        Edge::Periodic => {
+            dataset.boundary = Boundary::Periodic { lengths };
+            let periodic = PeriodicBox::new(lengths);
+            Domain::Periodic(periodic.map_err(|_| {
+                Error::Setting(SettingFault::NotPositive { key: "box length", value: lengths[0] })
+            })?)
+        }
+    };
+    let mut frames: Vec<Vec<Found>> = Vec::new();
+    let (mut given, mut linked) = (0, 0);
+    for (index, frame) in field.axis_iter(Axis(0)).enumerate() {
+        let mut found = find(frame, pixel, options);
+        if found.len() < FEWEST_CELLS {
+            let fault = ImageFault::TooFewCells { frame: index, found: found.len(), needed: FEWEST_CELLS };
+            return Err(image_error(path, fault));
+        }
+        let spacing = (lengths[0] * lengths[1] / found.len() as f64).sqrt();
+        let before = frames.last().map(Vec::as_slice).unwrap_or_default();
+        linked += follow(before, &mut found, (options.linking, spacing), domain, &mut given);
+        frames.push(found);
+    }
+    check_size(path, frames.len(), given)?;
+    let mut import = FieldImport {
+        heights: Array2::from_elem((frames.len(), given), f64::NAN),
+        prominences: Array2::from_elem((frames.len(), given), f64::NAN),
+        counts: frames.iter().map(Vec::len).collect(),
+        linked,
+        first: field.index_axis(Axis(0), 0).to_owned(),
+        pixel_size: pixel,
+        dataset,
+    };
+    let mut positions = Array3::from_elem((frames.len(), given, 2), f64::NAN);
+    let mut labels = Array2::from_elem((frames.len(), given), -1);
+    for (index, found) in frames.iter().enumerate() {
+        for one in found {
+            let at = (index, one.track);
+            (positions[(index, one.track, 0)], positions[(index, one.track, 1)]) =
+                (one.position.x, one.position.y);
+            import.heights[at] = one.value;
+            import.prominences[at] = one.prominence;
+            labels[at] = one.label;
+        }
+    }
+    let dataset = &mut import.dataset;
+    dataset.positions = positions;
+    dataset.labels = (options.extrema == WantedExtrema::Both).then_some(labels);
+    dataset.check_arrays(&ArrayNames {
+        positions: path,
+        velocities: path,
+        labels: path,
+        flow: FlowNames::in_folder(),
+    })?;
+    dataset.y_axis.turn(&mut dataset.positions);
+    Ok(import)
+}
+
+/// The extrema of a frame in units of length, row by row.
+fn find(frame: ArrayView2<'_, f64>, pixel: f64, options: &FieldOptions) -> Vec<Found> {
+    let (rows, columns) = frame.dim();
+    let size = [columns, rows];
+    let values: Vec<f64> = frame.iter().copied().collect();
+    let smoothing = options.smoothing / pixel;
+    let prominence = options.prominence.unwrap_or_else(|| {
+        let smoothed = smooth(&values, size, smoothing, options.edge).unwrap_or_default();
+        let low = smoothed.iter().copied().fold(f64::INFINITY, f64::min);
+        let high = smoothed.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+        PROMINENCE * (high - low)
+    });
+    let kinds: &[(ExtremumKind, i64)] = match options.extrema {
+        WantedExtrema::Maxima => &[(ExtremumKind::Maximum, 0)],
+        WantedExtrema::Minima => &[(ExtremumKind::Minimum, 1)],
+        WantedExtrema::Both => &[(ExtremumKind::Maximum, 0), (ExtremumKind::Minimum, 1)],
+    };
+    let mut found = Vec::new();
+    for &(kind, label) in kinds {
+        let search = ExtremumSearch {
+            kind,
+            smoothing,
+            // A constant field has one plateau without any height, which is no cell.
+            prominence: prominence.max(f64::MIN_POSITIVE),
+            distance: options.distance / pixel,
+            edge: options.edge,
+        };
+        found.extend(extrema(&values, size, &search).unwrap_or_default().into_iter().map(|extremum| Found {
+            position: extremum.position * pixel,
+            value: extremum.value,
+            prominence: extremum.prominence,
+            label,
+            track: 0,
+        }));
+    }
+    let key = |one: &Found| ((one.position.y / pixel) as i64, one.position.x);
+    found.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
+    found
+}
+
+/// Gives each cell its number along the axis of cells; returns how many are known from the frame before.
+fn follow(
+    before: &[Found],
+    found: &mut [Found],
+    (linking, spacing): (FieldLinking, f64),
+    domain: Domain,
+    given: &mut usize,
+) -> usize {
+    let mut known = vec![None; found.len()];
+    if let FieldLinking::Nearest { limit } = linking {
+        let limit = limit.unwrap_or(LINK_LIMIT * spacing);
+        for label in [0, 1] {
+            let of = |cells: &[Found]| -> Vec<usize> {
+                (0..cells.len()).filter(|&k| cells[k].label == label).collect()
+            };
+            let (from, to) = (of(before), of(found));
+            let places = |cells: &[Found], which: &[usize]| -> Vec<Vector<f64>> {
+                which.iter().map(|&k| cells[k].position).collect()
+            };
+            let links = link_nearest(&places(before, &from), &places(found, &to), limit, domain);
+            for (&i, j) in from.iter().zip(links) {
+                if let Some(j) = j {
+                    known[to[j]] = Some(before[i].track);
+                }
+            }
+        }
+    }
+    for (one, known) in found.iter_mut().zip(&known) {
+        one.track = known.unwrap_or_else(|| {
+            *given += 1;
+            *given - 1
+        });
+    }
+    known.iter().flatten().count()
+}

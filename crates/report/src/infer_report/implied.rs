@@ -1,0 +1,27 @@
+//! What parameters imply by the mean-field theory of the honeycomb.
+
+use serde::Serialize;
+
+use super::Parameter;
+
+/// Moduli and phase diffusivities of the honeycomb at the fitted parameters.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "the names of the file")]
+pub struct ImpliedByMeanField {
+    /// Bulk modulus over γ.
+    pub B: Parameter,
+    /// Odd bulk modulus over γ, zero in the theory.
+    pub A: Parameter,
+    /// Shear modulus over γ.
+    pub mu: Parameter,
+    /// Odd shear modulus over γ.
+    pub K_o: Parameter,
+    /// D_∥ = B/ζ.
+    pub D_parallel: Parameter,
+    /// D_⊥ = μ/ζ.
+    pub D_perp: Parameter,
+    /// D_∥^× = −A/ζ.
+    pub D_parallel_cross: Parameter,
+    /// D_⊥^× = Kᵒ/ζ.
+    pub D_perp_cross: Parameter,
+}

@@ -1,0 +1,126 @@
+//! `report.json` of `import labels`, `import outlines` and `import field`.
+//!
+//! Field names are the interface that scripts use; [`SHAPE_SCHEMA`] and [`FIELD_SCHEMA`] describe them. Numbers that are not finite are
+//! written as `null`.
+
+use serde::Serialize;
+
+use crate::infer_report::RunRecord;
+use crate::view::Units;
+
+/// JSON Schema (draft 2020-12) of [`ShapeReport`].
+pub const SHAPE_SCHEMA: &str = include_str!("../schema/shapes.schema.json");
+/// JSON Schema (draft 2020-12) of [`FieldReport`].
+pub const FIELD_SCHEMA: &str = include_str!("../schema/field.schema.json");
+
+/// Everything that `import labels` and `import outlines` report.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ShapeReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// Each frame.
+    pub frames: Vec<FrameAgreement>,
+    /// All frames: contacts summed up, correlations and ratios averaged with the number of cells as weight.
+    pub all: AgreementRecord,
+    /// Length of the axis of cells.
+    pub tracks: usize,
+    /// Outlines over all frames.
+    pub outlines: usize,
+    /// Cells at the border of the image, over all frames.
+    pub at_border: usize,
+    /// Cells in more than one piece, over all frames.
+    pub in_pieces: usize,
+    /// Pixels of background across which cells touch; `null` for outlines.
+    pub gap: Option<usize>,
+}
+
+/// Agreement in one frame.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FrameAgreement {
+    /// Index of the frame, zero-based.
+    pub frame: usize,
+    /// Cells in it.
+    pub present: usize,
+    /// How well Voronoi polygons stand for outlines.
+    #[serde(flatten)]
+    pub agreement: AgreementRecord,
+}
+
+/// How well the Voronoi polygons of centroids stand for the true outlines.
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+pub struct AgreementRecord {
+    /// Cells whose shapes are compared.
+    pub cells: usize,
+    /// Contacts of outlines with a compared cell.
+    pub true_contacts: usize,
+    /// Contacts of Voronoi polygons with a compared cell.
+    pub voronoi_contacts: usize,
+    /// Contacts in both.
+    pub shared_contacts: usize,
+    /// Share of the Voronoi contacts that are true.
+    pub precision: f64,
+    /// Share of the true contacts that Voronoi polygons have.
+    pub recall: f64,
+    /// Pearson's correlation of the areas.
+    pub area_correlation: f64,
+    /// Pearson's correlation of the perimeters.
+    pub perimeter_correlation: f64,
+    /// Sum of Voronoi areas over the sum of true areas.
+    pub area_ratio: f64,
+    /// Sum of Voronoi perimeters over the sum of true perimeters.
+    pub perimeter_ratio: f64,
+}
+
+impl AgreementRecord {
+    /// All frames together: contacts summed up, the rest averaged with the number of cells as weight over frames where it is known.
+    #[must_use]
+    pub fn pooled(frames: &[Self]) -> Self {
+        let sum = |of: fn(&Self) -> usize| frames.iter().map(of).sum::<usize>();
+        let mean = |of: fn(&Self) -> f64| {
+            let known = frames.iter().filter(|frame| of(frame).is_finite());
+            let (total, weight) = known.fold((0.0, 0.0), |(total, weight), frame| {
+                (total + of(frame) * frame.cells as f64, weight + frame.cells as f64)
+            });
+            total / weight
+        };
+        let (truth, voronoi) = (sum(|frame| frame.true_contacts), sum(|frame| frame.voronoi_contacts));
+        let shared = sum(|frame| frame.shared_contacts);
+        Self {
+            cells: sum(|frame| frame.cells),
+            true_contacts: truth,
+            voronoi_contacts: voronoi,
+            shared_contacts: shared,
+            precision: shared as f64 / voronoi as f64,
+            recall: shared as f64 / truth as f64,
+            area_correlation: mean(|frame| frame.area_correlation),
+            perimeter_correlation: mean(|frame| frame.perimeter_correlation),
+            area_ratio: mean(|frame| frame.area_ratio),
+            perimeter_ratio: mean(|frame| frame.perimeter_ratio),
+        }
+    }
+}
+
+/// Everything that `import field` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct FieldReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// Extrema in each frame.
+    pub frames: Vec<usize>,
+    /// Length of the axis of cells.
+    pub tracks: usize,
+    /// Cells linked to one of the frame before, over all frames.
+    pub linked: usize,
+    /// Columns and rows of pixels.
+    pub size: [usize; 2],
+    /// Length of a pixel.
+    pub pixel_size: f64,
+    /// The least prominence of an extremum taken.
+    pub smallest_prominence: f64,
+}
