@@ -27,6 +27,8 @@ enum Command {
     Evaluate(command::evaluate::Arguments),
     Spectrum(Box<command::spectrum::Arguments>),
     Simulate(command::simulate::Arguments),
+    Channel(Box<command::channel::Arguments>),
+    EstimateChirality(command::estimate_chirality::Arguments),
     CheckGradients(command::check_gradients::Arguments),
     Import(command::import::Arguments),
 }
@@ -68,6 +70,8 @@ fn run() -> Result<Answer, Failure> {
         Command::Evaluate(arguments) => command::evaluate::run(arguments),
         Command::Spectrum(arguments) => command::spectrum::run(*arguments),
         Command::Simulate(arguments) => command::simulate::run(arguments),
+        Command::Channel(arguments) => command::channel::run(*arguments),
+        Command::EstimateChirality(arguments) => command::estimate_chirality::run(arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
         Command::Import(arguments) => command::import::run(arguments),
     }

@@ -10,6 +10,7 @@
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
 //! | read which frames the user wants | [`FrameSelection`] |
+//! | read a profile of velocities across a channel | [`read_flow_profile`] |
 //! | read one array | [`read_reals`], [`read_integers`], [`read_vectors`] |
 //! | write results so that a killed run spoils nothing | [`OutputDirectory`] |
 //! | write frames of a long run that can be taken up again | [`Recording`] |
@@ -57,6 +58,6 @@ pub use noise::Noise;
 pub use output::OutputDirectory;
 pub use recording::Recording;
 pub use source::Source;
-pub use table::{ColumnNames, FlowColumnNames};
+pub use table::{ColumnNames, FlowColumnNames, FlowProfile, read_flow_profile};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};
 pub use velocity::{Difference, derive_velocities};

@@ -20,6 +20,7 @@
 
 pub mod arrows;
 mod before_after;
+pub mod channel_report;
 pub mod chart;
 pub mod colour;
 pub mod colour_bar;
@@ -39,9 +40,10 @@ pub mod svg;
 mod view;
 
 pub use before_after::BeforeAfter;
+pub use channel_report::{CHANNEL_SCHEMA, CHIRALITY_SCHEMA, ChannelReport, ChiralityReport};
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use page::{DiscoverFigures, DiscoverPage, InferPage, SpectrumPage, Uncertainty};
+pub use page::{DiscoverFigures, DiscoverPage, InferPage, SectionPage, SpectrumPage, Uncertainty};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};

@@ -23,6 +23,7 @@ mod objective_trace;
 mod outlier_map;
 mod parameter_intervals;
 mod partial_regression;
+mod points_and_curves;
 mod predicted_against_measured;
 mod profile;
 mod residual_maps;
@@ -47,6 +48,9 @@ pub use objective_trace::{ObjectiveTrace, objective_trace};
 pub use outlier_map::{Outlier, Suspicion, outlier_map};
 pub use parameter_intervals::{Estimate, ParameterRow, parameter_intervals};
 pub use partial_regression::{PartialPoint, PartialRegression, partial_regression};
+pub use points_and_curves::{
+    CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
+};
 pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};

@@ -7,12 +7,14 @@ mod directions;
 mod discover;
 mod infer;
 mod parameter_table;
+mod sections;
 mod spectrum;
 mod uncertainty;
 mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
+pub use sections::{Section, SectionPage};
 pub use spectrum::SpectrumPage;
 pub use uncertainty::Uncertainty;
 
