@@ -15,6 +15,7 @@ mod background;
 mod coefficients;
 mod constraints;
 mod cross_validation;
+mod curve;
 pub mod diagnostics;
 pub mod discover;
 mod error;
@@ -46,6 +47,7 @@ mod uncertainty;
 
 pub use coefficients::CoefficientSpace;
 pub use constraints::{Constraints, Prior};
+pub use curve::{DecayFit, DecayPoint, DecayShape, Intercept, Line, LinePoint, fit_decay, straight_line};
 pub use error::Error;
 pub use flow::{Flow, Window};
 pub use inference::infer;

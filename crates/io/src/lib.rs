@@ -12,6 +12,7 @@
 //! | turn maxima and minima of a field into a data set | [`import_field`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
 //! | read which frames the user wants | [`FrameSelection`] |
+//! | read a profile of velocities across a channel | [`read_flow_profile`] |
 //! | read one array | [`read_reals`], [`read_integers`], [`read_vectors`] |
 //! | write results so that a killed run spoils nothing | [`OutputDirectory`] |
 //! | write frames of a long run that can be taken up again | [`Recording`] |
@@ -72,6 +73,6 @@ pub use output::OutputDirectory;
 pub use recording::Recording;
 pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
 pub use source::Source;
-pub use table::{ColumnNames, FlowColumnNames};
+pub use table::{ColumnNames, FlowColumnNames, FlowProfile, read_flow_profile};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};
 pub use velocity::{Difference, derive_velocities};

@@ -1,6 +1,7 @@
 //! Reading the spots or the vectors of a table, compressed or not.
 
 mod columns;
+mod profile;
 mod vectors;
 
 use std::borrow::Cow;
@@ -14,6 +15,7 @@ use crate::error::{Error, TableFault};
 pub use columns::ColumnNames;
 use columns::Columns;
 pub(crate) use columns::{Layout, Spot};
+pub use profile::{FlowProfile, read_flow_profile};
 pub use vectors::FlowColumnNames;
 pub(crate) use vectors::{Vector, VectorTable, read_table};
 

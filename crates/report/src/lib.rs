@@ -20,6 +20,7 @@
 
 pub mod arrows;
 mod before_after;
+pub mod channel_report;
 pub mod chart;
 pub mod colour;
 pub mod colour_bar;
@@ -46,13 +47,14 @@ mod view;
 pub const SIMULATE_SCHEMA: &str = include_str!("../schema/simulate.schema.json");
 
 pub use before_after::BeforeAfter;
+pub use channel_report::{CHANNEL_SCHEMA, CHIRALITY_SCHEMA, ChannelReport, ChiralityReport};
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
 pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use page::{
-    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, ResultPage, SimulatePage, SpectrumPage,
-    Uncertainty,
+    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, ResultPage, SectionPage, SimulatePage,
+    SpectrumPage, Uncertainty,
 };
 pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};

@@ -33,7 +33,12 @@ pub(crate) struct ParameterArguments {
 impl ParameterArguments {
     /// The parameters: defaults, overridden by the file, overridden by flags.
     pub fn resolve(&self) -> Result<Parameters<f64>, Failure> {
-        let mut parameters = Parameters::default();
+        self.resolve_over(Parameters::default())
+    }
+
+    /// The parameters with other defaults.
+    pub fn resolve_over(&self, defaults: Parameters<f64>) -> Result<Parameters<f64>, Failure> {
+        let mut parameters = defaults;
         if let Some(file) = &self.parameters {
             parameters = read(file)?;
         }

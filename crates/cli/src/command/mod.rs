@@ -1,8 +1,10 @@
 //! The commands: arguments as typed, a checked request, one library call, and its result rendered.
 
+pub(crate) mod channel;
 pub(crate) mod check_gradients;
 pub(crate) mod discover;
 mod drawing;
+pub(crate) mod estimate_chirality;
 pub(crate) mod evaluate;
 mod fit;
 pub(crate) mod import;

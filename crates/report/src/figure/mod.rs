@@ -32,6 +32,7 @@ mod outline_map;
 mod parameter_intervals;
 mod partial_regression;
 mod phase_map;
+mod points_and_curves;
 mod predicted_against_measured;
 mod profile;
 mod residual_maps;
@@ -67,6 +68,9 @@ pub use outline_map::outline_map;
 pub use parameter_intervals::{Estimate, ParameterRow, parameter_intervals};
 pub use partial_regression::{PartialPoint, PartialRegression, partial_regression};
 pub use phase_map::{LineStyle, MapLine, PhaseMap, phase_map, row_colours};
+pub use points_and_curves::{
+    CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
+};
 pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};

@@ -10,7 +10,7 @@ mod structure_factor;
 mod transitions;
 
 pub use block_average::BlockAverage;
-pub use channel::{ChannelProfile, ChannelRecorder, DecayFit, DecayPoint, DecayShape, Estimate, fit_decay};
+pub use channel::{ChannelProfile, ChannelRecorder, Estimate};
 pub use displacement::mean_square_displacement;
 pub use hexatic::{Hexatic, hexatic};
 pub use lyapunov::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};

@@ -1,5 +1,7 @@
 //! Exponential decay from both edges of a channel.
 
+use super::{RISE_95, crossing, least};
+
 /// A value of a profile.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct DecayPoint {
@@ -38,8 +40,6 @@ pub struct DecayFit {
     pub reduced_chi_square: f64,
 }
 
-/// Rise of χ² at the ends of a 95 % interval of one parameter.
-const RISE_95: f64 = 3.84;
 /// Decay lengths tried first, between the spacing of the points and ten times the width.
 const TRIALS: usize = 200;
 
@@ -50,7 +50,7 @@ const TRIALS: usize = 200;
 /// positive, or if no length between the spacing of the points and ten times the width is best.
 ///
 /// ```
-/// use voronudge_simulate::measure::{DecayPoint, DecayShape, fit_decay};
+/// use voronudge_infer::{DecayPoint, DecayShape, fit_decay};
 /// let points: Vec<_> = (0..20)
 ///     .map(|i| 0.25 + 0.5 * f64::from(i))
 ///     .map(|d| DecayPoint { distance: d, value: 3.0 * ((-d / 1.4f64).exp() - (-(20.0 - d) / 1.4f64).exp()), error: 0.01 })
@@ -81,7 +81,7 @@ pub fn fit_decay(points: &[DecayPoint], width: f64, shape: DecayShape) -> Option
         return None;
     }
     let middle = low + step * best as f64;
-    let logarithm = least(chi_square, [middle - step, middle + step]);
+    let logarithm = least(&chi_square, [middle - step, middle + step]);
     let (length, found) = (logarithm.exp(), at(logarithm.exp()));
     let reduced = found.chi_square / (points.len() - parameters) as f64;
     let scale = reduced.max(1.0);
@@ -157,33 +157,14 @@ fn decay(distance: f64, width: f64, shape: DecayShape, length: f64) -> f64 {
     }
 }
 
-/// The place of the least value, by golden sections.
-fn least(value: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -> f64 {
-    let golden = 0.5 * (5f64.sqrt() - 1.0);
-    for _ in 0..60 {
-        let (a, b) = (high - golden * (high - low), low + golden * (high - low));
-        if value(a) < value(b) { high = b } else { low = a }
-    }
-    0.5 * (low + high)
-}
-
-/// Where a value passes zero between a place where it is negative and one where it is positive.
-fn crossing(value: impl Fn(f64) -> f64, mut negative: f64, mut positive: f64) -> f64 {
-    for _ in 0..60 {
-        let middle = 0.5 * (negative + positive);
-        if value(middle) < 0.0 { negative = middle } else { positive = middle }
-    }
-    0.5 * (negative + positive)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rand::Rng;
+    use rand::{Rng, SeedableRng};
     use rand_distr::StandardNormal;
 
     fn noisy(seed: u64, shape: DecayShape) -> Vec<DecayPoint> {
-        let mut rng = crate::generator(seed);
+        let mut rng = rand_pcg::Pcg64::seed_from_u64(seed);
         let truth = |d: f64| match shape {
             DecayShape::Even => 1.0 + 0.5 * decay(d, 10.0, shape, 1.4),
             DecayShape::Odd => 0.5 * decay(d, 10.0, shape, 1.4),

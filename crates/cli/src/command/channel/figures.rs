@@ -1,0 +1,235 @@
+//! The figures of a channel.
+
+use super::report::Findings;
+use super::request::ChannelRequest;
+use voronudge_infer::DecayShape;
+use voronudge_report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
+use voronudge_report::figure::{
+    CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
+};
+use voronudge_report::markers::Marker;
+use voronudge_report::numbers::unit_text;
+use voronudge_report::page::Figure;
+use voronudge_simulate::measure::{ChannelProfile, Estimate};
+
+/// What is drawn.
+#[derive(Clone, Copy)]
+pub(super) struct Figures<'a> {
+    pub request: &'a ChannelRequest,
+    pub findings: &'a Findings,
+    pub full: &'a ChannelProfile,
+    pub folded: &'a ChannelProfile,
+}
+
+/// Points of a curve that is a formula.
+const STEPS: usize = 200;
+
+impl Figures<'_> {
+    pub fn density(&self) -> Figure {
+        let label = format!("density (cells per {})", unit_text(&format!("{}^2", self.request.units.length)));
+        let points = [series("simulated", BLUE, Marker::Circle, &self.folded.centres, &self.folded.density)];
+        let mut curves = self.decay("density", "exponential decay", BLUE);
+        if let Some(continuum) = &self.findings.continuum {
+            curves.push(curve(
+                "continuum, mean-field moduli",
+                GREY,
+                Stroke::Dashed,
+                continuum.density.clone(),
+            ));
+        }
+        let svg = self.chart("density across the channel", [&self.distance(), &label], &points, &curves);
+        Figure::new(
+            svg,
+            "Cells per area against the distance from the edge, both halves of the channel together. Bars are standard errors.",
+        )
+    }
+
+    pub fn velocities(&self) -> Figure {
+        let [v_x, v_y] = &self.folded.velocity;
+        let points = [
+            series("v_x, towards the middle", BLUE, Marker::Circle, &self.folded.centres, v_x),
+            series("v_y, along the edge", VERMILLION, Marker::Diamond, &self.folded.centres, v_y),
+        ];
+        let mut curves = self.decay("velocity_x", "exponential decay", BLUE);
+        curves.extend(self.decay("velocity_y", "", VERMILLION));
+        if let Some(continuum) = &self.findings.continuum {
+            let [x, y] = continuum.velocity.clone();
+            curves.push(curve("continuum, mean-field moduli", BLUE, Stroke::Dashed, x));
+            curves.push(curve("", VERMILLION, Stroke::Dashed, y));
+        }
+        let svg = self.chart("velocities", [&self.distance(), &self.velocity("velocity")], &points, &curves);
+        Figure::new(
+            svg,
+            "Mean velocities against the distance from the edge, both halves together, with signs as at the left edge: the channel is \
+             the same after a rotation by half a turn, which turns both components round.",
+        )
+    }
+
+    pub fn rates(&self) -> Figure {
+        let label = format!("rate ({})", unit_text(&format!("1/{}", self.request.units.time)));
+        let points = [
+            series("births", GREEN, Marker::Triangle, &self.folded.centres, &self.folded.birth_rate),
+            series("extrusions", VERMILLION, Marker::Square, &self.folded.centres, &self.folded.death_rate),
+        ];
+        let extrusion = &self.request.turnover.extrusion;
+        let given = self.along(|d| extrusion.at(d));
+        let curves = [curve("rate of extrusion, as given", INK, Stroke::Dotted, given)];
+        let svg = self.chart("births and extrusions", [&self.distance(), &label], &points, &curves);
+        Figure::new(svg, "Births and extrusions per cell and time, as counted.")
+    }
+
+    pub fn conservation(&self) -> Figure {
+        let label = format!("rate ({})", unit_text(&format!("1/{}", self.request.units.time)));
+        let points = [
+            series("∂_x(ρ v_x)/ρ", BLUE, Marker::Circle, &self.folded.faces, &self.folded.flux_rate),
+            series(
+                "births − extrusions",
+                VERMILLION,
+                Marker::Diamond,
+                &self.folded.faces,
+                &self.folded.net_rate,
+            ),
+        ];
+        let svg = self.chart("conservation of cells", [&self.distance(), &label], &points, &[]);
+        Figure::new(
+            svg,
+            "What flows away from a place, per cell, and the net proliferation counted there: the same in the steady state, since cells \
+             are conserved. Both are averages that fall off over the width of a bin on either side.",
+        )
+    }
+
+    /// Both velocities from edge to edge.
+    pub fn from_edge_to_edge(&self) -> Figure {
+        let [v_x, v_y] = &self.full.velocity;
+        let points = [
+            series("v_x", BLUE, Marker::Circle, &self.full.centres, v_x),
+            series("v_y", VERMILLION, Marker::Diamond, &self.full.centres, v_y),
+        ];
+        let x = format!("x ({})", self.request.units.length_text());
+        let svg = self.chart("from edge to edge", [&x, &self.velocity("velocity")], &points, &[]);
+        Figure::new(
+            svg,
+            "The same from edge to edge, not folded. Cells converge on the middle and slide past each other along it.",
+        )
+    }
+
+    pub fn ratio(&self) -> Figure {
+        let [v_x, v_y] = &self.folded.velocity;
+        let place = |at: (&Estimate, &Estimate)| ErrorPoint {
+            at: [at.0.value, at.1.value],
+            error: [at.0.error, at.1.error],
+        };
+        let record = self.findings.report.chirality_from_flow.as_ref();
+        let from = record.and_then(|record| record.range[0]).unwrap_or(0.0);
+        let pick = |inner: bool| {
+            let pairs = self.folded.centres.iter().zip(v_x.iter().zip(v_y));
+            pairs.filter(|(d, _)| (**d >= from) == inner).map(|(_, at)| place(at)).collect()
+        };
+        let points = [
+            PointSeries {
+                label: "counts for the line",
+                colour: BLUE,
+                marker: Marker::Circle,
+                points: pick(true),
+            },
+            PointSeries {
+                label: "where cells are born",
+                colour: GREY,
+                marker: Marker::Square,
+                points: pick(false),
+            },
+        ];
+        let farthest = v_x.iter().map(|at| at.value).filter(|v| v.is_finite()).fold(0.0, f64::max);
+        let through = |slope: f64| vec![[0.0, 0.0], [1.2 * farthest, 1.2 * farthest * slope]];
+        let mut curves = Vec::new();
+        if let Some(record) = record {
+            curves.push(curve("line through the points", BLUE, Stroke::Solid, through(record.slope)));
+        }
+        if let Some(continuum) = &self.findings.continuum {
+            curves.push(curve("α/(3 − a P_0/ℓ_0)", INK, Stroke::Dashed, through(continuum.record.ratio)));
+        }
+        let svg =
+            self.chart("v_y against v_x", [&self.velocity("v_x"), &self.velocity("v_y")], &points, &curves);
+        Figure::new(
+            svg,
+            "Velocity along the edge against velocity towards the middle, one point for each distance. The dashed line is what the \
+             mean-field theory says for the chirality put in.",
+        )
+    }
+
+    /// The share of births that disturb velocities by no more than the abscissa.
+    pub fn disturbance(&self, [vertex, division]: &[Vec<f64>; 2]) -> Figure {
+        let cumulative = |values: &[f64]| {
+            let mut sorted = values.to_vec();
+            sorted.sort_by(f64::total_cmp);
+            let share = |index: usize| (index + 1) as f64 / values.len() as f64;
+            std::iter::once([0.0, 0.0])
+                .chain(sorted.iter().enumerate().map(|(i, v)| [*v, share(i)]))
+                .collect()
+        };
+        let beside = format!(
+            "beside a mother, {} {}",
+            self.request.division_distance,
+            self.request.units.length_text()
+        );
+        let curves = [
+            curve("on a vertex", BLUE, Stroke::Solid, cumulative(vertex)),
+            curve(&beside, VERMILLION, Stroke::Dashed, cumulative(division)),
+        ];
+        let label = self.velocity("largest change of a velocity");
+        let svg = self.chart("disturbance by a birth", [&label, "share of births below"], &[], &curves);
+        Figure::new(
+            svg,
+            "How much one birth changes the velocity of a cell at once, at the end of the run, for random places of births: a new cell on \
+             a vertex disturbs its surroundings less than one beside its mother.",
+        )
+    }
+
+    fn chart(
+        &self,
+        title: &str,
+        labels: [&str; 2],
+        series: &[PointSeries<'_>],
+        curves: &[CurveSeries<'_>],
+    ) -> String {
+        points_and_curves(&PointsAndCurves { title, labels, series, curves })
+    }
+
+    fn decay(&self, name: &str, label: &'static str, colour: &'static str) -> Vec<CurveSeries<'static>> {
+        let found = self.findings.fits.iter().find(|(own, ..)| *own == name);
+        let draw = |(_, fit, shape): &(&str, voronudge_infer::DecayFit, DecayShape)| {
+            let from = self.findings.report.decays.get(name).map_or(0.0, |record| record.from);
+            let points = self.along(|d| fit.at(d, self.findings.report.width, *shape));
+            curve(label, colour, Stroke::Solid, points.into_iter().filter(|at| at[0] >= from).collect())
+        };
+        found.map(draw).into_iter().collect()
+    }
+
+    fn along(&self, value: impl Fn(f64) -> f64) -> Vec<[f64; 2]> {
+        let middle = 0.5 * self.findings.report.width;
+        (0..=STEPS).map(|step| middle * step as f64 / STEPS as f64).map(|d| [d, value(d)]).collect()
+    }
+
+    fn distance(&self) -> String {
+        format!("distance from the edge ({})", self.request.units.length_text())
+    }
+
+    fn velocity(&self, what: &str) -> String {
+        format!("{what} ({})", self.request.units.velocity_text())
+    }
+}
+
+fn series<'a>(
+    label: &'a str,
+    colour: &'a str,
+    marker: Marker,
+    places: &[f64],
+    values: &[Estimate],
+) -> PointSeries<'a> {
+    let point = |(x, at): (&f64, &Estimate)| ErrorPoint { at: [*x, at.value], error: [None, at.error] };
+    PointSeries { label, colour, marker, points: places.iter().zip(values).map(point).collect() }
+}
+
+fn curve<'a>(label: &'a str, colour: &'a str, stroke: Stroke, points: Vec<[f64; 2]>) -> CurveSeries<'a> {
+    CurveSeries { label, colour, stroke, points }
+}

@@ -1,0 +1,125 @@
+//! `voronudge channel`: flows that extrusion and proliferation near the edges of a channel drive.
+
+mod arrays;
+mod figures;
+mod frames;
+mod page;
+mod report;
+mod request;
+
+use crate::Answer;
+use crate::arguments::{CommonArguments, ParameterArguments};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use clap::Args;
+use frames::Frames;
+use ndarray::Array2;
+use request::{ChannelArguments, ChannelRequest};
+use std::ops::ControlFlow;
+use voronudge_geometry::Domain;
+use voronudge_io::OutputDirectory;
+use voronudge_model::Model;
+use voronudge_report::channel_report::DisturbanceRecord;
+use voronudge_simulate::{
+    Injection, LivingTissue, RandomPlacement, Simulation, generator, run_channel, sort_in_space,
+};
+
+/// Flow across and along a channel whose cells are extruded and born near its edges.
+///
+/// Writes profiles as .npy (places, 2: value, standard error) and as folded_profile.csv, lineage.csv, report.json and report.html; with
+/// --frames also a data set.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    channel: ChannelArguments,
+    /// Frames to keep as a data set, evenly spaced over the averages.
+    #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
+    frames: usize,
+    #[command(flatten)]
+    parameters: ParameterArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+/// Places of births tried for the disturbance that a birth makes.
+const DRAWS: usize = 200;
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("channel", &arguments.common)?;
+    let request = arguments.channel.resolve(&arguments.parameters, arguments.common.seed)?;
+    let mut frames = Frames::new(arguments.frames, &request.schedule)?;
+    let mut tissue = tissue(&request, arguments.common.seed)?;
+    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    request.doubtful_step().into_iter().for_each(|warning| run.warn(warning));
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let mut interrupted = false;
+    let outcome = run_channel(&mut tissue, &request.schedule, |tissue, done, total| {
+        frames.after_step(done, tissue);
+        interrupted = progress.step("channel", done as u64, total as u64).is_break();
+        if interrupted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
+    })?;
+    progress.finish();
+    if interrupted {
+        return Err(Failure::interrupted());
+    }
+    if outcome.recorder.samples() == 0 {
+        let why = outcome.ended.map_or_else(|| "no sample was ended".into(), |error| error.to_string());
+        return Err(Failure::new(format!("{why}, before the first of the averages")).with_hint(
+            "change the rates so that births and extrusions balance, or shorten --relaxation and --time",
+        ));
+    }
+    if let Some(error) = &outcome.ended {
+        run.warn(format!(
+            "the run ended before its time: {error}; averages are over the {} samples until then, which are not a steady state",
+            outcome.recorder.samples()
+        ));
+    }
+    if outcome.recorder.samples() < 16 {
+        run.warn(format!(
+            "{} samples are too few for standard errors, which need 16; there are no fits",
+            outcome.recorder.samples()
+        ));
+    }
+    let (full, folded) = (outcome.recorder.profile(), outcome.recorder.folded_profile());
+    let disturbance = disturbance(&request, &tissue, arguments.common.seed);
+    let record = disturbance.as_ref().map(|[vertex, division]| DisturbanceRecord {
+        draws: DRAWS,
+        division_distance: request.division_distance,
+        vertex_mean: mean(vertex),
+        division_mean: mean(division),
+    });
+    let findings = report::findings(&run, &request, (&tissue, &outcome), &folded, record)?;
+    arrays::write(&mut out, &full, &folded)?;
+    frames.write(&mut out, &tissue, &request.units)?;
+    if let Some([vertex, division]) = &disturbance {
+        let both = Array2::from_shape_fn((DRAWS, 2), |(draw, way)| [vertex, division][way][draw]);
+        out.write_array("birth_disturbance.npy", both.view())?;
+    }
+    let json = findings.report.to_json()?;
+    out.write_text("report.json", &json)?;
+    let figures = figures::Figures { request: &request, findings: &findings, full: &full, folded: &folded };
+    out.write_text("report.html", &page::page(&figures, disturbance.as_ref())?)?;
+    let summary = page::summary(&findings.report, out.path());
+    let answer = if outcome.ended.is_some() { Answer::Negative } else { Answer::Positive };
+    run.finish(Some(out), &json, &summary)?;
+    Ok(answer)
+}
+
+fn tissue(request: &ChannelRequest, seed: u64) -> Result<LivingTissue, Failure> {
+    let mut positions = RandomPlacement::new(request.cells, request.cell_box).draw(&mut generator(seed))?;
+    sort_in_space(&mut positions, &request.cell_box);
+    let model = Model::chiral_voronoi(&request.parameters);
+    let simulation = Simulation::new(positions, Domain::Periodic(request.cell_box), model)?;
+    Ok(LivingTissue::new(simulation, request.turnover)?)
+}
+
+/// How much births by both ways change velocities; nothing where a daughter would lie on another cell.
+fn disturbance(request: &ChannelRequest, tissue: &LivingTissue, seed: u64) -> Option<[Vec<f64>; 2]> {
+    let by = |injection| tissue.birth_disturbance(injection, DRAWS, seed).ok();
+    Some([by(Injection::Vertex)?, by(Injection::Division { distance: request.division_distance })?])
+}
+
+fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}

@@ -1,0 +1,233 @@
+//! A channel as a page and as a summary.
+
+use super::figures::Figures;
+use crate::failure::Failure;
+use std::fmt::Write as _;
+use std::path::Path;
+use voronudge_report::channel_report::{ChannelReport, DecayRecord};
+use voronudge_report::numbers::{significant, unit_text};
+use voronudge_report::page::{Card, Section, SectionPage};
+
+const GUIDE: [[&str; 2]; 5] = [
+    [
+        "What is simulated",
+        "Cells of the chiral Voronoi model in a periodic box. Cells are extruded and born at rates that fall with the distance from the \
+         nearer edge; more are born at the edge, more are extruded farther in, so cells flow from the edges to the middle.",
+    ],
+    [
+        "v_x, v_y",
+        "Displacements of the cells of a strip in a step, over the time step, averaged over cells and time. Births and deaths move no cell \
+         and enter by the density alone.",
+    ],
+    [
+        "Continuum",
+        "The steady state of conservation of cells and of ζ v_x = −(B + μ) ∂_x ρ/ρ_0, v_y/v_x = (A − K^o)/(B + μ), with the moduli of the \
+         honeycomb and no viscosity. Nothing is fitted.",
+    ],
+    [
+        "Exponential decay",
+        "A exp(−d/λ) from both edges (and a background for the density), fitted beyond the layer where cells are born.",
+    ],
+    [
+        "α from the flow",
+        "The slope of v_y against v_x times 3 − a P_0/ℓ_0. The relation is that of a honeycomb at the first moment of a compression; in a \
+         channel in its steady state it holds roughly.",
+    ],
+];
+
+pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -> Result<String, Failure> {
+    let report = &figures.findings.report;
+    let mut sections = vec![
+        Section {
+            heading: "Flow".into(),
+            figures: vec![
+                figures.velocities(),
+                figures.ratio(),
+                figures.from_edge_to_edge(),
+                figures.density(),
+            ],
+            rows: decay_rows(report),
+            ..Section::default()
+        },
+        Section {
+            heading: "Births, extrusions and conservation".into(),
+            text: vec![format!(
+                "∂_x(ρ v_x)/ρ and the net proliferation counted differ by at most {} {}, {} standard errors, where the largest rate is {}.",
+                significant(report.conservation.largest_difference, 2),
+                rate_unit(report),
+                significant(report.conservation.largest_in_errors, 2),
+                significant(report.conservation.largest_rate, 3),
+            )],
+            figures: vec![figures.rates(), figures.conservation()],
+            ..Section::default()
+        },
+    ];
+    if let (Some(both), Some(record)) = (disturbance, &report.birth_disturbance) {
+        sections.push(Section {
+            heading: "What a birth disturbs".into(),
+            text: vec![format!(
+                "The largest change of a velocity is {} {} in the mean for births on vertices and {} for births beside a mother.",
+                significant(record.vertex_mean, 3),
+                report.units.velocity_text(),
+                significant(record.division_mean, 3),
+            )],
+            figures: vec![figures.disturbance(both)],
+            ..Section::default()
+        });
+    }
+    let page = SectionPage {
+        title: &figures.request.title,
+        headline: &headline(report),
+        summary: &[cells(report), setting(report)],
+        cards: &cards(report),
+        guide: &GUIDE,
+        sections: &sections,
+        run: &report.run,
+    };
+    Ok(page.render()?)
+}
+
+fn headline(report: &ChannelReport) -> String {
+    if let Some(why) = &report.ended {
+        return format!("The run ended before its time: {why}.");
+    }
+    match &report.chirality_from_flow {
+        Some(flow) if flow.slope_ci95[0] > 0.0 || flow.slope_ci95[1] < 0.0 => format!(
+            "Cells flow towards the middle and {} at {} times that speed along the edges; the slope alone says α = {}, put in was {}.",
+            if flow.slope > 0.0 { "upwards at the left edge" } else { "downwards at the left edge" },
+            significant(flow.slope.abs(), 2),
+            flow.alpha.map_or("unknown".into(), |alpha| significant(alpha, 2)),
+            report.parameters["alpha"]
+        ),
+        _ => "Cells flow across the channel, and no flow along it is found.".into(),
+    }
+}
+
+fn cells(report: &ChannelReport) -> String {
+    let cells = report.cells;
+    let number = if cells.fewest == cells.most {
+        format!("{} cells throughout", cells.first)
+    } else {
+        format!(
+            "{} cells at first, {} at the end, {} to {} on the way",
+            cells.first, cells.last, cells.fewest, cells.most
+        )
+    };
+    format!(
+        "{number}; {} births and {} extrusions in {} steps.",
+        cells.births, cells.extrusions, report.steps
+    )
+}
+
+fn setting(report: &ChannelReport) -> String {
+    let unit = report.units.length_text();
+    format!(
+        "A channel of {} × {} {unit}; averages over {} {} in {} samples, after {} {}.",
+        significant(report.width, 3),
+        significant(report.length, 3),
+        significant(report.time, 3),
+        report.units.time,
+        report.samples,
+        significant(report.relaxation, 3),
+        report.units.time
+    )
+}
+
+fn cards(report: &ChannelReport) -> Vec<Card> {
+    let length = |name: &str, label: &str| {
+        report.decays.get(name).map(|decay| Card {
+            label: label.into(),
+            value: format!("{} {}", significant(decay.length, 3), report.units.length_text()),
+            note: interval(decay),
+        })
+    };
+    let mut cards: Vec<Card> = [
+        length("velocity_x", "decay length of v_x"),
+        length("velocity_y", "decay length of v_y"),
+        length("density", "decay length of the density"),
+    ]
+    .into_iter()
+    .flatten()
+    .collect();
+    if let Some(flow) = &report.chirality_from_flow {
+        let [low, high] = flow.slope_ci95.map(|end| significant(end, 3));
+        cards.push(Card {
+            label: "v_y/v_x".into(),
+            value: significant(flow.slope, 3),
+            note: format!("{low} to {high}"),
+        });
+    }
+    cards
+}
+
+fn interval(decay: &DecayRecord) -> String {
+    let end = |end: Option<f64>| end.map_or("?".into(), |end| significant(end, 3));
+    format!("{} to {}", end(decay.length_ci95[0]), end(decay.length_ci95[1]))
+}
+
+fn decay_rows(report: &ChannelReport) -> Vec<[String; 2]> {
+    let unit = report.units.length_text();
+    let row = |(name, decay): (&&str, &DecayRecord)| {
+        [
+            name.replace("velocity", "v"),
+            format!(
+                "decays over {} {unit} (95 %: {}), amplitude {} ± {}; χ² per degree of freedom {}",
+                significant(decay.length, 3),
+                interval(decay),
+                significant(decay.amplitude, 3),
+                significant(decay.amplitude_error, 1),
+                significant(decay.reduced_chi_square, 2)
+            ),
+        ]
+    };
+    report.decays.iter().map(row).collect()
+}
+
+fn rate_unit(report: &ChannelReport) -> String {
+    unit_text(&format!("1/{}", report.units.time))
+}
+
+pub(super) fn summary(report: &ChannelReport, out: &Path) -> String {
+    let mut text = format!("{}\n", cells(report));
+    let unit = report.units.length_text();
+    for (name, decay) in &report.decays {
+        let _ = writeln!(
+            text,
+            "{:<12} decays over {} {unit} (95 %: {}), amplitude {} ± {}",
+            name.replace("velocity", "v"),
+            significant(decay.length, 3),
+            interval(decay),
+            significant(decay.amplitude, 3),
+            significant(decay.amplitude_error, 1)
+        );
+    }
+    if let Some(flow) = &report.chirality_from_flow {
+        let [low, high] = flow.slope_ci95.map(|end| significant(end, 3));
+        let alpha = flow.alpha.map_or(String::new(), |alpha| {
+            format!(
+                ", which implies alpha {} (put in: {})",
+                significant(alpha, 3),
+                report.parameters["alpha"]
+            )
+        });
+        let _ = writeln!(text, "v_y / v_x    {} (95 %: {low} to {high}){alpha}", significant(flow.slope, 3));
+    }
+    let _ = writeln!(
+        text,
+        "conservation flux and counted rates differ by at most {} {} ({} standard errors)",
+        significant(report.conservation.largest_difference, 2),
+        rate_unit(report),
+        significant(report.conservation.largest_in_errors, 2)
+    );
+    if let Some(record) = &report.birth_disturbance {
+        let _ = writeln!(
+            text,
+            "a birth      changes velocities by up to {} on a vertex, {} beside a mother (means, {})",
+            significant(record.vertex_mean, 3),
+            significant(record.division_mean, 3),
+            report.units.velocity_text()
+        );
+    }
+    let _ = writeln!(text, "\nfigures in {}", out.join("report.html").display());
+    text
+}

@@ -1,0 +1,157 @@
+//! `voronudge estimate-chirality`: α from the velocities across and along a channel.
+
+mod line;
+mod page;
+
+pub(crate) use line::{Tissue, slope};
+
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use crate::run::Run;
+use clap::{Args, ValueEnum};
+use serde_json::Value;
+use std::path::{Path, PathBuf};
+use voronudge_infer::{Intercept, LinePoint};
+use voronudge_io::{FlowProfile, OutputDirectory, read_flow_profile};
+use voronudge_report::channel_report::ChiralityReport;
+use voronudge_simulate::measure::Estimate;
+
+/// The chirality that the flow in a channel implies, from the slope of v_y against v_x.
+///
+/// Writes report.json and report.html.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Folder written by `channel`, or a table with columns x (distance from the edge), v_x, v_y and perhaps v_x_error, v_y_error.
+    #[arg(value_name = "PROFILES")]
+    profiles: PathBuf,
+    /// Preferred perimeter in cell sizes, P_0/l_0 [default: that of the folder; otherwise unknown].
+    #[arg(long, value_name = "P_0/l_0", allow_negative_numbers = true)]
+    shape_index: Option<f64>,
+    /// Area elasticity K_A l_0^2/K_P [default: that of the folder; otherwise 0].
+    #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
+    area_elasticity: Option<f64>,
+    /// Leave out what is nearer to the edge [default: where cells are born in the folder; otherwise 0].
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    from: Option<f64>,
+    /// Leave out what is farther from the edge.
+    #[arg(long, value_name = "X", allow_negative_numbers = true)]
+    to: Option<f64>,
+    /// Where the line meets v_x = 0: zero by symmetry, or free for velocities with an offset.
+    #[arg(long, value_enum, default_value_t = InterceptName::Zero)]
+    intercept: InterceptName,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum InterceptName {
+    /// At the origin.
+    Zero,
+    /// Fitted.
+    Free,
+}
+
+/// What a folder of `channel` says of its tissue.
+#[derive(Default)]
+struct Known {
+    shape_index: Option<f64>,
+    area_elasticity: Option<f64>,
+    from: Option<f64>,
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("estimate-chirality", &arguments.common)?;
+    let (table, known) = if arguments.profiles.is_dir() {
+        (arguments.profiles.join("folded_profile.csv"), known(&arguments.profiles.join("report.json")))
+    } else {
+        (arguments.profiles.clone(), Known::default())
+    };
+    for (name, value) in [
+        ("--shape-index", arguments.shape_index),
+        ("--area-elasticity", arguments.area_elasticity),
+        ("--from", arguments.from),
+        ("--to", arguments.to),
+    ] {
+        if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+            return Err(Failure::new(format!("{name} is {value}, but it must be finite and not negative"))
+                .with_hint("leave it out for the default"));
+        }
+    }
+    let profile = read_flow_profile(&table)?;
+    let range = [arguments.from.or(known.from), arguments.to];
+    let (intercept, intercept_kind) = match arguments.intercept {
+        InterceptName::Zero => (Intercept::Zero, "zero"),
+        InterceptName::Free => (Intercept::Free, "free"),
+    };
+    let tissue = Tissue {
+        shape_index: arguments.shape_index.or(known.shape_index),
+        area_elasticity: arguments.area_elasticity.or(known.area_elasticity).unwrap_or(0.0),
+    };
+    let points = points(&profile);
+    let line = slope(&points, range, intercept, tissue)?.ok_or_else(|| {
+        Failure::new(format!("the velocities tell no slope of v_y against v_x in {} rows", points.len()))
+            .at(table.display())
+            .with_hint("at least three rows are needed within --from and --to, with velocities larger than their errors")
+    })?;
+    let out = arguments.common.required_out()?;
+    let mut out = OutputDirectory::create(out)?;
+    if profile.errors.is_none() {
+        run.warn("the table has no errors (v_x_error, v_y_error): both velocities count alike, and the interval is from the scatter");
+    }
+    if let Some(chi_square) = line.reduced_chi_square.filter(|chi_square| *chi_square > 3.0) {
+        run.warn(format!(
+            "v_y is not proportional to v_x within the errors (chi square {chi_square:.1} per degree of freedom); the interval is \
+             widened by that, but alpha may be off by more"
+        ));
+    }
+    let mut record = run.record(None);
+    record.inputs = vec![voronudge_report::infer_report::InputFile {
+        path: profile.input.path.display().to_string(),
+        sha256: profile.input.sha256.clone(),
+    }];
+    let report = ChiralityReport { run: record, line, intercept_kind };
+    let json = report.to_json()?;
+    out.write_text("report.json", &json)?;
+    let title = arguments.profiles.display().to_string();
+    out.write_text("report.html", &page::page(&title, &points, &report)?)?;
+    let summary = page::summary(&report, out.path());
+    run.finish(Some(out), &json, &summary)?;
+    Ok(Answer::Positive)
+}
+
+/// Points of the line from averages at distances from the edge; without errors if one is unknown.
+pub(crate) fn line_points(distances: &[f64], velocity: &[Vec<Estimate>; 2]) -> Vec<(f64, LinePoint)> {
+    let pairs = || velocity[0].iter().zip(&velocity[1]);
+    let known = pairs().all(|(x, y)| x.error.is_some() && y.error.is_some());
+    let errors =
+        |x: &Estimate, y: &Estimate| known.then_some(()).and(x.error).zip(y.error).map(|(x, y)| [x, y]);
+    let point = |(x, y): (&Estimate, &Estimate)| LinePoint { x: x.value, y: y.value, errors: errors(x, y) };
+    distances.iter().copied().zip(pairs().map(point)).collect()
+}
+
+fn points(profile: &FlowProfile) -> Vec<(f64, LinePoint)> {
+    let [v_x, v_y] = &profile.velocity;
+    let errors = |row: usize| profile.errors.as_ref().map(|errors| [errors[0][row], errors[1][row]]);
+    let point = |row: usize| LinePoint { x: v_x[row], y: v_y[row], errors: errors(row) };
+    profile.x.iter().enumerate().map(|(row, x)| (*x, point(row))).collect()
+}
+
+/// What the report of `channel` says; nothing where there is none.
+fn known(report: &Path) -> Known {
+    let read = || -> Option<Value> { serde_json::from_str(&std::fs::read_to_string(report).ok()?).ok() };
+    let Some(json) = read() else {
+        return Known::default();
+    };
+    let number = |pointer: &str| json.pointer(pointer).and_then(Value::as_f64);
+    let size = number("/cell_size");
+    let per = |value: Option<f64>, unit: Option<f64>| value.zip(unit).map(|(value, unit)| value / unit);
+    let square = size.map(|size| size * size);
+    Known {
+        shape_index: per(number("/parameters/P_0"), size),
+        area_elasticity: per(number("/parameters/K_A"), number("/parameters/K_P"))
+            .zip(square)
+            .map(|(ratio, square)| ratio * square),
+        from: number("/chirality_from_flow/range/0"),
+    }
+}

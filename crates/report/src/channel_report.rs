@@ -1,0 +1,221 @@
+//! `report.json` of the commands `channel` and `estimate-chirality`.
+//!
+//! Field names are the interface that scripts use; [`CHANNEL_SCHEMA`] and [`CHIRALITY_SCHEMA`] describe them. Numbers that are not
+//! finite are written as `null`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::error::ReportError;
+use crate::infer_report::RunRecord;
+use crate::view::Units;
+
+/// JSON Schema (draft 2020-12) of [`ChannelReport`].
+pub const CHANNEL_SCHEMA: &str = include_str!("../schema/channel.schema.json");
+/// JSON Schema (draft 2020-12) of [`ChiralityReport`].
+pub const CHIRALITY_SCHEMA: &str = include_str!("../schema/estimate-chirality.schema.json");
+
+/// Everything `channel` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChannelReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// Width, across x.
+    pub width: f64,
+    /// Length, along y.
+    pub length: f64,
+    /// The cell size ℓ₀ at the beginning.
+    pub cell_size: f64,
+    /// Parameters of the model, by the names of the interface.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// Extrusion and proliferation.
+    pub turnover: TurnoverRecord,
+    /// Time before the averages.
+    pub relaxation: f64,
+    /// Time of the averages asked for.
+    pub time: f64,
+    /// Time step.
+    pub dt: f64,
+    /// Samples averaged.
+    pub samples: usize,
+    /// Bins across the channel.
+    pub bins: usize,
+    /// Steps made.
+    pub steps: usize,
+    /// How many cells there were.
+    pub cells: CellNumbers,
+    /// Why the run ended before its time, if it did.
+    pub ended: Option<String>,
+    /// Exponential decays of the folded profiles, where one fits: `density`, `velocity_x`, `velocity_y`.
+    pub decays: BTreeMap<&'static str, DecayRecord>,
+    /// Conservation of cells.
+    pub conservation: ConservationRecord,
+    /// The continuum theory with the moduli of the honeycomb, where it has a steady state.
+    pub continuum: Option<ContinuumRecord>,
+    /// The chirality that the slope of v_y against v_x implies.
+    pub chirality_from_flow: Option<SlopeRecord>,
+    /// How much a birth changes velocities at once, by either way of injection, at the end of the run.
+    pub birth_disturbance: Option<DisturbanceRecord>,
+}
+
+/// How cells are extruded and born.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TurnoverRecord {
+    /// Rate of extrusion at the edge.
+    pub extrusion_rate: f64,
+    /// Its decay length; null if it is the same everywhere.
+    pub extrusion_length: f64,
+    /// `replacing` or `independent`.
+    pub proliferation: &'static str,
+    /// Rate of proliferation at the edge, if it is independent.
+    pub proliferation_rate: Option<f64>,
+    /// Its decay length.
+    pub proliferation_length: f64,
+    /// `vertex` or `division`.
+    pub injection: &'static str,
+    /// Distance of a daughter from her mother, if cells divide.
+    pub division_distance: Option<f64>,
+}
+
+/// Numbers of cells.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+pub struct CellNumbers {
+    /// At the beginning.
+    pub first: usize,
+    /// At the end.
+    pub last: usize,
+    /// Fewest on the way.
+    pub fewest: usize,
+    /// Most on the way.
+    pub most: usize,
+    /// Births in the whole run.
+    pub births: usize,
+    /// Extrusions in the whole run.
+    pub extrusions: usize,
+}
+
+/// A decay from the edges.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DecayRecord {
+    /// Decay length.
+    pub length: f64,
+    /// Its 95 % interval; an end that is not bounded is null.
+    pub length_ci95: [Option<f64>; 2],
+    /// Amplitude, extrapolated to the edge.
+    pub amplitude: f64,
+    /// Its standard error.
+    pub amplitude_error: f64,
+    /// Background.
+    pub background: f64,
+    /// χ² per degree of freedom.
+    pub reduced_chi_square: f64,
+    /// Distance from the edge at which the fit begins.
+    pub from: f64,
+}
+
+/// ∂_x(ρ v_x)/ρ against k_prolif − k_extr.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ConservationRecord {
+    /// Places between bins, from the edge to the middle.
+    pub faces: usize,
+    /// Largest difference.
+    pub largest_difference: f64,
+    /// Largest difference in its standard errors.
+    pub largest_in_errors: f64,
+    /// Largest size of k_prolif − k_extr.
+    pub largest_rate: f64,
+}
+
+/// The theory beside the simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct ContinuumRecord {
+    /// B + μ
+    pub longitudinal: f64,
+    /// A − Kᵒ
+    pub transverse: f64,
+    /// v_y/v_x
+    pub ratio: f64,
+    /// Root mean square difference of v_x, in units of its largest value in the theory.
+    pub velocity_x_difference: f64,
+    /// The same of v_y, in units of the largest v_y of the simulation.
+    pub velocity_y_difference: f64,
+}
+
+/// A line through the points (v_x, v_y).
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SlopeRecord {
+    /// Points.
+    pub points: usize,
+    /// Distances from the edge that counted: from, to; an end that was not given is null.
+    pub range: [Option<f64>; 2],
+    /// Slope v_y/v_x.
+    pub slope: f64,
+    /// Its 95 % interval.
+    pub slope_ci95: [f64; 2],
+    /// Intercept of the line; zero if it was held there.
+    pub intercept: f64,
+    /// χ² per degree of freedom; null if no errors are known.
+    pub reduced_chi_square: Option<f64>,
+    /// Preferred perimeter in cell sizes P₀/ℓ₀, where known.
+    pub shape_index: Option<f64>,
+    /// α = slope (3 − a P₀/ℓ₀), where P₀/ℓ₀ is known.
+    pub alpha: Option<f64>,
+    /// Its 95 % interval, the slope's alone.
+    pub alpha_ci95: Option<[f64; 2]>,
+    /// The rule of thumb α = slope/0.5.
+    pub alpha_rule_of_thumb: f64,
+    /// What 3 < P₀/ℓ₀ < 5 leaves open: the least and the largest α of the slope.
+    pub alpha_range: [f64; 2],
+}
+
+/// Largest change of a velocity at a birth.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct DisturbanceRecord {
+    /// Places tried.
+    pub draws: usize,
+    /// Distance of a daughter from her mother.
+    pub division_distance: f64,
+    /// Mean for births on vertices.
+    pub vertex_mean: f64,
+    /// Mean for births beside a mother.
+    pub division_mean: f64,
+}
+
+/// Everything `estimate-chirality` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ChiralityReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// The line and what it implies.
+    #[serde(flatten)]
+    pub line: SlopeRecord,
+    /// Whether the line was held at the origin: `zero` or `free`.
+    pub intercept_kind: &'static str,
+}
+
+impl ChannelReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}
+
+impl ChiralityReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}
