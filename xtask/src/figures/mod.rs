@@ -4,7 +4,9 @@
 //! runs, `docs/figures/gallery/record.json`.
 
 mod command;
+mod flows;
 mod landscapes;
+mod moduli;
 mod page;
 mod phases;
 mod structure;
@@ -14,6 +16,7 @@ use clap::Args;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
+use voronudge_report::figure::{Colours, Series, SeriesAxis, SeriesChart, series_chart};
 
 /// What to make.
 #[derive(Args)]
@@ -78,7 +81,18 @@ struct Panel {
 
 /// All figures, in the order of the paper.
 fn all() -> Vec<Figure> {
-    [landscapes::FIGURES, phases::FIGURES, structure::FIGURES].concat()
+    [landscapes::FIGURES, phases::FIGURES, moduli::FIGURES, flows::FIGURES, structure::FIGURES].concat()
+}
+
+/// Curves with even axes, in colours that follow their order.
+fn chart(title: &str, x: &str, y: &str, series: Vec<Series>) -> String {
+    series_chart(&SeriesChart {
+        title: title.into(),
+        x: SeriesAxis::linear(x),
+        y: SeriesAxis::linear(y),
+        colours: Colours::Ordered,
+        series,
+    })
 }
 
 /// What is kept of a run: everything but the pictures.

@@ -7,10 +7,7 @@ use std::error::Error;
 use voronudge_io::read_reals;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
-use voronudge_report::figure::{
-    Colours, Drawn, LineStyle, MapLine, PhaseMap, Series, SeriesAxis, SeriesChart, SeriesPoint, phase_map,
-    series_chart,
-};
+use voronudge_report::figure::{Drawn, LineStyle, MapLine, PhaseMap, Series, SeriesPoint, phase_map};
 use voronudge_simulate::collapse::critical_perimeter;
 use voronudge_theory::{MeanField, Orientation, Parameters, hexagon_perimeter};
 
@@ -49,14 +46,14 @@ pub(super) const FIGURES: &[Figure] = &[
 ];
 
 /// A quantity of a phase diagram, and its axes.
-struct Field {
-    preferred_perimeters: Vec<f64>,
-    chiralities: Vec<f64>,
+pub(super) struct Field {
+    pub preferred_perimeters: Vec<f64>,
+    pub chiralities: Vec<f64>,
     values: ArrayD<f64>,
 }
 
 impl Field {
-    fn read(output: &Output, name: &str) -> Result<Self, Box<dyn Error>> {
+    pub fn read(output: &Output, name: &str) -> Result<Self, Box<dyn Error>> {
         let read = |name: &str| read_reals(&output.path().join(format!("{name}.npy")));
         let axis =
             |name: &str| -> Result<Vec<f64>, Box<dyn Error>> { Ok(read(name)?.iter().copied().collect()) };
@@ -64,7 +61,7 @@ impl Field {
     }
 
     /// `(P_0, value)` for each chirality.
-    fn rows(&self) -> impl Iterator<Item = (f64, Vec<[f64; 2]>)> {
+    pub fn rows(&self) -> impl Iterator<Item = (f64, Vec<[f64; 2]>)> {
         let row = |row: ndarray::ArrayViewD<'_, f64>| -> Vec<[f64; 2]> {
             self.preferred_perimeters.iter().zip(row.iter()).map(|(&p, &value)| [p, value]).collect()
         };
@@ -200,20 +197,14 @@ fn collapse(size: Size) -> Result<Made, Box<dyn Error>> {
     })
 }
 
-/// Curves over P_0, one for each chirality.
-fn over_perimeter(title: &str, y: SeriesAxis, field: &Field) -> String {
+/// Curves over P_0, one for each chirality, and what a theory says of them.
+pub(super) fn over_perimeter(title: &str, label: &str, field: &Field, theory: Vec<Series>) -> String {
     let series = |(alpha, row): (f64, Vec<[f64; 2]>)| Series {
         name: format!("α = {alpha}"),
         drawn: Drawn::JoinedMarks,
         points: row.into_iter().map(SeriesPoint::from).collect(),
     };
-    series_chart(&SeriesChart {
-        title: title.into(),
-        x: SeriesAxis::linear("P_0 / ℓ_0"),
-        y,
-        colours: Colours::Ordered,
-        series: field.rows().map(series).collect(),
-    })
+    super::chart(title, "P_0 / ℓ_0", label, theory.into_iter().chain(field.rows().map(series)).collect())
 }
 
 fn lyapunov(size: Size) -> Result<Made, Box<dyn Error>> {
@@ -238,7 +229,7 @@ fn lyapunov(size: Size) -> Result<Made, Box<dyn Error>> {
         panels: vec![Panel {
             name: "",
             caption: "Largest Lyapunov exponent against preferred perimeter".into(),
-            svg: over_perimeter("largest Lyapunov exponent", SeriesAxis::linear("λ / K_P"), &field),
+            svg: over_perimeter("largest Lyapunov exponent", "λ / K_P", &field, Vec::new()),
         }],
     })
 }

@@ -1,0 +1,79 @@
+//! Elastic moduli over preferred perimeter and chirality.
+
+use super::phases::{Field, over_perimeter};
+use super::{Figure, Made, Panel, Size, command};
+use std::error::Error;
+use voronudge_report::figure::{Drawn, Series, SeriesPoint};
+use voronudge_simulate::collapse::critical_perimeter;
+use voronudge_theory::{MeanField, Moduli, Parameters};
+
+pub(super) const FIGURES: &[Figure] = &[Figure {
+    name: "2c-m1b-moduli",
+    title: "elastic moduli of disordered tissues",
+    stated: "μ falls with P₀ and vanishes at P₀* = 3.81 − |α|, as one function of the distance from it; in solids B, μ and Kᵒ follow the \
+             mean field",
+    make: elastic,
+}];
+
+fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
+    let output = command::run(size.pick(
+        "phase-diagram --P_0 3 3.2 2 --alpha 0 0.2 2 --cells 36 --time 4 --quantities shear_modulus,odd_shear_modulus,bulk_modulus",
+        "phase-diagram --P_0 3 4 11 --alpha 0 0.3 4 --cells 64 --time 50 --dt 0.02 --quantities shear_modulus,odd_shear_modulus,bulk_modulus",
+    ))?;
+    let shear = Field::read(&output, "shear_modulus")?;
+    let theory = |of: fn(&Moduli) -> f64, field: &Field| -> Result<Vec<Series>, Box<dyn Error>> {
+        let row = |&chirality: &f64| -> Result<Series, Box<dyn Error>> {
+            let point = |&preferred_perimeter: &f64| -> Result<SeriesPoint, Box<dyn Error>> {
+                let parameters = Parameters {
+                    area_elasticity: 0.1,
+                    preferred_perimeter,
+                    chirality,
+                    ..Parameters::default()
+                };
+                Ok([preferred_perimeter, of(&MeanField::new(parameters)?.moduli())].into())
+            };
+            let points = field.preferred_perimeters.iter().map(point).collect::<Result<_, _>>()?;
+            Ok(Series { name: String::new(), drawn: Drawn::BrokenLine, points })
+        };
+        field.chiralities.iter().map(row).collect()
+    };
+    let mut panels = Vec::new();
+    for (name, quantity, label, of) in [
+        ("mu", "shear_modulus", "μ / K_P", (|m| m.shear) as fn(&Moduli) -> f64),
+        ("ko", "odd_shear_modulus", "Kᵒ / K_P", |m| m.odd_shear),
+        ("b", "bulk_modulus", "B / K_P", |m| m.bulk),
+    ] {
+        let field = Field::read(&output, quantity)?;
+        let svg = over_perimeter(label, label, &field, theory(of, &field)?);
+        panels.push(Panel {
+            name,
+            caption: format!("{label}; broken lines are the mean field of the honeycomb"),
+            svg,
+        });
+    }
+    let distance: Vec<Series> = shear
+        .rows()
+        .map(|(alpha, row)| Series {
+            name: format!("α = {alpha}"),
+            drawn: Drawn::JoinedMarks,
+            points: row.into_iter().map(|[p, mu]| [p - critical_perimeter(alpha), mu].into()).collect(),
+        })
+        .collect();
+    panels.push(Panel {
+        name: "distance",
+        caption: "μ against the distance from the transition, P₀ − 3.81 + |α|".into(),
+        svg: super::chart("μ against the distance from the transition", "ΔP_0 / ℓ_0", "μ / K_P", distance),
+    });
+    let found = shear.rows().filter_map(|(alpha, row)| {
+        let (first, last) = (row.first()?, row.last()?);
+        Some(format!(
+            "{:.3} at P₀ = {} and {:.3} at P₀ = {} for α = {alpha}",
+            first[1], first[0], last[1], last[0]
+        ))
+    });
+    Ok(Made {
+        settings: output.typed.clone(),
+        found: vec![format!("μ/K_P is {}.", found.collect::<Vec<_>>().join("; "))],
+        panels,
+    })
+}
