@@ -86,7 +86,7 @@ fn moduli_of_a_solid_are_near_those_of_the_honeycomb() {
 }
 
 #[test]
-fn a_point_is_that_of_simulate_and_α_can_be_negative() {
+fn a_point_is_that_of_simulate_and_chirality_can_be_negative() {
     let out = diagram("phase-diagram --P_0 4 4 1 --alpha -1 -1 1 --cells 36 --time 4 --dt 0.01 --quiet");
     let line = fs::read_to_string(out.file("points.jsonl")).unwrap().lines().nth(1).unwrap().to_owned();
     let seed = serde_json::from_str::<Value>(&line).unwrap()["seed"].as_u64().unwrap();
