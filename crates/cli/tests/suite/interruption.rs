@@ -11,9 +11,9 @@ use std::time::{Duration, Instant};
 /// A run of many minutes, with frames close together.
 const LINE: &str = "simulate --cells 100 --time 10000 --dt 0.01 --frames 100000 --alpha 1";
 
-fn start(out: &Path) -> Child {
+fn start(line: &str, out: &Path) -> Child {
     let mut command = command();
-    command.args(LINE.split_whitespace()).arg("--out").arg(out);
+    command.args(line.split_whitespace()).arg("--out").arg(out);
     command.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap()
 }
 
@@ -56,7 +56,7 @@ fn an_interrupted_search_leaves_nothing() {
 fn an_interrupted_run_leaves_earlier_results_alone_and_can_be_taken_up() {
     let out = Folder::new();
     out.write("positions.npy", "earlier");
-    let (code, stdout, stderr) = interrupt(start(out.path()), out.path());
+    let (code, stdout, stderr) = interrupt(start(LINE, out.path()), out.path());
     assert_eq!((code, stdout.as_str()), (Some(130), ""));
     assert!(stderr.contains("error: interrupted") && stderr.contains("--resume"), "{stderr}");
     assert_eq!(out.names(), [".voronudge-run", "positions.npy"]);
@@ -71,4 +71,23 @@ fn an_interrupted_run_leaves_earlier_results_alone_and_can_be_taken_up() {
     told(LINE, &["interrupted"]);
     told(&format!("{} --resume", LINE.replace("--alpha 1", "--alpha 0.5")), &["\"parameters\""]);
     assert_eq!(out.names(), [".voronudge-run", "positions.npy"]);
+}
+
+#[test]
+fn an_interrupted_diagram_can_be_taken_up_but_not_by_mistake() {
+    let line = "phase-diagram --cells 400 --time 1000 --P_0 4 4.2 3";
+    let out = Folder::new();
+    let (code, stdout, stderr) = interrupt(start(line, out.path()), out.path());
+    assert_eq!((code, stdout.as_str()), (Some(130), ""));
+    assert!(stderr.contains("interrupted after") && stderr.contains("--resume"), "{stderr}");
+    assert_eq!(out.names(), [".voronudge-run"]);
+    let told = |line: &str, facts: &[&str]| {
+        let words = line.split_whitespace().map(OsString::from);
+        let arguments: Vec<OsString> = words.chain(["--out".into(), out.path().into()]).collect();
+        crate::refusal::assert_told(&arguments, facts);
+    };
+    told(line, &["interrupted"]);
+    told("phase-diagram --cells 300 --time 1000 --P_0 4 4.2 3 --resume", &["\"cells\""]);
+    told(&format!("{line} --shard 1/2 --resume"), &["\"shard\""]);
+    assert_eq!(out.names(), [".voronudge-run"]);
 }

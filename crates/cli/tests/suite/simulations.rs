@@ -6,7 +6,7 @@ use ndarray::{Array2, Array3};
 use std::fs;
 use std::path::Path;
 
-const LINE: &str = "simulate --cells 60 --box 10 6 --time 2 --dt 0.01 --frames 4 --P_0 4 --quiet";
+const LINE: &str = "simulate --cells 60 --box 10 6 --dt 0.01 --P_0 4 --quiet";
 
 /// Everything that a run leaves.
 pub const FILES: [&str; 8] = [
@@ -21,8 +21,12 @@ pub const FILES: [&str; 8] = [
 ];
 
 fn simulate(flags: &str) -> Folder {
+    simulate_for("--time 2 --frames 4", flags)
+}
+
+fn simulate_for(time: &str, flags: &str) -> Folder {
     let out = Folder::new();
-    succeed(&format!("{LINE} {flags}"), &[("--out", out.path())]);
+    succeed(&format!("{LINE} {time} {flags}"), &[("--out", out.path())]);
     out
 }
 
@@ -99,12 +103,12 @@ fn assert_described(report: &serde_json::Value) {
 
 #[test]
 fn reports_are_as_the_schema_says() {
-    for flags in [
-        "--alpha 1 --lyapunov",
-        "--method adaptive --frames 1 --effect drift=0.1,0",
-        "--self-propulsion 0.3 --rotational-diffusion 1 --diffusion 0.01",
+    for (time, flags) in [
+        ("--time 2 --frames 4", "--alpha 1 --lyapunov"),
+        ("--time 1 --frames 1", "--method adaptive --effect drift=0.1,0"),
+        ("--time 1 --frames 3", "--self-propulsion 0.3 --rotational-diffusion 1 --diffusion 0.01"),
     ] {
-        assert_described(&report(simulate(flags).path()));
+        assert_described(&report(simulate_for(time, flags).path()));
     }
     let out = Folder::new();
     succeed("simulate --start honeycomb --cells 64 --time 1 --frames 2", &[("--out", out.path())]);
@@ -113,7 +117,7 @@ fn reports_are_as_the_schema_says() {
 
 #[test]
 fn series_are_those_of_the_frames() {
-    let run = simulate("--alpha 2 --frames 8");
+    let run = simulate_for("--time 2 --frames 8", "--alpha 2");
     let positions: Array3<f64> = read(&run.file("positions.npy"));
     let velocities: Array3<f64> = read(&run.file("velocities.npy"));
     let course: Array2<f64> = read(&run.file("mean_square_velocity.npy"));
@@ -139,7 +143,7 @@ fn series_are_those_of_the_frames() {
 
 #[test]
 fn a_liquid_has_a_positive_lyapunov_exponent_and_noise_has_none() {
-    let liquid = report(simulate("--alpha 2 --time 6 --lyapunov").path());
+    let liquid = report(simulate_for("--time 6 --frames 4", "--alpha 2 --lyapunov").path());
     let error = number(&liquid, "/lyapunov/standard_error");
     assert!(number(&liquid, "/lyapunov/value") > 3.0 * error);
     crate::refusal::assert_arguments_refused(

@@ -9,6 +9,9 @@ use crate::map::{MAP_WIDTH, Map};
 use crate::numbers::{tick_labels, ticks};
 use crate::view::{FrameView, Units};
 
+/// Group of the colours of cells and bar.
+const PALE: &str = "<g opacity=\".62\">\n";
+
 /// Cells coloured by a number, with their measured velocities as arrows; a scale bar, a colour bar and an arrow of round length
 /// state the scales. Without `arrows` nothing moves.
 #[must_use]
@@ -22,7 +25,10 @@ pub fn configuration_map(
     let (Some(mut map), Some(colours)) = (Map::new(frame, &scalar.label), colours) else {
         return no_data(&scalar.label);
     };
+    // Pale, so that dark arrows are legible on all colours.
+    map.layer.raw(PALE);
     draw_cells(&mut map, frame, (scalar, &colours));
+    map.layer.raw("</g>\n");
     if let Some(scale) = arrows {
         let mut all = Arrows::default();
         for cell in &frame.cells {
@@ -30,10 +36,6 @@ pub fn configuration_map(
                 all.push_on(&map.view, cell.centre, velocity, scale);
             }
         }
-        // A light rim keeps dark arrows legible on dark cells.
-        map.layer.raw("<g opacity=\".75\" stroke=\"#fff\" stroke-width=\"2.6\">");
-        all.draw(&mut map.layer, "#fff");
-        map.layer.raw("</g>\n");
         all.draw(&mut map.layer, INK);
     }
     map.boundary(frame);
@@ -52,6 +54,8 @@ pub fn configuration_map(
         ticks: positions.into_iter().zip(labels).collect(),
         label: &scalar.label,
     };
+    legend.svg.raw(PALE);
     bar.draw(&mut legend.svg, &colours);
+    legend.svg.raw("</g>\n");
     legend.svg.finish()
 }

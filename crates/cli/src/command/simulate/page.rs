@@ -52,8 +52,8 @@ fn headline(report: &Report, units: &Units) -> String {
     let speed = format!("{} {}", significant(square.sqrt(), 3), units.velocity_text());
     match report.t1_rate {
         Some(rate) if rate > 0.0 => format!(
-            "The cells move at {speed} (root mean square) and each changes neighbours {} times per unit of time.",
-            significant(2.0 * rate, 2)
+            "The cells move at {speed} (root mean square), with {} T1 transitions per cell and unit of time.",
+            significant(rate, 2)
         ),
         _ => format!("The cells move at {speed} (root mean square) without changing neighbours."),
     }
