@@ -17,10 +17,12 @@ mod inferences;
 #[cfg(unix)]
 mod interruption;
 mod layouts;
+mod phase_diffusions;
 mod program;
 mod refusal;
 mod resumption;
 mod scratch;
+mod shape_imports;
 mod simulations;
 mod spectra;
 mod stdout;
