@@ -9,7 +9,7 @@ use crate::svg::PathData;
 use crate::view::{FrameView, Units};
 
 /// The most squares along an axis that a field is drawn with.
-const MOST_SQUARES: usize = 160;
+const MOST_SQUARES: usize = 200;
 
 /// A field on pixels.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -56,10 +56,10 @@ pub fn growth_matrix(points: &[GrowthPoint], curve: &[GrowthCurve], units: &Unit
     let zero = [[0.0, 0.0], [1.03 * end, 0.0]];
     chart.curve(&zero, &format!(r#"stroke="{INK}" stroke-width=".8" stroke-dasharray="3 3""#));
     let entries = [
-        ("D_∥∥", 0, 0, BLUE, Marker::Circle),
-        ("D_⊥⊥", 1, 1, GREEN, Marker::Square),
-        ("D_∥⊥", 0, 1, VERMILLION, Marker::Diamond),
-        ("D_⊥∥", 1, 0, GREY, Marker::Triangle),
+        ("D∥∥", 0, 0, BLUE, Marker::Circle),
+        ("D⊥⊥", 1, 1, GREEN, Marker::Square),
+        ("D∥⊥", 0, 1, VERMILLION, Marker::Diamond),
+        ("D⊥∥", 1, 0, GREY, Marker::Triangle),
     ];
     let mut key = Vec::new();
     for (name, row, column, colour, marker) in entries {

@@ -109,8 +109,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         phase_diffusion(&tracked.pattern, &request).map_err(|error| Failure::from(error).at(&place))?;
     match (request.fluctuations, found.residual_correlation) {
         (Fluctuations::Measurement, r) if r > CORRELATED => run.warn(format!(
-            "residuals of consecutive frames correlate by {r:.2}, so they are not errors of measurement: the standard errors are too \
-             small; try --fluctuations driving, --order fourth or fewer --wave-vectors"
+            "residuals of consecutive frames correlate by {r:.2}, so they are not independent errors of measurement: the standard errors are too \
+             small; try --fluctuations driving, --order fourth, fewer --wave-vectors, or frames of smaller displacements"
         )),
         (Fluctuations::Driving, r) if r < -CORRELATED => run.warn(format!(
             "residuals of consecutive frames correlate by {r:.2}, as errors of measurement make them: rates are overestimated; try \

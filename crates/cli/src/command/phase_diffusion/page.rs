@@ -18,13 +18,13 @@ const CURVE: usize = 60;
 const GUIDE: &[[&str; 2]] = &[
     [
         "The equation",
-        "∂_t u = D_∥ ∇(∇·u) + D_⊥ Δu + D_∥^× ε·∇(∇·u) + D_⊥^× ε·Δu, where u is the displacement of the pattern and ε the clockwise \
+        "∂_t u = D∥ ∇(∇·u) + D⊥ Δu + D∥ˣ ε·∇(∇·u) + D⊥ˣ ε·Δu, where u is the displacement of the pattern and ε the clockwise \
          quarter turn, ε_xy = 1.",
     ],
     [
         "The matrix D(q)",
         "A plane wave of the displacement obeys ∂_t u = −D(q) u. In components along the wave vector (∥) and a quarter turn ahead (⊥), \
-         D(q) = q² [[D_∥ + D_⊥, D_⊥^×], [−D_∥^× − D_⊥^×, D_⊥]].",
+         D(q) = q² [[D∥ + D⊥, D⊥ˣ], [−D∥ˣ − D⊥ˣ, D⊥]].",
     ],
     [
         "Cross diffusivities",
@@ -32,7 +32,7 @@ const GUIDE: &[[&str; 2]] = &[
     ],
     [
         "Moduli",
-        "D_∥ = B/ζ, D_⊥ = μ/ζ, D_⊥^× = Kᵒ/ζ and D_∥^× = −A/ζ, with the moduli as voronudge defines them and ζ = γ/ℓ₀².",
+        "D∥ = B/ζ, D⊥ = μ/ζ, D⊥ˣ = Kᵒ/ζ and D∥ˣ = −A/ζ, with the moduli as voronudge defines them and ζ = γ/ℓ₀².",
     ],
 ];
 
@@ -52,7 +52,7 @@ pub(super) fn page(
     let moduli = [
         ("B", &report.moduli.B),
         ("μ", &report.moduli.mu),
-        ("K^o", &report.moduli.K_o),
+        ("Kᵒ", &report.moduli.K_o),
         ("A", &report.moduli.A),
     ];
     let modulus_rows = moduli
@@ -101,10 +101,10 @@ pub(super) fn page(
         headline: &headline(report),
         summary: &summary,
         cards: vec![
-            card("D_∥", &d.D_parallel),
-            card("D_⊥", &d.D_perp),
-            card("D_∥^×", &d.D_parallel_cross),
-            card("D_⊥^×", &d.D_perp_cross),
+            card("D∥", &d.D_parallel),
+            card("D⊥", &d.D_perp),
+            card("D∥ˣ", &d.D_parallel_cross),
+            card("D⊥ˣ", &d.D_perp_cross),
         ],
         guide: GUIDE,
         sections: vec![
@@ -138,7 +138,7 @@ pub(super) fn page(
 
 fn named(report: &PhaseDiffusionReport) -> [(&'static str, &Diffusivity); 4] {
     let d = &report.diffusivities;
-    [("D_∥", &d.D_parallel), ("D_⊥", &d.D_perp), ("D_∥^×", &d.D_parallel_cross), ("D_⊥^×", &d.D_perp_cross)]
+    [("D∥", &d.D_parallel), ("D⊥", &d.D_perp), ("D∥ˣ", &d.D_parallel_cross), ("D⊥ˣ", &d.D_perp_cross)]
 }
 
 fn headline(report: &PhaseDiffusionReport) -> String {

@@ -1,0 +1,252 @@
+//! `import labels` and `import outlines`: true shapes beside Voronoi polygons.
+
+use crate::program::succeed;
+use crate::refusal::{assert_arguments_refused, assert_told};
+use crate::scratch::{Folder, npy, number, read, report};
+use ndarray::{Array2, Array3, Axis};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::fmt::Write as _;
+use std::fs;
+use std::io::Cursor;
+use std::path::Path;
+use tiff::encoder::{TiffEncoder, colortype};
+
+const COLUMNS: usize = 130;
+const ROWS: usize = 112;
+
+/// Asserts that a report is as a schema of the crate `report` says.
+pub fn assert_described(report: &Value, schema: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema").join(schema);
+    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> =
+        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+/// Centres of a shaken honeycomb of spacing 14, moved along x.
+fn centres(shift: f64) -> Vec<[f64; 2]> {
+    let place = |k: usize| {
+        let (column, row) = ((k % 10) as f64, (k / 10) as f64);
+        let shake = [(3.7 * k as f64).sin(), (5.3 * k as f64).cos()];
+        [14.0 * (column + 0.5 * (row % 2.0)) + 1.6 * shake[0] + shift, 12.1 * row + 1.6 * shake[1]]
+    };
+    (0..100).map(place).collect()
+}
+
+/// The Voronoi polygons of the centres as labels from 1, with lines of background between them.
+fn mask(centres: &[[f64; 2]], label: impl Fn(usize) -> u16) -> Array2<u16> {
+    Array2::from_shape_fn((ROWS, COLUMNS), |(row, column)| {
+        let r = [column as f64 + 0.5, row as f64 + 0.5];
+        let mut nearest = [(f64::INFINITY, 0); 2];
+        for (k, c) in centres.iter().enumerate() {
+            let distance = (r[0] - c[0]).hypot(r[1] - c[1]);
+            if distance < nearest[0].0 {
+                nearest = [(distance, k), nearest[0]];
+            } else if distance < nearest[1].0 {
+                nearest[1] = (distance, k);
+            }
+        }
+        if nearest[1].0 - nearest[0].0 < 1.0 { 0 } else { label(nearest[0].1) }
+    })
+}
+
+fn tiff_bytes(frames: &[Array2<u16>]) -> Vec<u8> {
+    let mut bytes = Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+    for frame in frames {
+        let pixels: Vec<u16> = frame.iter().copied().collect();
+        encoder.write_image::<colortype::Gray16>(COLUMNS as u32, ROWS as u32, &pixels).unwrap();
+    }
+    bytes.into_inner()
+}
+
+/// A mask that is a Voronoi diagram agrees with Voronoi polygons, but for the background and the pixels.
+#[test]
+fn a_voronoi_diagram_agrees_with_itself() {
+    let (source, data) = (Folder::new(), Folder::new());
+    let labels = mask(&centres(0.0), |k| k as u16 + 1);
+    source.write_array("labels.npy", &labels);
+    let flags = "--pixel-size 0.5 --length-unit um";
+    succeed(&format!("import labels {flags}"), &[("", &source.file("labels.npy")), ("--out", data.path())]);
+    let found = report(data.path());
+    assert_described(&found, "shapes.schema.json");
+    assert_eq!(
+        data.names(),
+        [
+            "cell_numbers.npy",
+            "dataset.toml",
+            "positions.npy",
+            "report.html",
+            "report.json",
+            "true_areas.npy",
+            "true_perimeters.npy"
+        ]
+    );
+    assert!(number(&found, "/all/precision") > 0.97 && number(&found, "/all/recall") > 0.97, "{found}");
+    // Centroids are not the points that the polygons are made of, and all cells are of nearly one size.
+    assert!(number(&found, "/all/area_correlation") > 0.8, "{found}");
+    // A line of background a pixel wide takes about a seventh of the area.
+    assert!((1.05..1.25).contains(&number(&found, "/all/area_ratio")), "{found}");
+    assert!((1.03..1.2).contains(&number(&found, "/all/perimeter_ratio")), "{found}");
+    assert!(number(&found, "/at_border") > 20.0 && number(&found, "/in_pieces") == 0.0);
+    // Pixels of half a micrometre, y as in the image.
+    let positions: Array3<f64> = read(&data.file("positions.npy"));
+    let numbers: Array2<i64> = read(&data.file("cell_numbers.npy"));
+    let place = centres(0.0)[numbers[[0, 44]] as usize - 1];
+    for axis in 0..2 {
+        assert!((positions[[0, 44, axis]] - 0.5 * place[axis]).abs() < 1.0);
+    }
+    let settings = fs::read_to_string(data.file("dataset.toml")).unwrap();
+    assert!(
+        settings.contains("y_axis = \"down\"") && settings.contains("length_unit = \"um\""),
+        "{settings}"
+    );
+}
+
+/// TIFF pages are frames; cells are followed by overlap though their labels change.
+#[test]
+fn cells_are_followed_over_the_pages_of_a_tiff() {
+    let source = Folder::new();
+    let frames = [
+        mask(&centres(0.0), |k| k as u16 + 1),
+        mask(&centres(1.5), |k| 500 - k as u16),
+        mask(&centres(3.0), |k| k as u16 + 1),
+    ];
+    let file = source.write("labels.tif", tiff_bytes(&frames));
+    let imported = |flags: &str| {
+        let data = Folder::new();
+        succeed(&format!("import labels {flags}"), &[("", &file), ("--out", data.path())]);
+        let positions: Array3<f64> = read(&data.file("positions.npy"));
+        (positions, report(data.path()))
+    };
+    let (followed, found) = imported("--link overlap");
+    assert_described(&found, "shapes.schema.json");
+    let cells = number(&found, "/frames/0/present") as usize;
+    assert!(followed.dim().1 < cells + 8, "{:?}", followed.dim());
+    let mut counted = 0;
+    for cell in followed.axis_iter(Axis(1)) {
+        let step = cell[[1, 0]] - cell[[0, 0]];
+        let inside =
+            cell[[0, 0]] > 15.0 && cell[[1, 0]] < 115.0 && cell[[0, 1]] > 15.0 && cell[[0, 1]] < 97.0;
+        if inside {
+            counted += 1;
+            assert!((step - 1.5).abs() < 0.4, "{step}");
+        }
+    }
+    assert!(counted > 30);
+    // The same labels mean other cells in the second frame, and the same again in the third.
+    let (same, _) = imported("--link labels");
+    let moved =
+        same.axis_iter(Axis(1)).filter(|cell| (cell[[2, 0]] - cell[[0, 0]] - 3.0).abs() < 0.5).count();
+    assert!(moved > 60, "{moved}");
+    let (separate, found) = imported("--border leave-out");
+    assert!(separate.dim().1 as f64 == number(&found, "/tracks") && separate.dim().1 > 150);
+    assert!(found["warnings"][0].as_str().unwrap().contains("--link"));
+}
+
+#[test]
+fn outlines_of_hexagons_are_measured() {
+    let (source, data) = (Folder::new(), Folder::new());
+    let mut table = String::from("cell,x,y\n");
+    let side = 2.0;
+    for k in 0..36 {
+        let (column, row) = ((k % 6) as f64, (k / 6) as f64);
+        let centre = [side * 3f64.sqrt() * (column + 0.5 * (row % 2.0)), 1.5 * side * row];
+        for corner in 0..6 {
+            let angle = (corner as f64 + 0.5) * std::f64::consts::FRAC_PI_3;
+            let _ = writeln!(
+                table,
+                "{k},{:.6},{:.6}",
+                centre[0] + side * angle.cos(),
+                centre[1] + side * angle.sin()
+            );
+        }
+    }
+    let file = source.write("outlines.csv", &table);
+    succeed("import outlines --y-axis up", &[("", &file), ("--out", data.path())]);
+    let found = report(data.path());
+    assert_described(&found, "shapes.schema.json");
+    assert_eq!((number(&found, "/all/precision"), number(&found, "/all/recall")), (1.0, 1.0));
+    assert!((number(&found, "/all/area_ratio") - 1.0).abs() < 1e-5);
+    assert!((number(&found, "/all/perimeter_ratio") - 1.0).abs() < 1e-5);
+    let areas: Array2<f64> = read(&data.file("true_areas.npy"));
+    assert!(areas.iter().all(|area| (area - 1.5 * 3f64.sqrt() * side * side).abs() < 1e-4));
+}
+
+#[track_caller]
+fn assert_labels_refused(name: &str, bytes: impl AsRef<[u8]>, facts: &[&str]) {
+    let source = Folder::new();
+    let file = source.write(name, bytes);
+    assert_arguments_refused([OsStr::new("import"), OsStr::new("labels"), file.as_os_str()], facts);
+}
+
+#[test]
+fn what_is_no_label_image_is_refused() {
+    let zeros = vec![0; 400 * 8];
+    assert_labels_refused(
+        "a.npy",
+        npy("<f8", "False", "(20, 20)", &zeros),
+        &["a.npy", "real numbers", "integers"],
+    );
+    assert_labels_refused("a.npy", npy("<i8", "False", "(20, 20)", &zeros), &["frame 0", "all background"]);
+    assert_labels_refused("a.npy", npy("<i8", "False", "(400,)", &zeros), &["shape (400,)", "(ny, nx)"]);
+    assert_labels_refused("x_seg.npy", npy("|O", "False", "()", &[0; 50]), &["pickled"]);
+    assert_labels_refused("a.png", b"\x89PNG\r\n\x1a\n", &["neither"]);
+    assert_labels_refused("a.npy", npy("<i8", "False", "(3000000, 3000000)", &zeros), &["truncated"]);
+    let mut negative = zeros.clone();
+    negative[8 * 45..8 * 46].copy_from_slice(&(-3_i64).to_le_bytes());
+    assert_labels_refused("a.npy", npy("<i8", "False", "(20, 20)", &negative), &["row 2, column 5", "-3"]);
+    let one: Vec<u8> = (0..400).flat_map(|_| 7_i64.to_le_bytes()).collect();
+    assert_labels_refused(
+        "a.npy",
+        npy("<i8", "False", "(20, 20)", &one),
+        &["frame 0 has 1 cells", "at least 3"],
+    );
+}
+
+#[test]
+fn a_damaged_tiff_is_refused() {
+    let whole = tiff_bytes(&[mask(&centres(0.0), |k| k as u16 + 1)]);
+    for length in [10, 200, whole.len() / 2, whole.len() - 1000] {
+        assert_labels_refused("a.tif", &whole[..length], &["a.tif", "not a whole TIFF image"]);
+    }
+    let mut bytes = Cursor::new(Vec::new());
+    let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
+    encoder.write_image::<colortype::RGB8>(4, 4, &[0; 48]).unwrap();
+    assert_labels_refused("a.tif", bytes.into_inner(), &["page 0", "colour"]);
+}
+
+#[test]
+fn impossible_options_and_places_are_refused() {
+    let source = Folder::new();
+    source.write_array("labels.npy", &mask(&centres(0.0), |k| k as u16 + 1));
+    let file = source.file("labels.npy");
+    for flags in [["--pixel-size", "0"], ["--frame-interval", "-1"], ["--gap", "-1"], ["--link", "magic"]] {
+        let words = ["import", "labels"].into_iter().map(OsStr::new).chain([file.as_os_str()]);
+        assert_arguments_refused(
+            words.chain(flags.iter().map(OsStr::new)),
+            &[flags[0].trim_start_matches('-').split('-').next().unwrap()],
+        );
+    }
+    let taken = source.write("taken", "a file");
+    let words = [
+        OsStr::new("import"),
+        OsStr::new("labels"),
+        file.as_os_str(),
+        OsStr::new("--out"),
+        taken.as_os_str(),
+    ];
+    assert_told(&words, &["taken", "is a file"]);
+    let flat = source.write("flat.csv", "cell,x,y\n1,0,0\n1,1,1\n1,2,2\n");
+    assert_arguments_refused(
+        [OsStr::new("import"), OsStr::new("outlines"), flat.as_os_str()],
+        &["cell 1", "3 corners"],
+    );
+    let nameless = source.write("nameless.csv", "a,x,y\n1,0,0\n");
+    assert_arguments_refused(
+        [OsStr::new("import"), OsStr::new("outlines"), nameless.as_os_str()],
+        &["line 1", "track"],
+    );
+}
