@@ -157,7 +157,8 @@ impl Error {
             ),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
-            Self::Driving { .. } | Self::Turnover { .. } => None,
+            Self::Driving { .. } => None,
+            Self::Turnover { .. } => Some("give rates per cell and time, and lengths in the unit of the box"),
             Self::ShearedChannel { .. } => Some("give a box with a right angle"),
             Self::Extinct { .. } => Some("lower the rate of extrusion, or raise that of proliferation"),
             Self::TooManyCells { .. } => {
