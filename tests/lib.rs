@@ -1,6 +1,8 @@
 //! A chiral liquid whose truth is known, measured with noise: what the claims in `claims/` and the studies of the
 //! project are made with.
 
+pub mod channel;
+
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;

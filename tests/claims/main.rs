@@ -2,6 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
 
+mod channel;
 mod mean_field;
 mod moduli;
 mod recovery;

@@ -1,5 +1,6 @@
 //! Statistical studies: longer than tests, with tables for the documentation.
 
+mod channel;
 mod discover;
 mod nada;
 mod noise;
@@ -60,6 +61,8 @@ enum Study {
     Velocities,
     /// Largest Lyapunov exponents across the transition.
     Lyapunov,
+    /// Chirality from the flow in a channel against the one put in.
+    Channel,
 }
 
 /// Runs a study.
@@ -72,6 +75,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Velocities => phases::velocities(),
         Study::Lyapunov => phases::lyapunov(arguments.seeds),
+        Study::Channel => channel::run(arguments.seeds),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

@@ -7,6 +7,7 @@ mod bad_discoveries;
 mod bad_fits;
 mod bad_folders;
 mod bad_places;
+mod channels;
 mod discoveries;
 mod evaluations;
 mod flow_imports;

@@ -102,6 +102,10 @@ const LARGEST_RUN: f64 = 1e13;
 impl ChannelArguments {
     pub fn resolve(&self, parameters: &ParameterArguments, seed: u64) -> Result<ChannelRequest, Failure> {
         let ht1080 = self.preset == Some(Preset::Ht1080);
+        if self.samples == 0 {
+            return Err(Failure::new("--samples is 0, but averages need at least one")
+                .with_hint("leave --samples out for 32; errors need 16"));
+        }
         let cell_size = positive("--cell-size", self.cell_size.unwrap_or(if ht1080 { 25.0 } else { 1.0 }))?;
         let defaults = if ht1080 {
             // P₀ and A₀ follow the cell size.

@@ -1,0 +1,162 @@
+//! `channel` and `estimate-chirality`: files, schemas, the chirality put in, and what is refused.
+
+use crate::program::{succeed, voronudge};
+use crate::refusal::assert_arguments_refused;
+use crate::scratch::{Folder, number, read, report};
+use ndarray::{Array1, Array2, Array3};
+use serde_json::Value;
+use std::ffi::OsStr;
+use std::fs;
+use std::path::Path;
+
+/// Asserts that a report is as the schema says.
+fn assert_described(report: &Value, name: &str) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../report/schema/{name}.schema.json"));
+    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> =
+        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+const SHORT: &str = "channel --preset ht1080 --width 200 --length 150 --relaxation 2 --time 20 --dt 0.02 --samples 16 --seed 1 --quiet";
+
+#[test]
+fn a_channel_is_a_data_set_with_profiles_and_lives() {
+    let out = Folder::new();
+    succeed(&format!("{SHORT} --frames 3"), &[("--out", out.path())]);
+    let names = [
+        "birth_disturbance.npy",
+        "birth_rate.npy",
+        "dataset.toml",
+        "density.npy",
+        "extrusion_rate.npy",
+        "face.npy",
+        "flux_rate.npy",
+        "folded_profile.csv",
+        "lineage.csv",
+        "net_rate.npy",
+        "positions.npy",
+        "report.html",
+        "report.json",
+        "velocities.npy",
+        "velocity_x.npy",
+        "velocity_y.npy",
+        "x.npy",
+    ];
+    assert_eq!(out.names(), names);
+    let report = report(out.path());
+    assert_described(&report, "channel");
+    for count in ["first", "last", "fewest", "most"] {
+        assert_eq!(number(&report, &format!("/cells/{count}")), 48.0);
+    }
+    assert_eq!(number(&report, "/cells/births"), number(&report, "/cells/extrusions"));
+    // 48 cells per 30 000 µm².
+    let x: Array1<f64> = read(&out.file("x.npy"));
+    let density: Array2<f64> = read(&out.file("density.npy"));
+    assert_eq!((x.len(), density.dim()), (32, (32, 2)));
+    let total: f64 = density.column(0).iter().sum::<f64>() * (200.0 / 32.0) * 150.0;
+    assert!((total - 48.0).abs() < 1e-6, "{total}");
+    // One column for each cell that is seen, NaN when it is not there; the lives tell where it is.
+    let positions: Array3<f64> = read(&out.file("positions.npy"));
+    let lineage = fs::read_to_string(out.file("lineage.csv")).unwrap();
+    let mut lines = lineage.lines();
+    assert_eq!(lines.next(), Some("life,origin,mother,born,extruded,cell,first_frame,last_frame"));
+    let rows: Vec<Vec<&str>> = lines.map(|line| line.split(',').collect()).collect();
+    assert_eq!(rows.len() as f64, 48.0 + number(&report, "/cells/births"));
+    for frame in 0..3 {
+        let present = (0..positions.dim().1).filter(|&cell| !positions[(frame, cell, 0)].is_nan()).count();
+        assert_eq!(present, 48);
+    }
+    for row in rows.iter().filter(|row| !row[5].is_empty()) {
+        let [cell, first, last] = [5, 6, 7].map(|column| row[column].parse::<usize>().unwrap());
+        for frame in 0..3 {
+            assert_eq!(positions[(frame, cell, 0)].is_nan(), !(first..=last).contains(&frame), "{row:?}");
+        }
+    }
+    // `infer` reads it.
+    let fit = Folder::new();
+    succeed(
+        "infer --frames 2 --fix K_A=0 --position-noise 0.01 --velocity-noise 0.1% --quiet",
+        &[("", out.path()), ("--out", fit.path())],
+    );
+    let alpha = number(&crate::scratch::report(fit.path()), "/parameters/alpha/value");
+    assert!((alpha - 2.9).abs() < 0.1, "{alpha}");
+    // So does `estimate-chirality`, with the same line as in the report.
+    let estimate = Folder::new();
+    succeed("estimate-chirality --quiet", &[("", out.path()), ("--out", estimate.path())]);
+    let found = crate::scratch::report(estimate.path());
+    assert_described(&found, "estimate-chirality");
+    let [a, b] = [number(&found, "/slope"), number(&report, "/chirality_from_flow/slope")];
+    assert!((a - b).abs() < 1e-9, "{a} {b}");
+}
+
+#[test]
+fn results_do_not_depend_on_threads() {
+    let profile = |threads: &str| {
+        let out = Folder::new();
+        succeed(
+            &format!(
+                "channel --width 6 --length 6 --relaxation 0 --time 2 --alpha 1 --threads {threads} --quiet"
+            ),
+            &[("--out", out.path())],
+        );
+        fs::read_to_string(out.file("folded_profile.csv")).unwrap()
+    };
+    assert_eq!(profile("1"), profile("2"));
+}
+
+#[test]
+fn a_population_that_explodes_keeps_what_there_was_and_answers_no() {
+    let out = Folder::new();
+    let line = "channel --width 6 --length 6 --proliferation-rate 1 --proliferation-length 3 --relaxation 0 --time 20 \
+                --most-cells 60 --samples 64 --frames 20 --quiet --out";
+    let words = line.split_whitespace().map(OsStr::new).chain([out.path().as_os_str()]);
+    let outcome = voronudge(words);
+    assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
+    let report = report(out.path());
+    assert_described(&report, "channel");
+    assert!(report["ended"].as_str().unwrap().contains("limit 60"));
+    assert!(number(&report, "/samples") < 64.0 && number(&report, "/cells/most") <= 60.0);
+    assert!(out.names().contains(&"positions.npy".to_owned()));
+}
+
+#[test]
+fn a_table_gives_a_chirality() {
+    let (folder, out) = (Folder::new(), Folder::new());
+    let table = folder.write("profile.csv", "x,v_x,v_y\n10,-2,-3\n20,1,1.5\n30,4,6.1\n40,2,2.9\n");
+    let arguments = [("", table.as_path()), ("--out", out.path())];
+    succeed("estimate-chirality --quiet", &arguments);
+    let without = report(out.path());
+    assert!((number(&without, "/slope") - 1.5).abs() < 0.05 && without["alpha"].is_null());
+    assert!((number(&without, "/alpha_rule_of_thumb") - 3.0).abs() < 0.1);
+    // The paper: 0.46 < v_y/(α v_x) < 0.61 for 3 < P₀/ℓ₀ < 5.
+    assert!((number(&without, "/alpha_range/0") / number(&without, "/slope") - 1.0 / 0.604).abs() < 0.01);
+    assert!((number(&without, "/alpha_range/1") / number(&without, "/slope") - 1.0 / 0.456).abs() < 0.01);
+    succeed("estimate-chirality --shape-index 4 --intercept free --to 35 --quiet", &arguments);
+    let with = report(out.path());
+    assert_described(&with, "estimate-chirality");
+    assert_eq!(number(&with, "/points"), 3.0);
+    // 3 − 4/(2√(2√3)) = 1.925.
+    assert!((number(&with, "/alpha") / number(&with, "/slope") - 1.9254).abs() < 1e-3);
+}
+
+#[test]
+fn senseless_channels_are_refused() {
+    for (arguments, part) in [
+        ("channel --extrusion-rate -1", "rate of extrusion is -1"),
+        ("channel --proliferation-length 0", "decay length of proliferation is 0"),
+        ("channel --width -5", "--width is -5"),
+        ("channel --cell-size 0", "--cell-size is 0"),
+        ("channel --width 0.5 --length 1", "holds 1 cells"),
+        ("channel --bins 7", "7 bins"),
+        ("channel --K_P 0", "K_P is 0"),
+        ("channel --samples 0", "--samples is 0"),
+        ("channel --injection division --division-distance -1", "distance of a daughter"),
+        ("channel --time -1", "duration is -1"),
+        ("estimate-chirality nowhere.csv", "nowhere.csv"),
+        ("estimate-chirality nowhere.csv --from -1", "--from is -1"),
+    ] {
+        assert_arguments_refused(arguments.split(' '), &[part]);
+    }
+}
