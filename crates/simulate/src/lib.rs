@@ -43,6 +43,7 @@ mod schedule;
 mod simulation;
 mod spatial_order;
 mod time_step;
+mod walls;
 
 pub use driving::{Driving, Shear};
 pub use error::Error;
@@ -53,3 +54,4 @@ pub use schedule::{Completion, Event, Frame, RunState, Schedule, Summary, resume
 pub use simulation::{Simulation, State};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
+pub use walls::Walls;
