@@ -13,7 +13,7 @@ use voronudge_model::Model;
 /// `−∂E/∂r_i` with the energy of the cells between the walls.
 ///
 /// The paper (SI, "Details of numerical simulations") has the mirror images, but leaves the vertices on the wall out of the equation of
-/// motion. On a honeycomb the wall then takes up the whole prestress torque: see `docs/corrections.md`, "Torque-free walls".
+/// motion. At a row of regular hexagons the wall then takes up the whole prestress torque: see `docs/corrections.md`, "Torque-free walls".
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Walls {

@@ -1,6 +1,7 @@
 //! Statistical studies: longer than tests, with tables for the documentation.
 
 mod discover;
+mod flows;
 mod nada;
 mod noise;
 mod phases;
@@ -60,6 +61,10 @@ enum Study {
     Velocities,
     /// Largest Lyapunov exponents across the transition.
     Lyapunov,
+    /// Edge currents at torque-free walls.
+    Edge,
+    /// Flow across a density gradient.
+    Pinching,
 }
 
 /// Runs a study.
@@ -72,6 +77,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Velocities => phases::velocities(),
         Study::Lyapunov => phases::lyapunov(arguments.seeds),
+        Study::Edge => flows::edge(arguments.seeds),
+        Study::Pinching => flows::pinching(arguments.seeds),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

@@ -17,6 +17,7 @@ mod inferences;
 #[cfg(unix)]
 mod interruption;
 mod layouts;
+mod moduli;
 mod program;
 mod refusal;
 mod resumption;
@@ -24,5 +25,6 @@ mod scratch;
 mod simulations;
 mod spectra;
 mod stdout;
+mod surroundings;
 mod uncertainties;
 mod undeclared;

@@ -3,6 +3,7 @@
 mod recorder;
 mod report;
 mod start;
+mod surroundings;
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, environment};
@@ -16,6 +17,7 @@ use report::{Report, Request, Spread};
 pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+use surroundings::SurroundingsArguments;
 use voronudge_geometry::{Domain, FieldOfView, Tessellation, areas};
 use voronudge_io::{Boundary, DataSet, YAxis};
 use voronudge_model::{Model, stress};
@@ -53,6 +55,8 @@ pub(crate) struct Arguments {
     /// Translational diffusion: noise of the positions.
     #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true)]
     diffusion: f64,
+    #[command(flatten)]
+    surroundings: SurroundingsArguments,
     /// Go on with the run that was interrupted in --out.
     #[arg(long)]
     resume: bool,
@@ -104,8 +108,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         },
         parameters: (&parameters).into(),
         effects,
+        walls: arguments.surroundings.walls(),
         driving: Driving {
-            shear: None,
+            shear: arguments.surroundings.shear()?,
             speed: arguments.self_propulsion,
             rotational_diffusion: arguments.rotational_diffusion,
             diffusion: arguments.diffusion,
@@ -115,6 +120,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut simulation = Simulation::new(start.positions, domain, model)?
         .with_method(request.method)?
         .with_driving(request.driving)?;
+    if let Some(walls) = request.walls {
+        simulation = simulation.with_walls(walls)?;
+    }
     let schedule = Schedule { time: request.time, time_step: request.dt, frames: request.frames };
     let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
     if request.method == Method::RungeKutta4 && request.dt > advised {
@@ -169,9 +177,16 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     debug_assert_eq!(summary.completion, Completion::Finished);
     let seconds = begun.elapsed().as_secs_f64();
     let mut results = recorder.results()?;
-    settings(&simulation, lengths, &schedule, start.length_unit, start.time_unit)
-        .save_settings(&mut results)?;
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
+    let mut settings = settings(&simulation, lengths, &schedule, start.length_unit, start.time_unit);
+    surroundings::describe(&mut settings, &request, start.cell_box, schedule.frame_interval());
+    settings.save_settings(&mut results)?;
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
+    if simulation.state().crossings > 0 {
+        run.warn(format!(
+            "cells crossed a wall {} times and were put in front of it",
+            simulation.state().crossings
+        ));
+    }
     let hexatic = hexatic(tessellation, positions);
     let report = Report {
         run: run.record(None),
@@ -181,7 +196,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         t1_rate: summary.transition_rate,
         hexatic_order: hexatic.order(),
         hexatic_mean_modulus: hexatic.mean_modulus,
-        stress: stress(tessellation, positions, simulation.model(), |_| true),
+        stress: stress(tessellation, positions, simulation.model(), |cell| cell < cells),
         area: Spread::of(&areas(tessellation, positions)),
         shape_index: Spread::of(&shape_indices(tessellation, positions)),
         steps: summary.steps,
@@ -224,6 +239,8 @@ fn settings(
         flow: None,
         labels: None,
         boundary: Boundary::Periodic { lengths },
+        box_offset: None,
+        walls: None,
         frame_interval: schedule.frame_interval(),
         length_unit,
         time_unit,
