@@ -5,10 +5,32 @@ use ndarray::{Array, Array3, ArrayD, ArrayView2, Axis, Ix2, RemoveAxis};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_io::{Boundary, DataSet, YAxis};
 
-/// The boundary as the geometry knows it.
+/// The boundary as the geometry knows it, for what does not know of boxes that change.
 pub(crate) fn domain(data: &DataSet) -> Result<Domain, Failure> {
+    if data.box_offset.is_some() {
+        return Err(Failure::new(
+            "the periodic box of these data is sheared, which this command does not know of",
+        )
+        .with_hint("evaluate, spectrum and simulate --start do"));
+    }
+    domain_at(data, 0)
+}
+
+/// The boundary of a frame.
+pub(crate) fn domain_at(data: &DataSet, frame: usize) -> Result<Domain, Failure> {
+    if let Some(walls) = data.walls {
+        return Err(Failure::new(format!(
+            "the cells of these data are between walls (\"{walls}\"), which this command does not know of"
+        ))
+        .with_hint(
+            "only simulate does; without the line walls the box would be periodic, which is another tissue",
+        ));
+    }
     Ok(match data.boundary {
-        Boundary::Periodic { lengths } => Domain::Periodic(PeriodicBox::new(lengths)?),
+        Boundary::Periodic { lengths } => {
+            let offset = data.box_offset.as_ref().and_then(|offsets| offsets.get(frame));
+            Domain::Periodic(PeriodicBox::sheared(lengths, offset.copied().unwrap_or(0.0))?)
+        }
         Boundary::Open => Domain::Open,
     })
 }

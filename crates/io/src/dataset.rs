@@ -28,6 +28,10 @@ pub struct DataSet {
     pub labels: Option<Array2<i64>>,
     /// What is around the cells.
     pub boundary: Boundary,
+    /// Under simple shear of a periodic box, displacement along x of the image one box above, y up, in each frame.
+    pub box_offset: Option<Vec<f64>>,
+    /// Walls at sides of the box, where it does not repeat.
+    pub walls: Option<WalledSides>,
     /// Time between frames in `time_unit`.
     pub frame_interval: f64,
     /// Name of the unit of length.
@@ -56,6 +60,15 @@ pub enum Boundary {
     },
     /// A field of view whose surroundings are not seen.
     Open,
+}
+
+/// Sides of a periodic box that are walls.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WalledSides {
+    /// The left and the right one: a channel.
+    X,
+    /// All four.
+    Both,
 }
 
 /// The direction of the stored y coordinate.
@@ -102,6 +115,13 @@ impl DataSet {
     pub(crate) fn check_settings(&self) -> Result<(), SettingFault> {
         self.boundary.check()?;
         validate::positive("frame_interval", self.frame_interval)?;
+        let name = if self.walls.is_some() { "walls" } else { "box_offset" };
+        if self.boundary == Boundary::Open && (self.box_offset.is_some() || self.walls.is_some()) {
+            return Err(SettingFault::NeedsBox { key: name });
+        }
+        if let Some(&value) = self.box_offset.iter().flatten().find(|offset| !offset.is_finite()) {
+            return Err(SettingFault::NotFinite { key: "box_offset", value });
+        }
         for (key, noise) in [("position_noise", self.position_noise), ("velocity_noise", self.velocity_noise)]
         {
             if let Some(noise) = noise {
@@ -123,7 +143,37 @@ impl Boundary {
     }
 }
 
+impl WalledSides {
+    pub(crate) fn parse(text: &str) -> Result<Self, SettingFault> {
+        match text {
+            "x" => Ok(Self::X),
+            "both" => Ok(Self::Both),
+            _ => Err(SettingFault::Unknown {
+                key: "walls",
+                found: text.to_owned(),
+                expected: "\"x\" or \"both\"",
+            }),
+        }
+    }
+}
+
+impl fmt::Display for WalledSides {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(match self {
+            Self::X => "x",
+            Self::Both => "both",
+        })
+    }
+}
+
 impl YAxis {
+    /// Turns offsets of the box of a file into those of y up or back: a mirror reverses the shear.
+    pub(crate) fn turn_offsets(self, offsets: &mut [f64]) {
+        if self == Self::Down {
+            offsets.iter_mut().for_each(|offset| *offset = 0.0 - *offset);
+        }
+    }
+
     /// Turns stored vectors into y-up vectors or back; the two directions are the same.
     ///
     /// The last axis holds x, y.

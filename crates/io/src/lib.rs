@@ -54,7 +54,7 @@ mod validate;
 mod velocity;
 
 pub use array::{read_integers, read_reals, read_vectors};
-pub use dataset::{Boundary, DataSet, YAxis};
+pub use dataset::{Boundary, DataSet, WalledSides, YAxis};
 pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::dataset::{Boundary, DataSet, WalledSides, YAxis};
 use crate::error::{Error, SettingFault, TomlFault};
 use crate::noise::Noise;
 use crate::validate;
@@ -13,6 +13,8 @@ use crate::validate;
 const KEYS: &[&str] = &[
     "boundary",
     "box",
+    "box_offset",
+    "walls",
     "frame_interval",
     "length_unit",
     "time_unit",
@@ -28,6 +30,8 @@ pub(crate) struct Settings {
     path: PathBuf,
     boundary: Option<(BoundaryName, u64)>,
     lengths: Option<([f64; 2], u64)>,
+    pub(crate) box_offset: Option<Vec<f64>>,
+    pub(crate) walls: Option<WalledSides>,
     pub(crate) frame_interval: Option<f64>,
     pub(crate) length_unit: Option<String>,
     pub(crate) time_unit: Option<String>,
@@ -69,6 +73,11 @@ impl Settings {
         match key {
             "boundary" => self.boundary = Some((boundary(value)?, line)),
             "box" => self.lengths = Some((lengths(value)?, line)),
+            "box_offset" => self.box_offset = Some(offsets(value)?),
+            "walls" => {
+                let walls = WalledSides::parse(text("walls", value)?);
+                self.walls = Some(walls.map_err(TomlFault::Setting)?);
+            }
             "frame_interval" => self.frame_interval = Some(interval(value)?),
             "length_unit" => self.length_unit = Some(text("length_unit", value)?.to_owned()),
             "time_unit" => self.time_unit = Some(text("time_unit", value)?.to_owned()),
@@ -123,6 +132,15 @@ pub(crate) fn render(data: &DataSet) -> String {
             lines.push(format!("box = [{}, {}]", number(x), number(y)));
         }
     }
+    if let Some(offsets) = &data.box_offset {
+        let mut offsets = offsets.clone();
+        data.y_axis.turn_offsets(&mut offsets);
+        let offsets: Vec<String> = offsets.into_iter().map(number).collect();
+        lines.push(format!("box_offset = [{}]", offsets.join(", ")));
+    }
+    if let Some(walls) = data.walls {
+        lines.push(format!("walls = \"{walls}\""));
+    }
     lines.push(format!("frame_interval = {}", number(data.frame_interval)));
     lines.push(format!("length_unit = {}", quoted(&data.length_unit)));
     lines.push(format!("time_unit = {}", quoted(&data.time_unit)));
@@ -167,6 +185,21 @@ fn lengths(value: &DeValue<'_>) -> Result<[f64; 2], TomlFault> {
     let checked = Boundary::Periodic { lengths }.check();
     checked.map_err(TomlFault::Setting)?;
     Ok(lengths)
+}
+
+fn offsets(value: &DeValue<'_>) -> Result<Vec<f64>, TomlFault> {
+    let wrong = |found| TomlFault::WrongType {
+        key: "box_offset",
+        found,
+        expected: "a number for each frame, such as [0.0, 0.5]",
+    };
+    let DeValue::Array(items) = value else {
+        return Err(wrong(kind(value)));
+    };
+    items
+        .iter()
+        .map(|item| number(item.get_ref()).ok_or_else(|| wrong("an array with other things")))
+        .collect()
 }
 
 fn interval(value: &DeValue<'_>) -> Result<f64, TomlFault> {

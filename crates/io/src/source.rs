@@ -95,6 +95,8 @@ impl Source {
             flow: None,
             labels: None,
             boundary,
+            box_offset: settings.box_offset,
+            walls: settings.walls,
             frame_interval: self.frame_interval.or(settings.frame_interval).unwrap_or(1.0),
             length_unit: first_text(&self.length_unit, settings.length_unit, "length"),
             time_unit: first_text(&self.time_unit, settings.time_unit, "time"),
@@ -125,6 +127,7 @@ impl Source {
         })?;
 
         data.y_axis.turn(&mut data.positions);
+        data.y_axis.turn_offsets(data.box_offset.as_deref_mut().unwrap_or_default());
         if let Some(velocities) = &mut data.velocities {
             data.y_axis.turn(velocities);
         }

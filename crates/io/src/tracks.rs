@@ -146,6 +146,8 @@ pub(crate) fn describe(
         flow: None,
         labels: None,
         boundary: boundary.unwrap_or(Boundary::Open),
+        box_offset: None,
+        walls: None,
         frame_interval: frame_interval.unwrap_or(1.0),
         length_unit: length_unit.unwrap_or("length").to_owned(),
         time_unit: time_unit.unwrap_or(default_time).to_owned(),

@@ -28,6 +28,9 @@ impl DataSet {
         check_vectors(names.positions, &self.positions)?;
         check_distinct(names.positions, self)?;
         check_extent(names.positions, self)?;
+        if let Some(found) = self.box_offset.as_ref().map(Vec::len).filter(|found| *found != self.frames()) {
+            return Err(Error::Setting(SettingFault::OffsetCount { found, frames: self.frames() }));
+        }
         let mismatch = |path: &Path, found: &[usize]| Error::Shape {
             path: path.to_path_buf(),
             fault: ShapeFault::Mismatch { found: found.to_vec(), positions: self.positions.shape().to_vec() },

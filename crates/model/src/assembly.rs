@@ -92,6 +92,46 @@ impl<S: Scalar> HalfEdgeForces<S> {
         }
     }
 
+    /// Velocities of the first cells of a tessellation, as many as `velocities` has, of which the others are mirror images: as many
+    /// again behind one mirror, or three times as many behind two mirrors and behind both. Component `k` of a vector is reversed by
+    /// mirror `k` of `mirrors`.
+    ///
+    /// Only the cells themselves act. Images move with them, so a force on an image is a mirrored force on its cell; by that,
+    /// vertices on a mirror move along it. The model has shape terms only.
+    pub fn evaluate_with_images(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<S>],
+        model: &Model<S>,
+        mirrors: &[usize],
+        velocities: &mut [Vector<S>],
+    ) {
+        let cells = velocities.len();
+        let zero = Vector::new(S::constant(0.0), S::constant(0.0));
+        self.forces.resize(tessellation.half_edges(), zero);
+        let mut polygon = CellPolygon::default();
+        for (cell, v) in velocities.iter_mut().enumerate() {
+            polygon.fill(tessellation, positions, cell);
+            let own = &mut self.forces[tessellation.ring(cell)];
+            *v = VertexForces::of(&model.terms, polygon.shape()).on_ring(&polygon, own);
+        }
+        for image in 0..tessellation.len() {
+            let (block, cell) = (image / cells, image % cells);
+            for h in tessellation.ring(image) {
+                if (tessellation.neighbours(image)[h - tessellation.half_edge_start(image)] as usize) < cells
+                {
+                    let mut force = self.forces[tessellation.twin(h)];
+                    for (bit, &axis) in mirrors.iter().enumerate() {
+                        if block >> bit & 1 == 1 {
+                            force[axis] = -force[axis];
+                        }
+                    }
+                    velocities[cell] += force;
+                }
+            }
+        }
+    }
+
     /// The force of the half-edge's cell on the neighbour it points at.
     #[inline]
     pub fn on_neighbour(&self, half_edge: usize) -> Vector<S> {

@@ -109,7 +109,8 @@ impl<S: Scalar> Model<S> {
         }
     }
 
-    pub(crate) fn has_ring_terms(&self) -> bool {
+    /// Whether a term is more than a function of areas and perimeters.
+    pub fn has_ring_terms(&self) -> bool {
         self.terms.iter().any(|w| w.term.is_ring_term())
     }
 }

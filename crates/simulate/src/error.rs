@@ -55,6 +55,12 @@ pub enum Error {
         /// The value given.
         value: f64,
     },
+    /// Walls around cells that cannot have any.
+    #[error("there can be no walls: {reason}")]
+    Walls {
+        /// Why.
+        reason: &'static str,
+    },
     /// A strain that is not small.
     #[error("the strain is {strain}, but it must be positive and at most {limit}")]
     Strain {
@@ -176,6 +182,9 @@ impl Error {
             ),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
+            Self::Walls { .. } => {
+                Some("give a rectangular box and a model without such effects, or no walls")
+            }
             Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
             Self::Driving { .. } | Self::Rate { .. } | Self::Turnover { .. } | Self::Interrupted => None,
             Self::Driving { .. } => None,

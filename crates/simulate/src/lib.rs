@@ -47,6 +47,7 @@ mod simulation;
 mod spatial_order;
 mod time_step;
 mod turnover;
+mod walls;
 
 pub use channel::Channel;
 pub use channel_run::{ChannelRun, ChannelSchedule, run_channel};
@@ -60,3 +61,4 @@ pub use simulation::{Simulation, State};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
 pub use turnover::{EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Proliferation, Turnover};
+pub use walls::Walls;

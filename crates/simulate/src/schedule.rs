@@ -218,7 +218,8 @@ pub fn resume(
         steps: state.steps,
         mean_square_velocity: state.mean_square_velocity.mean(),
         transition_rate: (samples > 0).then(|| {
-            state.transitions as f64 / (samples as f64 * time_step * simulation.positions().len() as f64)
+            // Between walls images make the same transitions.
+            state.transitions as f64 / (samples as f64 * time_step * simulation.tessellation().len() as f64)
         }),
         mean_square_velocity_error: state.mean_square_velocity.standard_error(),
         completion,

@@ -2,6 +2,7 @@
 
 mod channel;
 mod discover;
+mod flows;
 mod nada;
 mod noise;
 mod phases;
@@ -63,6 +64,10 @@ enum Study {
     Lyapunov,
     /// Chirality from the flow in a channel against the one put in.
     Channel,
+    /// Edge currents at torque-free walls.
+    Edge,
+    /// Flow across a density gradient.
+    Pinching,
 }
 
 /// Runs a study.
@@ -76,6 +81,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Velocities => phases::velocities(),
         Study::Lyapunov => phases::lyapunov(arguments.seeds),
         Study::Channel => channel::run(arguments.seeds),
+        Study::Edge => flows::edge(arguments.seeds),
+        Study::Pinching => flows::pinching(arguments.seeds),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

@@ -6,7 +6,7 @@ use crate::arguments::{
 };
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain, labels, to_array, to_scalars};
+use crate::snapshot::{Snapshot, domain_at, labels, to_array, to_scalars};
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};
 use serde::Serialize;
@@ -122,10 +122,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
     let base = Model::chiral_voronoi(&parameters);
-    let domain = domain(&data)?;
     let mut fields = Vec::new();
     for (index, &frame) in frames.iter().enumerate() {
         let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
+        let domain = domain_at(&data, frame)?;
         let snapshot = Snapshot::new(&data, frame);
         let tessellation = Tessellation::new(&snapshot.positions, domain)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;

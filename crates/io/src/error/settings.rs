@@ -48,6 +48,28 @@ pub enum SettingFault {
         /// The boundary given, in words.
         boundary: &'static str,
     },
+    /// A setting that only a periodic box can have.
+    #[error("{key} is given but the boundary is open")]
+    NeedsBox {
+        /// Name of the setting.
+        key: &'static str,
+    },
+    /// A number that must be finite.
+    #[error("{key} has the entry {value}, it must be finite")]
+    NotFinite {
+        /// Name of the setting.
+        key: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// Offsets of the box for another number of frames.
+    #[error("box_offset has {found} entries, but there are {frames} frames")]
+    OffsetCount {
+        /// Number of entries.
+        found: usize,
+        /// Number of frames.
+        frames: usize,
+    },
     /// No file to import a flow field from.
     #[error("no flow field is given")]
     MissingFlow,
@@ -69,6 +91,11 @@ impl SettingFault {
             Self::MissingBox => "add box = [Lx, Ly] to dataset.toml, or use --box LX LY",
             Self::BoxNotPeriodic { .. } => {
                 "set boundary = \"periodic\", or remove box if the field of view is open"
+            }
+            Self::NeedsBox { .. } => "remove it, or set boundary = \"periodic\" and a box",
+            Self::NotFinite { .. } => "give a length for each frame",
+            Self::OffsetCount { .. } => {
+                "give one number for each frame: how far the image one box above is displaced along x"
             }
             Self::MissingFlow => "name the files of the flow, one for each frame",
             Self::MissingPositions => "give a data set folder or --positions FILE",

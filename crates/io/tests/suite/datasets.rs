@@ -48,6 +48,8 @@ fn full_data() -> DataSet {
         flow: Some(flow()),
         labels: Some(Array2::from_shape_fn((3, 4), |(f, c)| f as i64 - 2 * c as i64)),
         boundary: Boundary::Periodic { lengths: [10.0, 0.1 + 0.2 + 20.0] },
+        box_offset: None,
+        walls: None,
         frame_interval: 1.0 / 3.0,
         length_unit: "\"µm\" \\ '".into(),
         time_unit: "line\nbreak".into(),

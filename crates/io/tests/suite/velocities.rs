@@ -12,6 +12,8 @@ fn movie(positions: Array3<f64>, boundary: Boundary) -> DataSet {
         flow: None,
         labels: None,
         boundary,
+        box_offset: None,
+        walls: None,
         frame_interval: 0.5,
         length_unit: "length".into(),
         time_unit: "time".into(),

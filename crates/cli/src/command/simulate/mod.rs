@@ -7,6 +7,7 @@ mod page;
 mod recorder;
 mod report;
 mod start;
+mod surroundings;
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, environment};
@@ -24,6 +25,11 @@ use std::time::{Duration, Instant};
 use voronudge_geometry::{Domain, FieldOfView, Tessellation};
 use voronudge_model::Model;
 use voronudge_report::Units;
+use surroundings::SurroundingsArguments;
+use voronudge_geometry::{Domain, FieldOfView, Tessellation, areas};
+use voronudge_io::{Boundary, DataSet, YAxis};
+use voronudge_model::{Model, stress};
+use voronudge_simulate::measure::{hexatic, shape_indices};
 use voronudge_simulate::{
     Completion, Driving, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
 };
@@ -60,6 +66,8 @@ pub(crate) struct Arguments {
     /// Also measure the largest Lyapunov exponent, over a further run as long as this one: about four times its cost.
     #[arg(long)]
     lyapunov: bool,
+    #[command(flatten)]
+    surroundings: SurroundingsArguments,
     /// Go on with the run that was interrupted in --out.
     #[arg(long)]
     resume: bool,
@@ -111,8 +119,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         },
         parameters: (&parameters).into(),
         effects,
+        walls: arguments.surroundings.walls(),
         driving: Driving {
-            shear: None,
+            shear: arguments.surroundings.shear()?,
             speed: arguments.self_propulsion,
             rotational_diffusion: arguments.rotational_diffusion,
             diffusion: arguments.diffusion,
@@ -123,6 +132,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut simulation = Simulation::new(start.positions, domain, model)?
         .with_method(request.method)?
         .with_driving(request.driving)?;
+    if let Some(walls) = request.walls {
+        simulation = simulation.with_walls(walls)?;
+    }
     let schedule = Schedule { time: request.time, time_step: request.dt, frames: request.frames };
     let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
     if request.method == Method::RungeKutta4 && request.dt > advised {
@@ -186,6 +198,31 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             Some(chaos::exponent(&simulation, &request, &mut progress)?)
         }
         Measure::NoChaos => None,
+    let mut results = recorder.results()?;
+    let mut settings = settings(&simulation, lengths, &schedule, start.length_unit, start.time_unit);
+    surroundings::describe(&mut settings, &request, start.cell_box, schedule.frame_interval());
+    settings.save_settings(&mut results)?;
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
+    if simulation.state().crossings > 0 {
+        run.warn(format!(
+            "cells crossed a wall {} times and were put in front of it",
+            simulation.state().crossings
+        ));
+    }
+    let hexatic = hexatic(tessellation, positions);
+    let report = Report {
+        run: run.record(None),
+        request,
+        mean_square_velocity: summary.mean_square_velocity,
+        mean_square_velocity_error: summary.mean_square_velocity_error,
+        t1_rate: summary.transition_rate,
+        hexatic_order: hexatic.order(),
+        hexatic_mean_modulus: hexatic.mean_modulus,
+        stress: stress(tessellation, positions, simulation.model(), |cell| cell < cells),
+        area: Spread::of(&areas(tessellation, positions)),
+        shape_index: Spread::of(&shape_indices(tessellation, positions)),
+        steps: summary.steps,
+        steps_per_second: (summary.steps - steps_before) as f64 / seconds,
     };
     progress.finish();
     let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
@@ -199,4 +236,34 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
 fn interrupted(time: f64) -> Failure {
     Failure::interrupted_at(format!("interrupted at time {time:.6}; the run so far is kept"))
         .with_hint("the same command with --resume goes on from there")
+}
+
+/// The data set without its frames, which are written as the run goes on.
+fn settings(
+    simulation: &Simulation,
+    lengths: [f64; 2],
+    schedule: &Schedule,
+    length_unit: String,
+    time_unit: String,
+) -> DataSet {
+    let cells = simulation.positions().len();
+    let positions =
+        Array3::from_shape_fn((1, cells, 2), |(_, cell, axis)| simulation.positions()[cell][axis]);
+    DataSet {
+        positions,
+        velocities: None,
+        flow: None,
+        labels: None,
+        boundary: Boundary::Periodic { lengths },
+        box_offset: None,
+        walls: None,
+        frame_interval: schedule.frame_interval(),
+        length_unit,
+        time_unit,
+        y_axis: YAxis::Up,
+        unwrapped: true,
+        position_noise: None,
+        velocity_noise: None,
+        inputs: Vec::new(),
+    }
 }

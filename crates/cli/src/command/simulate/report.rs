@@ -6,7 +6,7 @@ use crate::command::evaluate::ModelParameters;
 use serde::Serialize;
 use voronudge_report::histogram::Histogram;
 use voronudge_report::infer_report::RunRecord;
-use voronudge_simulate::{Driving, Method};
+use voronudge_simulate::{Driving, Method, Walls};
 
 /// Everything that the positions of a run depend on.
 #[derive(Serialize)]
@@ -22,6 +22,8 @@ pub(super) struct Request {
     pub parameters: ModelParameters,
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     pub effects: ChosenEffects,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub walls: Option<Walls>,
     pub driving: Driving,
 }
 

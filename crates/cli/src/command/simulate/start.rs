@@ -1,7 +1,7 @@
 //! Where the cells begin.
 
 use crate::failure::Failure;
-use crate::snapshot::{Snapshot, domain};
+use crate::snapshot::{Snapshot, domain_at};
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -125,13 +125,13 @@ fn from_data(arguments: &StartArguments, frames: usize, folder: PathBuf) -> Resu
             .with_hint("leave --cells and --box out"));
     }
     let data = Source { folder: Some(folder), ..Source::default() }.load()?;
-    let Domain::Periodic(cell_box) = domain(&data)? else {
+    let frame = data.frames() - 1;
+    let Domain::Periodic(cell_box) = domain_at(&data, frame)? else {
         return Err(Failure::new("an open field of view cannot be simulated")
             .at(place)
             .with_hint("give a data set with a periodic box"));
     };
     check_size(&format!("{} cells", data.cells()), data.cells(), frames)?;
-    let frame = data.frames() - 1;
     let snapshot = Snapshot::new(&data, frame);
     if snapshot.positions.len() != data.cells() {
         return Err(Failure::new(format!("cells are absent in its last frame, {frame}"))

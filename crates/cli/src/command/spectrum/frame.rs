@@ -5,7 +5,7 @@ use super::search::compute;
 use crate::arguments::{ChosenEffects, environment};
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::snapshot::{Snapshot, domain, labels};
+use crate::snapshot::{Snapshot, domain_at, labels};
 use std::sync::Arc;
 use voronudge_geometry::{FieldOfView, Tessellation};
 use voronudge_io::DataSet;
@@ -40,7 +40,7 @@ impl Solved {
         request: &ModeRequest,
         progress: &mut Progress,
     ) -> Result<Self, Failure> {
-        let domain = domain(data)?;
+        let domain = domain_at(data, frame)?;
         let snapshot = Snapshot::new(data, frame);
         let positions = &snapshot.positions;
         let tessellation =

@@ -54,6 +54,8 @@ impl Lattice {
             flow: None,
             labels: None,
             boundary: Boundary::Periodic { lengths: self.honeycomb.lengths() },
+            box_offset: None,
+            walls: None,
             frame_interval: 1.0,
             length_unit: "ℓ₀".into(),
             time_unit: "τ".into(),

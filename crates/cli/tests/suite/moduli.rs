@@ -1,0 +1,75 @@
+//! `moduli`: the honeycomb against the theory, its files, and what is refused.
+
+use crate::program::{succeed, voronudge};
+use crate::refusal::assert_arguments_refused;
+use crate::scratch::{Folder, number, report};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+
+fn assert_described(report: &Value) {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/moduli.schema.json");
+    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
+    let schema = jsonschema::validator_for(&schema).unwrap();
+    let faults: Vec<String> =
+        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{faults:?}");
+}
+
+#[test]
+fn a_honeycomb_is_as_the_theory_says() {
+    let out = Folder::new();
+    let line = "moduli --start honeycomb --cells 30 --box 60 51.96152422706632 --K_A 0.01 --P_0 30 --alpha -0.4";
+    succeed(line, &[("--out", out.path())]);
+    assert_eq!(out.names(), ["report.html", "report.json"]);
+    let report = report(out.path());
+    assert_described(&report);
+    for k in 0..4 {
+        let at = |name: &str| number(&report, &format!("/moduli/{k}/{name}"));
+        assert!((at("value") - at("mean_field")).abs() < 1e-5, "{k}: {} {}", at("value"), at("mean_field"));
+    }
+    for place in ["0/0", "0/1", "1/0", "1/1"] {
+        let [found, expected] =
+            ["prestress", "mean_field_prestress"].map(|name| number(&report, &format!("/{name}/{place}")));
+        assert!((found - expected).abs() < 1e-9, "{place}: {found} {expected}");
+    }
+}
+
+#[test]
+fn replicas_are_averaged_and_viscosities_measured() {
+    let out = Folder::new();
+    let line = "moduli --cells 16 --P_0 4 --alpha 1 --replicas 2 --time 2 --transient 0.5 --average 2 --viscosity --period 4 --rate 0.05 \
+                --periods 1 --dt 0.02 --quiet";
+    let text = succeed(line, &[("--out", out.path())]).stdout;
+    assert_eq!(text, "");
+    let report = report(out.path());
+    assert_described(&report);
+    assert_eq!(report["replicas"][1]["motion"], "flowing");
+    let viscosity = &report["viscosities"][1];
+    assert_eq!(viscosity["name"], "odd_shear_viscosity");
+    let each: Vec<f64> = viscosity["replicas"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    assert!((viscosity["value"].as_f64().unwrap() - 0.5 * (each[0] + each[1])).abs() < 1e-12);
+}
+
+#[test]
+fn results_do_not_depend_on_threads() {
+    let of = |threads: &str| {
+        let out = Folder::new();
+        let line = format!("moduli --cells 20 --P_0 3.2 --alpha 0.5 --time 100 --threads {threads} --quiet");
+        succeed(&line, &[("--out", out.path())]);
+        report(out.path())["moduli"].clone()
+    };
+    assert_eq!(of("1"), of("3"));
+}
+
+#[test]
+fn impossible_requests_are_refused() {
+    let refuse = |line: &str, fact: &str| assert_arguments_refused(line.split_whitespace(), &[fact]);
+    refuse("moduli --strain 0", "strain is 0");
+    refuse("moduli --replicas 0", "--replicas is 0");
+    refuse("moduli --start honeycomb --replicas 3", "--replicas 3");
+    refuse("moduli --time -1", "--time is -1");
+    refuse("moduli --average nan", "--average is NaN");
+    refuse("moduli --cells 16 --time 0.1 --average 0.1 --transient 0 --viscosity --rate -1", "shear rate is -1");
+    assert_eq!(voronudge(["moduli"]).code, Some(2));
+}

@@ -1,0 +1,156 @@
+//! One step of a simulation.
+
+use super::{Simulation, Stage};
+use crate::Error;
+use crate::method::{THIRD_ORDER, change_of_step, largest_error};
+use rayon::prelude::*;
+use voronudge_geometry::Vector;
+
+/// Largest displacement in one step, in mean spacings.
+const LIMIT: f64 = 1.0;
+
+/// The part of a step below which the adaptive method goes on whatever the error: at a T1 the velocity may jump.
+const LEAST_PART: f64 = 1e-6;
+
+/// Cells per task in sums over fields.
+const CHUNK: usize = 4096;
+
+impl Simulation {
+    pub(super) fn runge_kutta(&mut self, stage: &mut Stage, time_step: f64) -> Result<(), Error> {
+        let Stage { positions, headings, slopes: [slope, sum, _] } = stage;
+        sum.clone_from(&self.velocities);
+        slope.clone_from(&self.velocities);
+        headings.clone_from(&self.now.headings);
+        for (reach, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
+            self.displace(positions, slope, reach * time_step, time_step)?;
+            self.evaluate(positions, headings, self.now.time + reach * time_step, slope)?;
+            add_scaled(sum, slope, weight);
+        }
+        self.displace(positions, sum, time_step / 6.0, time_step)?;
+        self.arrive(positions, headings, slope, time_step)
+    }
+
+    /// Goes over to new positions after noise, and to their velocities.
+    fn arrive(
+        &mut self,
+        positions: &mut Vec<Vector<f64>>,
+        headings: &mut Vec<f64>,
+        velocities: &mut Vec<Vector<f64>>,
+        time_step: f64,
+    ) -> Result<(), Error> {
+        headings.clone_from(&self.now.headings);
+        if self.driving.shakes() {
+            self.driving.shake(positions, headings, self.now.steps, time_step);
+            self.check_displacements(positions, time_step)?;
+        }
+        self.evaluate(positions, headings, self.now.time + time_step, velocities)?;
+        std::mem::swap(&mut self.now.positions, positions);
+        std::mem::swap(&mut self.now.headings, headings);
+        std::mem::swap(&mut self.velocities, velocities);
+        if let Some(mirrored) = &self.mirrored {
+            self.now.crossings += mirrored.bring_back(&mut self.now.positions, &mut self.velocities);
+        }
+        self.now.time += time_step;
+        self.now.steps += 1;
+        Ok(())
+    }
+
+    /// A step in parts of the embedded method of orders three and two.
+    pub(super) fn in_parts(
+        &mut self,
+        stage: &mut Stage,
+        time_step: f64,
+        tolerance: f64,
+    ) -> Result<(), Error> {
+        let end = self.now.time + time_step;
+        let least = LEAST_PART * time_step;
+        let allowed = tolerance * self.spacing;
+        loop {
+            let left = end - self.now.time;
+            if left <= 1e-12 * time_step {
+                self.now.time = end;
+                return Ok(());
+            }
+            let wanted = self.now.part.unwrap_or(0.1 * time_step).max(least);
+            let part = if wanted >= left { left } else { wanted };
+            let share = match self.bogacki_shampine(stage, part) {
+                Ok(error) => error / allowed,
+                Err(Error::StepTooLarge { .. }) if part > least => f64::INFINITY,
+                Err(error) => return Err(error),
+            };
+            if share > 1.0 && part > least {
+                self.now.part = Some(part * change_of_step(share).min(0.9));
+                continue;
+            }
+            let Stage { positions, headings, slopes: [_, _, last] } = &mut *stage;
+            self.arrive(positions, headings, last, part)?;
+            // The last part of a step is short for no reason of its own.
+            self.now.part =
+                Some((part * change_of_step(share)).max(if part < wanted { wanted } else { 0.0 }));
+        }
+    }
+
+    /// Puts the result of third order into the stage and returns the largest estimated error of a displacement.
+    fn bogacki_shampine(&mut self, stage: &mut Stage, time_step: f64) -> Result<f64, Error> {
+        let Stage { positions, headings, slopes: [second, third, fourth] } = stage;
+        let now = self.now.time;
+        headings.clone_from(&self.now.headings);
+        self.displace(positions, &self.velocities, 0.5 * time_step, time_step)?;
+        self.evaluate(positions, headings, now + 0.5 * time_step, second)?;
+        self.displace(positions, second, 0.75 * time_step, time_step)?;
+        self.evaluate(positions, headings, now + 0.75 * time_step, third)?;
+        positions.clone_from(&self.now.positions);
+        for (slope, weight) in [&self.velocities, &*second, &*third].into_iter().zip(THIRD_ORDER) {
+            add_scaled(positions, slope, weight * time_step);
+        }
+        self.check_displacements(positions, time_step)?;
+        self.evaluate(positions, headings, now + time_step, fourth)?;
+        Ok(largest_error([&self.velocities, second, third, fourth], time_step))
+    }
+
+    /// `to = r + h v`, within the limit of displacements.
+    fn displace(
+        &self,
+        to: &mut Vec<Vector<f64>>,
+        v: &[Vector<f64>],
+        h: f64,
+        time_step: f64,
+    ) -> Result<(), Error> {
+        to.resize(v.len(), Vector::zeros());
+        let from = self.now.positions.par_chunks(CHUNK);
+        let limit = (LIMIT * self.spacing).powi(2);
+        let near = to.par_chunks_mut(CHUNK).zip(from).zip(v.par_chunks(CHUNK)).map(|((to, from), v)| {
+            let mut near = true;
+            for ((to, from), v) in to.iter_mut().zip(from).zip(v) {
+                let d = v * h;
+                *to = from + d;
+                near &= d.norm_squared() < limit;
+            }
+            near
+        });
+        // No short cut: every chunk has to be displaced.
+        if near.reduce(|| true, |a, b| a & b) { Ok(()) } else { self.check_displacements(to, time_step) }
+    }
+
+    fn check_displacements(&self, positions: &[Vector<f64>], time_step: f64) -> Result<(), Error> {
+        let streaming = self.driving.shear.map_or(0.0, |shear| shear.rate(self.now.time)) * time_step;
+        let moved = |(to, from): (&Vector<f64>, &Vector<f64>)| {
+            (to - from - Vector::new(streaming * from.y, 0.0)).norm()
+        };
+        let limit = LIMIT * self.spacing;
+        let pairs = positions.par_iter().zip(&self.now.positions).with_min_len(CHUNK);
+        match pairs.map(moved).position_first(|distance| distance.is_nan() || distance > limit) {
+            None => Ok(()),
+            Some(cell) => {
+                let distance = moved((&positions[cell], &self.now.positions[cell]));
+                Err(Error::StepTooLarge { time: self.now.time, cell, distance, limit, time_step })
+            }
+        }
+    }
+}
+
+/// `sum += weight v`
+fn add_scaled(sum: &mut [Vector<f64>], v: &[Vector<f64>], weight: f64) {
+    let rows = sum.par_iter_mut().zip(v).with_min_len(CHUNK);
+    rows.for_each(|(sum, v)| *sum += v * weight);
+}

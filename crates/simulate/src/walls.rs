@@ -1,0 +1,155 @@
+//! Torque-free walls: mirror images of the cells.
+
+use crate::{Driving, Error};
+use serde::{Deserialize, Serialize};
+use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge_model::Model;
+
+/// Straight walls without friction or torque at the sides of the box.
+///
+/// Cells beside a wall meet the mirror images of themselves and of their neighbours, so the wall is made of sides of cells. Vertices on
+/// it slide along it: forces along the wall are handed to the cells as anywhere, forces across it the wall takes up. A box that is twice as large in each walled direction, filled by
+/// the cells and their images, is periodic, so that everything else is as in a periodic box. Without chirality velocities are
+/// `−∂E/∂r_i` with the energy of the cells between the walls.
+///
+/// The paper (SI, "Details of numerical simulations") has the mirror images, but leaves the vertices on the wall out of the equation of
+/// motion. At a row of regular hexagons the wall then takes up the whole prestress torque: see `docs/corrections.md`, "Torque-free walls".
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Walls {
+    /// At `x = 0` and `x = L_x`; periodic in y: a channel.
+    X,
+    /// On all four sides.
+    Both,
+}
+
+impl Walls {
+    /// The axes across which there are walls.
+    pub(crate) fn mirrors(self) -> &'static [usize] {
+        match self {
+            Self::X => &[0],
+            Self::Both => &[0, 1],
+        }
+    }
+
+    /// Images of a cell, itself included.
+    pub fn images(self) -> usize {
+        1 << self.mirrors().len()
+    }
+
+    /// The periodic box of cells and images.
+    fn doubled(self, mut lengths: [f64; 2]) -> Result<PeriodicBox, voronudge_geometry::Error> {
+        self.mirrors().iter().for_each(|&axis| lengths[axis] *= 2.0);
+        PeriodicBox::new(lengths)
+    }
+}
+
+/// Cells between walls, with their mirror images.
+#[derive(Debug, Clone)]
+pub(crate) struct Mirrored {
+    pub walls: Walls,
+    lengths: [f64; 2],
+    /// All images, the cells themselves first.
+    pub positions: Vec<Vector<f64>>,
+    /// Sign of each component of each cell: negative where the cell was found behind a wall.
+    signs: Vec<[f64; 2]>,
+}
+
+impl Mirrored {
+    pub fn new(walls: Walls, cell_box: &PeriodicBox) -> Self {
+        Self { walls, lengths: cell_box.lengths(), positions: Vec::new(), signs: Vec::new() }
+    }
+
+    pub fn domain(&self) -> Result<Domain, voronudge_geometry::Error> {
+        self.walls.doubled(self.lengths).map(Domain::Periodic)
+    }
+
+    /// Places cells and images. A cell behind a wall is put where its image is, in front of it.
+    pub fn place(&mut self, positions: &[Vector<f64>]) {
+        self.signs.clear();
+        self.positions.clear();
+        for r in positions {
+            let mut placed = *r;
+            let mut sign = [1.0; 2];
+            for &axis in self.walls.mirrors() {
+                (placed[axis], sign[axis]) = fold(r[axis], self.lengths[axis]);
+            }
+            self.positions.push(placed);
+            self.signs.push(sign);
+        }
+        for &axis in self.walls.mirrors() {
+            for index in 0..self.positions.len() {
+                let mut image = self.positions[index];
+                image[axis] = -image[axis];
+                self.positions.push(image);
+            }
+        }
+    }
+
+    /// Velocities of the cells in front of the walls as those of the cells where they were given.
+    pub fn unfold(&self, velocities: &mut [Vector<f64>]) {
+        for (v, sign) in velocities.iter_mut().zip(&self.signs) {
+            *v = Vector::new(v.x * sign[0], v.y * sign[1]);
+        }
+    }
+
+    /// Puts cells that were placed last in front of the walls, and their velocities; returns how many were behind one.
+    pub fn bring_back(&self, positions: &mut [Vector<f64>], velocities: &mut [Vector<f64>]) -> u64 {
+        self.unfold(velocities);
+        positions.copy_from_slice(&self.positions[..positions.len()]);
+        self.signs.iter().filter(|sign| sign[0] < 0.0 || sign[1] < 0.0).count() as u64
+    }
+
+    /// The walls that a cell touches, as it meets its own image there: directions along them, anticlockwise around the box.
+    fn tangents<'a>(
+        &'a self,
+        tessellation: &'a Tessellation,
+        cell: usize,
+    ) -> impl Iterator<Item = Vector<f64>> + 'a {
+        let (cells, r) = (self.signs.len(), self.positions[cell]);
+        self.walls.mirrors().iter().enumerate().filter_map(move |(bit, &axis)| {
+            let own_image = cell + (cells << bit);
+            if !tessellation.neighbours(cell).contains(&(own_image as u32)) {
+                return None;
+            }
+            let far = if r[axis] > 0.5 * self.lengths[axis] { 1.0 } else { -1.0 };
+            // Up at the right wall, to the left at the upper one.
+            Some(if axis == 0 { Vector::new(0.0, far) } else { Vector::new(-far, 0.0) })
+        })
+    }
+
+    /// Mean tangential velocity of the cells that touch a wall.
+    pub fn edge_velocity(&self, tessellation: &Tessellation, velocities: &[Vector<f64>]) -> Option<f64> {
+        let (mut sum, mut count) = (0.0, 0.0);
+        for (cell, v) in velocities.iter().enumerate() {
+            for tangent in self.tangents(tessellation, cell) {
+                sum += v.dot(&tangent);
+                count += 1.0;
+            }
+        }
+        (count > 0.0).then(|| sum / count)
+    }
+}
+
+/// The place of a coordinate between mirrors at 0 and `length`, and the sign of its direction there.
+fn fold(x: f64, length: f64) -> (f64, f64) {
+    if (0.0..=length).contains(&x) {
+        return (x, 1.0);
+    }
+    let within = x.rem_euclid(2.0 * length);
+    if within <= length { (within, 1.0) } else { (2.0 * length - within, -1.0) }
+}
+
+/// Walls need forces that are defined by the shapes of cells alone.
+pub(crate) fn check(model: &Model<f64>, cell_box: &PeriodicBox, driving: &Driving) -> Result<(), Error> {
+    let reason = if cell_box.offset() != 0.0 || driving.shear.is_some() {
+        "the box is sheared"
+    } else if driving.speed != 0.0 {
+        "cells propel themselves"
+    } else if model.has_ring_terms() || !model.responses.is_empty() {
+        "the model has effects that are not functions of the cells' shapes"
+    } else {
+        return Ok(());
+    };
+    Err(Error::Walls { reason })
+}

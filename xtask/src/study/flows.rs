@@ -1,0 +1,144 @@
+//! Macroscopic chiral flows: along torque-free walls, and across a density gradient.
+
+use super::seeds::on_one_core_each;
+use crate::Outcome;
+use voronudge_geometry::{Domain, PeriodicBox};
+use voronudge_model::{Model, Parameters};
+use voronudge_simulate::measure::{BlockAverage, PinchedFlow, Pinching, pinched_flow};
+use voronudge_simulate::{RandomPlacement, Simulation, Walls, generator, honeycomb, recommended_time_step};
+use voronudge_theory::MeanField;
+
+type Failure = Box<dyn std::error::Error>;
+
+const CELLS: usize = 100;
+/// Area elasticity of all tissues here, with K_P = 1.
+const AREA_ELASTICITY: f64 = 0.1;
+
+fn parameters(preferred_perimeter: f64, chirality: f64) -> Parameters<f64> {
+    Parameters { area_elasticity: AREA_ELASTICITY, preferred_perimeter, chirality, ..Parameters::default() }
+}
+
+fn theory(p: &Parameters<f64>, area_elasticity: f64) -> Result<MeanField, Failure> {
+    Ok(MeanField::new(voronudge_theory::Parameters {
+        area_elasticity,
+        perimeter_elasticity: p.perimeter_elasticity,
+        preferred_perimeter: p.preferred_perimeter,
+        chirality: p.chirality,
+    })?)
+}
+
+fn random(p: &Parameters<f64>, seed: u64) -> Result<Simulation, Failure> {
+    let cell_box = PeriodicBox::new([(CELLS as f64).sqrt(); 2])?;
+    let positions = RandomPlacement::new(CELLS, cell_box).draw(&mut generator(seed))?;
+    Ok(Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(p))?)
+}
+
+/// Mean and standard error of the mean.
+fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (count * (count - 1.0))).sqrt())
+}
+
+/// Preferred perimeters and chiralities of the study of edge currents.
+const EDGE_PERIMETERS: [f64; 5] = [3.0, 3.3, 3.5, 3.7, 3.9];
+const EDGE_CHIRALITIES: [f64; 7] = [0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5];
+/// Time before edge currents are averaged, and the time averaged over.
+const TRANSIENT: f64 = 60.0;
+const AVERAGE: f64 = 40.0;
+const EDGE_STEP: f64 = 0.02;
+
+/// v_E of cells between four walls, seed by seed, beside both estimates of the threshold.
+pub fn edge(seeds: u64) -> Outcome {
+    println!("| P_0 | α | printed threshold | row slips at | v_E | of the last tenth |");
+    println!("|---|---|---|---|---|---|");
+    let points: Vec<(f64, f64)> =
+        EDGE_PERIMETERS.into_iter().flat_map(|p| EDGE_CHIRALITIES.map(|a| (p, a))).collect();
+    let rows = on_one_core_each(points.len() as u64, |k| {
+        let (perimeter, chirality) = points[k as usize];
+        let at = parameters(perimeter, chirality);
+        let (mut all, mut late) = (Vec::new(), Vec::new());
+        for seed in 1..=seeds {
+            let mut simulation = random(&at, seed)?.with_walls(Walls::Both)?;
+            let steps = |time: f64| (time / EDGE_STEP).round() as usize;
+            let (mut average, mut last) = (BlockAverage::default(), BlockAverage::default());
+            for step in 0..steps(TRANSIENT + AVERAGE) {
+                simulation.step(EDGE_STEP)?;
+                let Some(v) = simulation.edge_velocity().filter(|_| step >= steps(TRANSIENT)) else {
+                    continue;
+                };
+                average.add(v);
+                if step >= steps(TRANSIENT + 0.9 * AVERAGE) {
+                    last.add(v);
+                }
+            }
+            all.push(average.mean().unwrap_or(f64::NAN));
+            late.push(last.mean().unwrap_or(f64::NAN));
+        }
+        let ((value, error), (late, _)) = (mean(&all), mean(&late));
+        let theory = theory(&at, AREA_ELASTICITY)?;
+        let (printed, slip) = (theory.edge_current_threshold(), theory.edge_slip_chirality());
+        Ok(format!(
+            "| {perimeter} | {chirality} | {printed:.3} | {slip:.3} | {value:.5} ± {error:.5} | {late:.1e} |"
+        ))
+    })?;
+    rows.iter().for_each(|row| println!("{row}"));
+    Ok(())
+}
+
+/// Preferred perimeters and chiralities of the study of pinching.
+const PINCH_PERIMETERS: [f64; 4] = [3.0, 3.4, 3.7, 4.0];
+const PINCH_CHIRALITIES: [f64; 4] = [0.4, 0.8, 1.6, 3.2];
+/// Time before the first snapshot, and between snapshots.
+const SETTLE: f64 = 30.0;
+const APART: f64 = 5.0;
+const SNAPSHOTS: usize = 4;
+
+/// v_y/v_x of a pinched honeycomb and of pinched snapshots of simulations, beside the formula.
+pub fn pinching(seeds: u64) -> Outcome {
+    println!("| P_0 | α | α/(3 − aP_0) | with K_A | honeycomb | simulated | ratio | ⟨v²⟩ |");
+    println!("|---|---|---|---|---|---|---|---|");
+    let points: Vec<(f64, f64)> =
+        PINCH_PERIMETERS.into_iter().flat_map(|p| PINCH_CHIRALITIES.map(|a| (p, a))).collect();
+    let rows = on_one_core_each(points.len() as u64, |k| {
+        let (perimeter, chirality) = points[k as usize];
+        let at = parameters(perimeter, chirality);
+        let (lattice, cell_box) = honeycomb(CELLS)?;
+        let lattice = Simulation::new(lattice, Domain::Periodic(cell_box), Model::chiral_voronoi(&at))?;
+        let perfect = pinched(&lattice)?.ratio();
+        let (mut ratios, mut squares) = (Vec::new(), Vec::new());
+        for seed in 1..=seeds {
+            let mut simulation = random(&at, seed)?;
+            let time_step = recommended_time_step(&at, 1.0);
+            let mut sum = [0.0; 2];
+            for snapshot in 0..SNAPSHOTS {
+                let time = if snapshot == 0 { SETTLE } else { APART };
+                for _ in 0..(time / time_step).round() as usize {
+                    simulation.step(time_step)?;
+                }
+                let flow = pinched(&simulation)?;
+                sum = [sum[0] + flow.along, sum[1] + flow.across];
+                squares.push(voronudge_simulate::measure::mean_square_velocity(simulation.velocities()));
+            }
+            ratios.push(sum[1] / sum[0]);
+        }
+        let (value, error) = mean(&ratios);
+        let expected = |k_a: f64| -> Result<f64, Failure> {
+            Ok(theory(&at, k_a)?.transverse_flow().unwrap_or(f64::NAN))
+        };
+        let (printed, with_area) = (expected(0.0)?, expected(AREA_ELASTICITY)?);
+        Ok(format!(
+            "| {perimeter} | {chirality} | {printed:.3} | {with_area:.3} | {perfect:.3} | {value:.3} ± {error:.3} | {:.3} | {:.1e} |",
+            value / with_area,
+            mean(&squares).0
+        ))
+    })?;
+    rows.iter().for_each(|row| println!("{row}"));
+    Ok(())
+}
+
+fn pinched(simulation: &Simulation) -> Result<PinchedFlow, Failure> {
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
+    Ok(pinched_flow(tessellation, positions, simulation.model(), &Pinching::default())?)
+}
