@@ -1,10 +1,6 @@
 //! The state of a simulation.
 
 mod replacement;
-
-use crate::method::{THIRD_ORDER, change_of_step, largest_error};
-use crate::{Driving, Error, Method, Shear};
-use rayon::prelude::*;
 mod step;
 
 use crate::walls::{self, Mirrored};

@@ -18,9 +18,9 @@ mod inferences;
 #[cfg(unix)]
 mod interruption;
 mod layouts;
+mod moduli;
 mod phase_diagrams;
 mod phase_diffusions;
-mod moduli;
 mod program;
 mod refusal;
 mod resumption;

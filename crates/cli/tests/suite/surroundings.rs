@@ -34,7 +34,7 @@ fn a_sheared_run_is_evaluated_in_its_box() {
                 *v -= rate(0.5 * (frame + 1) as f64) * positions[(frame, cell, 1)];
             }
         }
-        assert_close(&read(&model.file("velocities.npy")), &recorded, 1e-8);
+        assert_close(&read(&model.file("velocities.npy")), &recorded.into_dyn(), 1e-8);
         // Modes are those of the sheared box too; it goes on from the last frame; a fit refuses it.
         let modes = Folder::new();
         succeed("spectrum --frames 3 --values-only", &[("", run.path()), ("--out", modes.path())]);

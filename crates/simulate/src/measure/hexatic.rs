@@ -36,9 +36,18 @@ impl Hexatic {
 /// # Ok::<(), voronudge_geometry::Error>(())
 /// ```
 pub fn hexatic(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Hexatic {
-    let cells = tessellation.len();
-    let (mut sum, mut moduli) = (Vector::zeros(), 0.0);
-    for cell in 0..cells {
+    hexatic_among(tessellation, positions, |_| true)
+}
+
+/// The same over the cells that count, with all their neighbours: between walls those that are no images.
+pub fn hexatic_among(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    counts: impl Fn(usize) -> bool,
+) -> Hexatic {
+    let (mut sum, mut moduli, mut cells) = (Vector::zeros(), 0.0, 0usize);
+    for cell in (0..tessellation.len()).filter(|&cell| counts(cell)) {
+        cells += 1;
         let ring = tessellation.ring(cell);
         let sides = ring.len().max(1) as f64;
         let own: Vector<f64> = ring

@@ -13,7 +13,7 @@ mod transitions;
 pub use block_average::BlockAverage;
 pub use channel::{ChannelProfile, ChannelRecorder, Estimate};
 pub use displacement::mean_square_displacement;
-pub use hexatic::{Hexatic, hexatic};
+pub use hexatic::{Hexatic, hexatic, hexatic_among};
 pub use lyapunov::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};
 pub use pinching::{PinchedFlow, Pinching, pinched_flow};
 pub use shape::shape_indices;

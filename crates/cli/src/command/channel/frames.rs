@@ -122,6 +122,8 @@ impl Frames {
             flow: None,
             labels: None,
             boundary: Boundary::Periodic { lengths: tissue.simulation().cell_box().lengths() },
+            box_offset: None,
+            walls: None,
             frame_interval: self.interval,
             length_unit: units.length.clone(),
             time_unit: units.time.clone(),

@@ -15,15 +15,16 @@ pub(super) enum Measure {
 }
 
 /// What `--lyapunov` asks for, which is of the model alone.
-pub(super) fn asked(flag: bool, driving: &Driving) -> Result<Measure, Failure> {
-    let driven = driving.speed != 0.0 || driving.diffusion != 0.0 || driving.rotational_diffusion != 0.0;
+pub(super) fn asked(flag: bool, request: &Request) -> Result<Measure, Failure> {
+    let alone = Driving { seed: request.driving.seed, ..Driving::default() };
+    let driven = request.driving != alone || request.walls.is_some();
     match (flag, driven) {
         (false, _) => Ok(Measure::NoChaos),
         (true, false) => Ok(Measure::Chaos),
-        (true, true) => {
-            Err(Failure::new("--lyapunov is of the model alone, without self-propulsion and noise")
-                .with_hint("leave --lyapunov out, or --self-propulsion and --diffusion"))
-        }
+        (true, true) => Err(Failure::new(
+            "--lyapunov is of the model alone, without self-propulsion, noise, shear and walls",
+        )
+        .with_hint("leave --lyapunov out, or what drives or bounds the cells")),
     }
 }
 

@@ -23,6 +23,15 @@ const MOST_SINES: f64 = 2e8;
 /// Wave numbers up to which structure factors are computed, times ℓ₀; neighbours are at about 2π.
 const LARGEST_WAVE_NUMBER: f64 = 4.0 * std::f64::consts::PI;
 
+/// Which frames structure factors are of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Spectra {
+    /// Frames of the second half.
+    OfManyFrames,
+    /// The last frame: in a box that changes each has its own wave vectors.
+    OfTheEnd,
+}
+
 /// Series over the frames of a run.
 pub(super) struct Measurements {
     /// Time and ⟨v²⟩ of each frame.
@@ -41,7 +50,7 @@ impl Measurements {
     pub fn new(
         recorder: &mut Recorder,
         schedule: &Schedule,
-        cell_box: &PeriodicBox,
+        (cell_box, spectra): (&PeriodicBox, Spectra),
     ) -> Result<Self, Failure> {
         let (frames, interval) = (schedule.frames, schedule.frame_interval());
         let mut velocities = Vec::with_capacity(frames);
@@ -58,7 +67,7 @@ impl Measurements {
         let squares = mean_square_displacement(&kept)?;
         let lag = |(k, square): (usize, f64)| [(k * stride) as f64 * interval, square];
         let displacements = squares.into_iter().enumerate().skip(1).map(lag).collect();
-        let (structure, structure_frames) = structure(recorder, frames, cell_box)?;
+        let (structure, structure_frames) = structure(recorder, frames, (cell_box, spectra))?;
         Ok(Self { velocities, displacements, displacement_frames: kept.len(), structure, structure_frames })
     }
 
@@ -101,7 +110,7 @@ fn pairs(rows: &[[f64; 2]]) -> Result<ArrayView2<'_, f64>, Failure> {
 fn structure(
     recorder: &mut Recorder,
     frames: usize,
-    cell_box: &PeriodicBox,
+    (cell_box, spectra): (&PeriodicBox, Spectra),
 ) -> Result<(Vec<StructureFactor>, usize), Failure> {
     let positions = recorder.positions(frames - 1)?;
     let cells = positions.len() as f64;
@@ -110,7 +119,10 @@ fn structure(
     let wave_vectors = |reach: f64| reach * reach * cells / (8.0 * std::f64::consts::PI);
     let affordable = MOST_SINES / cells / wave_vectors(LARGEST_WAVE_NUMBER);
     let reach = LARGEST_WAVE_NUMBER * affordable.min(1.0).sqrt();
-    let count = frames.div_ceil(2).min(affordable.clamp(1.0, MOST_SPECTRA as f64) as usize);
+    let count = match spectra {
+        Spectra::OfManyFrames => frames.div_ceil(2).min(affordable.clamp(1.0, MOST_SPECTRA as f64) as usize),
+        Spectra::OfTheEnd => 1,
+    };
     let stride = (frames.div_ceil(2) / count).max(1);
     let mut mean: Vec<StructureFactor> = Vec::new();
     for frame in (0..frames).rev().step_by(stride).take(count) {

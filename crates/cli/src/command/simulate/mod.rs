@@ -22,14 +22,10 @@ use report::Request;
 pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
+use surroundings::SurroundingsArguments;
 use voronudge_geometry::{Domain, FieldOfView, Tessellation};
 use voronudge_model::Model;
 use voronudge_report::Units;
-use surroundings::SurroundingsArguments;
-use voronudge_geometry::{Domain, FieldOfView, Tessellation, areas};
-use voronudge_io::{Boundary, DataSet, YAxis};
-use voronudge_model::{Model, stress};
-use voronudge_simulate::measure::{hexatic, shape_indices};
 use voronudge_simulate::{
     Completion, Driving, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
 };
@@ -128,7 +124,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             seed: arguments.common.seed,
         },
     };
-    let measure_chaos = chaos::asked(arguments.lyapunov, &request.driving)?;
+    let measure_chaos = chaos::asked(arguments.lyapunov, &request)?;
     let mut simulation = Simulation::new(start.positions, domain, model)?
         .with_method(request.method)?
         .with_driving(request.driving)?;
@@ -198,37 +194,16 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             Some(chaos::exponent(&simulation, &request, &mut progress)?)
         }
         Measure::NoChaos => None,
-    let mut results = recorder.results()?;
-    let mut settings = settings(&simulation, lengths, &schedule, start.length_unit, start.time_unit);
-    surroundings::describe(&mut settings, &request, start.cell_box, schedule.frame_interval());
-    settings.save_settings(&mut results)?;
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
-    if simulation.state().crossings > 0 {
-        run.warn(format!(
-            "cells crossed a wall {} times and were put in front of it",
-            simulation.state().crossings
-        ));
-    }
-    let hexatic = hexatic(tessellation, positions);
-    let report = Report {
-        run: run.record(None),
-        request,
-        mean_square_velocity: summary.mean_square_velocity,
-        mean_square_velocity_error: summary.mean_square_velocity_error,
-        t1_rate: summary.transition_rate,
-        hexatic_order: hexatic.order(),
-        hexatic_mean_modulus: hexatic.mean_modulus,
-        stress: stress(tessellation, positions, simulation.model(), |cell| cell < cells),
-        area: Spread::of(&areas(tessellation, positions)),
-        shape_index: Spread::of(&shape_indices(tessellation, positions)),
-        steps: summary.steps,
-        steps_per_second: (summary.steps - steps_before) as f64 / seconds,
     };
     progress.finish();
+    let crossings = simulation.state().crossings;
+    if crossings > 0 {
+        run.warn(format!("cells crossed a wall {crossings} times and were put in front of it"));
+    }
     let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
     let finished = Finished { simulation: &simulation, schedule, summary, lyapunov, steps_per_second };
     let units = Units { length: start.length_unit, time: start.time_unit };
-    outcome::finish(&run, &mut recorder, (request, units), finished)?;
+    outcome::finish(&run, &mut recorder, (request, start.cell_box, units), finished)?;
     recorder.discard()?;
     Ok(Answer::Positive)
 }
@@ -236,34 +211,4 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
 fn interrupted(time: f64) -> Failure {
     Failure::interrupted_at(format!("interrupted at time {time:.6}; the run so far is kept"))
         .with_hint("the same command with --resume goes on from there")
-}
-
-/// The data set without its frames, which are written as the run goes on.
-fn settings(
-    simulation: &Simulation,
-    lengths: [f64; 2],
-    schedule: &Schedule,
-    length_unit: String,
-    time_unit: String,
-) -> DataSet {
-    let cells = simulation.positions().len();
-    let positions =
-        Array3::from_shape_fn((1, cells, 2), |(_, cell, axis)| simulation.positions()[cell][axis]);
-    DataSet {
-        positions,
-        velocities: None,
-        flow: None,
-        labels: None,
-        boundary: Boundary::Periodic { lengths },
-        box_offset: None,
-        walls: None,
-        frame_interval: schedule.frame_interval(),
-        length_unit,
-        time_unit,
-        y_axis: YAxis::Up,
-        unwrapped: true,
-        position_noise: None,
-        velocity_noise: None,
-        inputs: Vec::new(),
-    }
 }

@@ -1,17 +1,18 @@
 //! A run as files and a summary.
 
-use super::measurements::Measurements;
+use super::measurements::{Measurements, Spectra};
 use super::page::{cell_box, page};
 use super::recorder::Recorder;
 use super::report::{Displacement, Exponent, Report, Request, Spread, Structure};
+use super::surroundings::describe;
 use crate::failure::Failure;
 use crate::run::Run;
 use ndarray::Array3;
-use voronudge_geometry::areas;
+use voronudge_geometry::{PeriodicBox, areas};
 use voronudge_io::{Boundary, DataSet, YAxis};
 use voronudge_model::stress;
 use voronudge_report::Units;
-use voronudge_simulate::measure::{hexatic, shape_indices};
+use voronudge_simulate::measure::{hexatic_among, shape_indices};
 use voronudge_simulate::{Schedule, Simulation, Summary};
 
 /// A run at its end.
@@ -27,16 +28,23 @@ pub(super) struct Finished<'a> {
 pub(super) fn finish(
     run: &Run,
     recorder: &mut Recorder,
-    (request, units): (Request, Units),
+    (request, start, units): (Request, PeriodicBox, Units),
     finished: Finished<'_>,
 ) -> Result<(), Failure> {
     let Finished { simulation, schedule, summary, lyapunov, steps_per_second } = finished;
-    let measurements = Measurements::new(recorder, &schedule, &cell_box(simulation)?)?;
+    let spectra = match request.driving.shear {
+        None => Spectra::OfManyFrames,
+        Some(_) => Spectra::OfTheEnd,
+    };
+    let measurements = Measurements::new(recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
     let mut results = recorder.results()?;
-    settings(simulation, &request, &schedule, &units).save_settings(&mut results)?;
+    let mut settings = settings(simulation, &request, &schedule, &units);
+    describe(&mut settings, &request, start, schedule.frame_interval());
+    settings.save_settings(&mut results)?;
     measurements.write(&mut results)?;
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
-    let hexatic = hexatic(tessellation, positions);
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
+    let cells = request.cells;
+    let hexatic = hexatic_among(tessellation, positions, |cell| cell < cells);
     let farthest = measurements.displacements.last();
     let report = Report {
         run: run.record(None),
@@ -46,9 +54,9 @@ pub(super) fn finish(
         t1_rate: summary.transition_rate,
         hexatic_order: hexatic.order(),
         hexatic_mean_modulus: hexatic.mean_modulus,
-        stress: stress(tessellation, positions, simulation.model(), |_| true),
-        area: Spread::of(&areas(tessellation, positions)),
-        shape_index: Spread::of(&shape_indices(tessellation, positions)),
+        stress: stress(tessellation, positions, simulation.model(), |cell| cell < cells),
+        area: Spread::of(&areas(tessellation, positions)[..cells]),
+        shape_index: Spread::of(&shape_indices(tessellation, positions)[..cells]),
         displacement: Displacement {
             frames: measurements.displacement_frames,
             longest_lag: farthest.map(|row| row[0]),
@@ -69,7 +77,7 @@ pub(super) fn finish(
     let error = |error: Option<f64>| error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
     let mut text = format!(
         "{} cells, {} steps, {:.0} steps per second\nmean square velocity over the second half: {}{}\n",
-        positions.len(),
+        cells,
         report.steps,
         report.steps_per_second,
         report.mean_square_velocity.map_or("none".into(), |v| format!("{v:.4e}")),
@@ -94,6 +102,8 @@ fn settings(simulation: &Simulation, request: &Request, schedule: &Schedule, uni
         flow: None,
         labels: None,
         boundary: Boundary::Periodic { lengths: request.box_lengths },
+        box_offset: None,
+        walls: None,
         frame_interval: schedule.frame_interval(),
         length_unit: units.length.clone(),
         time_unit: units.time.clone(),

@@ -1,7 +1,7 @@
 //! A run as a page.
 
 use super::measurements::Measurements;
-use super::report::Report;
+use super::report::{Report, Request};
 use crate::command::drawing::cell_view;
 use crate::failure::Failure;
 use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, areas};
@@ -33,7 +33,7 @@ pub(super) fn page(
         headline: &headline(report, units),
         summary: &paragraphs(report, measurements),
         cards: &cards(report, units),
-        configuration: &configuration(simulation, units),
+        configuration: &configuration(simulation, &cell_box(simulation, &report.request)?, units),
         course: &course(report, measurements, units),
         structure: &structure(measurements, simulation, units),
         run: &report.run,
@@ -108,12 +108,9 @@ fn cards(report: &Report, units: &Units) -> Vec<Card> {
     cards
 }
 
-fn configuration(simulation: &Simulation, units: &Units) -> Figure {
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
-    let Domain::Periodic(cell_box) = tessellation.domain() else {
-        return Figure::new(String::new(), "");
-    };
-    let share = (MOST_DRAWN as f64 / positions.len() as f64).min(1.0).sqrt();
+fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units) -> Figure {
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
+    let share = (MOST_DRAWN as f64 / simulation.positions().len() as f64).min(1.0).sqrt();
     let [width, height] = cell_box.lengths();
     let mut polygon = CellPolygon::default();
     let mut cells = Vec::new();
@@ -184,12 +181,13 @@ fn course(report: &Report, measurements: &Measurements, units: &Units) -> Vec<Fi
 }
 
 fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units) -> Vec<Figure> {
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
+    let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
     let hexagon = Landmark { label: "regular hexagon".into(), value: hexagon_perimeter() };
-    let shapes = shape_indices(tessellation, positions);
-    let shape = distribution("shape index", "shape index P/√A", &shapes, Some(&hexagon));
+    let cells = simulation.positions().len();
+    let shapes = &shape_indices(tessellation, positions)[..cells];
+    let shape = distribution("shape index", "shape index P/√A", shapes, Some(&hexagon));
     let area_label = label_with_unit("area", &format!("{}^2", units.length));
-    let area = distribution("area", &area_label, &areas(tessellation, positions), None);
+    let area = distribution("area", &area_label, &areas(tessellation, positions)[..cells], None);
     let curve =
         |label: &str, role: CurveRole, of: fn(&voronudge_simulate::measure::StructureFactor) -> f64| Curve {
             label: label.into(),
@@ -221,9 +219,10 @@ fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units
     ]
 }
 
-/// The periodic box of a simulation.
-pub(super) fn cell_box(simulation: &Simulation) -> Result<PeriodicBox, Failure> {
+/// The box of a simulation, between walls that of the cells without their images.
+pub(super) fn cell_box(simulation: &Simulation, request: &Request) -> Result<PeriodicBox, Failure> {
     match simulation.tessellation().domain() {
+        Domain::Periodic(_) if request.walls.is_some() => Ok(PeriodicBox::new(request.box_lengths)?),
         Domain::Periodic(cell_box) => Ok(cell_box),
         Domain::Open => Err(voronudge_simulate::Error::OpenDomain.into()),
     }
