@@ -1,10 +1,10 @@
 //! Flows in a channel in which cells are extruded and born.
 
 use super::command::{self, Output};
-use super::{Figure, Made, Panel, Size};
+use super::{Drawn, EVEN, Figure, Made, Panel, Series, Size};
 use std::error::Error;
 use voronudge_io::read_flow_profile;
-use voronudge_report::figure::{Drawn, Series, SeriesPoint};
+use voronudge_report::figure::ErrorPoint;
 
 pub(super) const FIGURES: &[Figure] = &[
     Figure {
@@ -23,14 +23,14 @@ pub(super) const FIGURES: &[Figure] = &[
 ];
 
 /// α, and v_x and v_y over the distance from the edge.
-type Profiles = (f64, [Vec<SeriesPoint>; 2]);
+type Profiles = (f64, [Vec<ErrorPoint>; 2]);
 
-fn profiles(output: &Output) -> Result<[Vec<SeriesPoint>; 2], Box<dyn Error>> {
+fn profiles(output: &Output) -> Result<[Vec<ErrorPoint>; 2], Box<dyn Error>> {
     let profile = read_flow_profile(&output.path().join("folded_profile.csv"))?;
-    let component = |which: usize| -> Vec<SeriesPoint> {
+    let component = |which: usize| -> Vec<ErrorPoint> {
         let places = profile.x.iter().zip(&profile.velocity[which]).enumerate();
-        let error = |row: usize| profile.errors.as_ref().map_or(0.0, |errors| errors[which][row]);
-        places.map(|(row, (&x, &v))| SeriesPoint { at: [x, v], standard_error: error(row) }).collect()
+        let error = |row: usize| profile.errors.as_ref().map(|errors| errors[which][row]);
+        places.map(|(row, (&x, &v))| ErrorPoint { at: [x, v], error: [None, error(row)] }).collect()
     };
     Ok([component(0), component(1)])
 }
@@ -103,7 +103,7 @@ fn chiralities(size: Size) -> Result<Made, Box<dyn Error>> {
             })
             .collect::<Result<_, Box<dyn Error>>>()?;
         let largest = |which: usize| -> Vec<String> {
-            let most = |points: &[SeriesPoint]| {
+            let most = |points: &[ErrorPoint]| {
                 let sizes = points.iter().map(|point| point.at[1]);
                 sizes.fold(0.0, |a: f64, b| if b.abs() > a.abs() { b } else { a })
             };
@@ -122,7 +122,12 @@ fn chiralities(size: Size) -> Result<Made, Box<dyn Error>> {
                 points: profiles[which].clone(),
             });
             let label = format!("{component} (µm/h)");
-            let svg = super::chart(component, "distance from the edge (µm)", &label, series.collect());
+            let svg = super::chart(
+                component,
+                ["distance from the edge (µm)", &label],
+                EVEN,
+                &series.collect::<Vec<_>>(),
+            );
             panels.push(Panel { name, caption: format!("P₀ = {shape_index} ℓ₀: {component}"), svg });
         }
     }

@@ -1,6 +1,6 @@
 //! What errors of positions do to a fit, and what nudging makes of them.
 
-use super::{Figure, Made, Panel, Size};
+use super::{Drawn, EVEN, Figure, Made, Panel, Series, Size, chart};
 use claims::{Noise, TRUTH, Tissue};
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -9,9 +9,7 @@ use voronudge_infer::{Constraints, Inference, Observation, Prior, Quantity, Requ
 use voronudge_model::{Model, Parameters, velocities};
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
-use voronudge_report::figure::{
-    Colours, Drawn, LineStyle, MapLine, PhaseMap, Series, SeriesAxis, SeriesChart, phase_map, series_chart,
-};
+use voronudge_report::figure::{LineStyle, MapLine, PhaseMap, phase_map};
 
 pub(super) const FIGURES: &[Figure] = &[
     Figure {
@@ -200,13 +198,12 @@ fn nudged_loss(size: Size) -> Result<Made, Box<dyn Error>> {
         drawn: Drawn::JoinedMarks,
         points: points.into_iter().map(Into::into).collect(),
     };
-    let svg = series_chart(&SeriesChart {
-        title: "loss with and without nudging".into(),
-        x: SeriesAxis::linear("α"),
-        y: SeriesAxis::logarithmic("loss / ‖v_{exp}‖"),
-        colours: Colours::Distinct,
-        series: vec![series("nudged, springs included", nudged), series("at measured positions", quenched)],
-    });
+    let svg = chart(
+        "loss with and without nudging",
+        ["α", "loss / ‖v_{exp}‖"],
+        [AxisScale::Linear, AxisScale::Logarithmic],
+        &[series("nudged, springs included", nudged), series("at measured positions", quenched)],
+    );
     Ok(Made {
         settings: "100 cells of a chiral liquid (P₀ = 4, α = 3.4, seed 1), errors of 3 % of ℓ₀ in positions and 2 % in velocities, \
                    the other parameters at the truth, α held at each value while the positions are nudged"
@@ -233,21 +230,14 @@ fn fits(_: Size) -> Result<Made, Box<dyn Error>> {
         both.flat_map(|(v, p)| [[v.x, p.x].into(), [v.y, p.y].into()]).collect()
     };
     let reach = tissue.velocities.iter().flat_map(|v| [v.x.abs(), v.y.abs()]).fold(0.0, f64::max);
-    let chart = |title: &str, predicted: &[Vector<f64>]| {
-        series_chart(&SeriesChart {
-            title: title.into(),
-            x: SeriesAxis::linear("true velocity component / rms").over(-reach, reach),
-            y: SeriesAxis::linear("predicted / rms").over(-reach, reach),
-            colours: Colours::Distinct,
-            series: vec![
-                Series { name: title.into(), drawn: Drawn::Marks, points: pairs(predicted) },
-                Series {
-                    name: String::new(),
-                    drawn: Drawn::BrokenLine,
-                    points: vec![[-reach, -reach].into(), [reach, reach].into()],
-                },
-            ],
-        })
+    let scatter = |title: &str, predicted: &[Vector<f64>]| {
+        let line = vec![[-reach, -reach].into(), [reach, reach].into()];
+        let labels = ["true velocity component / rms", "predicted / rms"];
+        let series = [
+            Series { name: title.into(), drawn: Drawn::Marks, points: pairs(predicted) },
+            Series { name: String::new(), drawn: Drawn::BrokenLine, points: line },
+        ];
+        chart(title, labels, EVEN, &series)
     };
     let wrong = tissue.wrong_edges(&measured_topology);
     let left = tissue.wrong_edges(&fit.frames[0].tessellation);
@@ -276,12 +266,12 @@ fn fits(_: Size) -> Result<Made, Box<dyn Error>> {
             Panel {
                 name: "measured",
                 caption: "Velocities of the best fit at measured positions".into(),
-                svg: chart("at measured positions", &naive),
+                svg: scatter("at measured positions", &naive),
             },
             Panel {
                 name: "nudged",
                 caption: "Velocities of the fit that nudges positions".into(),
-                svg: chart("nudged", nudged),
+                svg: scatter("nudged", nudged),
             },
         ],
     })

@@ -16,7 +16,12 @@ use clap::Args;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::Instant;
-use voronudge_report::figure::{Colours, Series, SeriesAxis, SeriesChart, series_chart};
+use voronudge_report::chart::AxisScale;
+use voronudge_report::colour::{BLUE, GREEN, VERMILLION};
+use voronudge_report::figure::{
+    CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves, row_colours,
+};
+use voronudge_report::markers::Marker;
 
 /// What to make.
 #[derive(Args)]
@@ -84,15 +89,59 @@ fn all() -> Vec<Figure> {
     [landscapes::FIGURES, phases::FIGURES, moduli::FIGURES, flows::FIGURES, structure::FIGURES].concat()
 }
 
-/// Curves with even axes, in colours that follow their order.
-fn chart(title: &str, x: &str, y: &str, series: Vec<Series>) -> String {
-    series_chart(&SeriesChart {
-        title: title.into(),
-        x: SeriesAxis::linear(x),
-        y: SeriesAxis::linear(y),
-        colours: Colours::Ordered,
-        series,
-    })
+/// What a series is drawn as.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+enum Drawn {
+    /// Marks with error bars.
+    Marks,
+    /// The same, joined by a line.
+    JoinedMarks,
+    /// A broken line: what a theory says.
+    BrokenLine,
+}
+
+/// Values against one variable.
+struct Series {
+    /// Name in the key; none if it is empty.
+    name: String,
+    drawn: Drawn,
+    points: Vec<ErrorPoint>,
+}
+
+/// Series on common axes. Series of marks, and broken lines, have colours by their place; the first of both share one.
+fn chart(title: &str, labels: [&str; 2], scales: [AxisScale; 2], series: &[Series]) -> String {
+    let is_line = |series: &Series| series.drawn == Drawn::BrokenLine;
+    let colours = |lines: bool| {
+        let count = series.iter().filter(|series| is_line(series) == lines).count();
+        if count <= 3 { [BLUE, VERMILLION, GREEN].map(String::from).to_vec() } else { row_colours(count) }
+    };
+    let palettes = [colours(false), colours(true)];
+    let mut places = [0; 2];
+    let coloured: Vec<(&Series, &str)> = (series.iter())
+        .map(|series| {
+            let kind = usize::from(is_line(series));
+            places[kind] += 1;
+            (series, palettes[kind][places[kind] - 1].as_str())
+        })
+        .collect();
+    let markers = [Marker::Circle, Marker::Square, Marker::Triangle, Marker::Diamond];
+    let points: Vec<PointSeries<'_>> = (coloured.iter().filter(|(series, _)| !is_line(series)).enumerate())
+        .map(|(place, (series, colour))| PointSeries {
+            label: &series.name,
+            colour,
+            marker: markers[place % 4],
+            points: series.points.clone(),
+        })
+        .collect();
+    let curves: Vec<CurveSeries<'_>> = (coloured.iter().filter(|(series, _)| series.drawn != Drawn::Marks))
+        .map(|(series, colour)| CurveSeries {
+            label: if is_line(series) { &series.name } else { "" },
+            colour,
+            stroke: if is_line(series) { Stroke::Dashed } else { Stroke::Solid },
+            points: series.points.iter().map(|point| point.at).collect(),
+        })
+        .collect();
+    points_and_curves(&PointsAndCurves { title, labels, scales, series: &points, curves: &curves })
 }
 
 /// What is kept of a run: everything but the pictures.
@@ -103,6 +152,9 @@ struct Entry {
     /// File and caption.
     panels: Vec<[String; 2]>,
 }
+
+/// Even axes.
+const EVEN: [AxisScale; 2] = [AxisScale::Linear; 2];
 
 /// Entries by the name of the figure.
 type Record = BTreeMap<String, Entry>;

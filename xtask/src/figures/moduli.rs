@@ -1,9 +1,9 @@
 //! Elastic moduli over preferred perimeter and chirality.
 
 use super::phases::{Field, over_perimeter};
-use super::{Figure, Made, Panel, Size, command};
+use super::{Drawn, EVEN, Figure, Made, Panel, Series, Size, command};
 use std::error::Error;
-use voronudge_report::figure::{Drawn, Series, SeriesPoint};
+use voronudge_report::figure::ErrorPoint;
 use voronudge_simulate::collapse::critical_perimeter;
 use voronudge_theory::{MeanField, Moduli, Parameters};
 
@@ -23,7 +23,7 @@ fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
     let shear = Field::read(&output, "shear_modulus")?;
     let theory = |of: fn(&Moduli) -> f64, field: &Field| -> Result<Vec<Series>, Box<dyn Error>> {
         let row = |&chirality: &f64| -> Result<Series, Box<dyn Error>> {
-            let point = |&preferred_perimeter: &f64| -> Result<SeriesPoint, Box<dyn Error>> {
+            let point = |&preferred_perimeter: &f64| -> Result<ErrorPoint, Box<dyn Error>> {
                 let parameters = Parameters {
                     area_elasticity: 0.1,
                     preferred_perimeter,
@@ -62,7 +62,12 @@ fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
     panels.push(Panel {
         name: "distance",
         caption: "μ against the distance from the transition, P₀ − 3.81 + |α|".into(),
-        svg: super::chart("μ against the distance from the transition", "ΔP_0 / ℓ_0", "μ / K_P", distance),
+        svg: super::chart(
+            "μ against the distance from the transition",
+            ["ΔP_0 / ℓ_0", "μ / K_P"],
+            EVEN,
+            &distance,
+        ),
     });
     let found = shear.rows().filter_map(|(alpha, row)| {
         let (first, last) = (row.first()?, row.last()?);

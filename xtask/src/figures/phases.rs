@@ -1,13 +1,13 @@
 //! Phases over preferred perimeter and chirality.
 
 use super::command::{self, Output};
-use super::{Figure, Made, Panel, Size};
+use super::{Drawn, EVEN, Figure, Made, Panel, Series, Size};
 use ndarray::{ArrayD, Axis};
 use std::error::Error;
 use voronudge_io::read_reals;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
-use voronudge_report::figure::{Drawn, LineStyle, MapLine, PhaseMap, Series, SeriesPoint, phase_map};
+use voronudge_report::figure::{ErrorPoint, LineStyle, MapLine, PhaseMap, phase_map};
 use voronudge_simulate::collapse::critical_perimeter;
 use voronudge_theory::{MeanField, Orientation, Parameters, hexagon_perimeter};
 
@@ -181,10 +181,27 @@ fn collapse(size: Size) -> Result<Made, Box<dyn Error>> {
     ))?;
     let report = output.report()?;
     let record = &report["collapse"];
+    let number = |value: &serde_json::Value| value.as_f64().map_or("–".into(), |x| format!("{x:.2}"));
+    let exponent = |name: &str| {
+        let own = &record["fitted"][name];
+        format!(
+            "{} ({} to {})",
+            number(&own["value"]),
+            number(&own["interval"][0]),
+            number(&own["interval"][1])
+        )
+    };
     let found = if record.is_null() {
         format!("No collapse: {}.", report["no_collapse"].as_str().unwrap_or("too few points"))
     } else {
-        format!("What the page says: `{record}`.")
+        format!(
+            "The fitted exponents are β = {} and φ = {} (95 % intervals over chiralities drawn again). The scatter about one curve is {} with them and \
+             {} with the paper's.",
+            exponent("beta"),
+            exponent("phi"),
+            number(&record["fitted"]["scatter"]),
+            number(&record["given"]["scatter"])
+        )
     };
     Ok(Made {
         settings: output.typed.clone(),
@@ -202,9 +219,10 @@ pub(super) fn over_perimeter(title: &str, label: &str, field: &Field, theory: Ve
     let series = |(alpha, row): (f64, Vec<[f64; 2]>)| Series {
         name: format!("α = {alpha}"),
         drawn: Drawn::JoinedMarks,
-        points: row.into_iter().map(SeriesPoint::from).collect(),
+        points: row.into_iter().map(ErrorPoint::from).collect(),
     };
-    super::chart(title, "P_0 / ℓ_0", label, theory.into_iter().chain(field.rows().map(series)).collect())
+    let all: Vec<Series> = theory.into_iter().chain(field.rows().map(series)).collect();
+    super::chart(title, ["P_0 / ℓ_0", label], EVEN, &all)
 }
 
 fn lyapunov(size: Size) -> Result<Made, Box<dyn Error>> {

@@ -1,6 +1,6 @@
 //! Order and fluctuations of the chaotic liquid.
 
-use super::{Figure, Made, Panel, Size};
+use super::{Drawn, Figure, Made, Panel, Series, Size};
 use rayon::prelude::*;
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -8,9 +8,7 @@ use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
-use voronudge_report::figure::{
-    Colours, Drawn, PhaseMap, Series, SeriesAxis, SeriesChart, SeriesPoint, phase_map, series_chart,
-};
+use voronudge_report::figure::{ErrorPoint, PhaseMap, phase_map};
 use voronudge_simulate::measure::structure_factor;
 use voronudge_simulate::{RandomPlacement, Schedule, Simulation, generator, run};
 
@@ -89,16 +87,10 @@ fn fourier(size: Size) -> Result<Made, Box<dyn Error>> {
     let joined = |name: &str, points: &[[f64; 2]], drawn: Drawn| Series {
         name: name.into(),
         drawn,
-        points: points.iter().map(|&point| SeriesPoint::from(point)).collect(),
+        points: points.iter().map(|&point| ErrorPoint::from(point)).collect(),
     };
     let chart = |title: &str, y: &str, series: Vec<Series>| {
-        series_chart(&SeriesChart {
-            title: title.into(),
-            x: SeriesAxis::logarithmic("q ℓ_0"),
-            y: SeriesAxis::logarithmic(y),
-            colours: Colours::Distinct,
-            series,
-        })
+        super::chart(title, ["q ℓ_0", y], [AxisScale::Logarithmic; 2], &series)
     };
     let middle = transverse.iter().find(|point| point[0] >= range[0]).copied().unwrap_or([1.0, 1.0]);
     let guide = [range[0], range[1]].map(|q| [q, 2.0 * middle[1] * q / middle[0]]);

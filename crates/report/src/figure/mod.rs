@@ -10,7 +10,6 @@ mod complex_spectrum;
 mod component_scatter;
 mod configuration_map;
 mod correlation_function;
-mod curves;
 mod density_of_states;
 mod dispersion;
 mod distribution;
@@ -36,7 +35,6 @@ mod points_and_curves;
 mod predicted_against_measured;
 mod profile;
 mod residual_maps;
-mod series;
 mod shape_scatter;
 mod velocity_map;
 
@@ -46,7 +44,6 @@ pub use collapse::{CollapseRow, collapse};
 pub use complex_spectrum::{SpectrumPoint, complex_spectrum};
 pub use configuration_map::configuration_map;
 pub use correlation_function::{Correlation, CorrelationFunction, CorrelationPoint, correlation_function};
-pub use curves::{Curve, CurveAxes, CurveRole, curves};
 pub use density_of_states::density_of_states;
 pub use dispersion::{DispersionPart, DispersionPoint, dispersion};
 pub use distribution::{Landmark, distribution};
@@ -74,7 +71,6 @@ pub use points_and_curves::{
 pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
-pub use series::{Colours, Drawn, Series, SeriesAxis, SeriesChart, SeriesPoint, series_chart};
 pub use shape_scatter::{ShapeMeasure, shape_scatter};
 pub use velocity_map::{VelocityField, velocity_map};
 

@@ -1,7 +1,7 @@
 //! Measured points with error bars, and curves beside them.
 
 use super::no_data;
-use crate::chart::{Axis, Chart, ChartLayout};
+use crate::chart::{Axis, AxisScale, Chart, ChartLayout};
 use crate::colour::INK;
 use crate::key::KeyEntry;
 use crate::markers::Marker;
@@ -60,54 +60,85 @@ pub struct PointsAndCurves<'a> {
     pub title: &'a str,
     /// Labels of the axes with units.
     pub labels: [&'a str; 2],
+    /// How values are spread along the axes; what a logarithm cannot show is left out.
+    pub scales: [AxisScale; 2],
     /// Measured points.
     pub series: &'a [PointSeries<'a>],
     /// Curves.
     pub curves: &'a [CurveSeries<'a>],
 }
 
+impl From<[f64; 2]> for ErrorPoint {
+    fn from(at: [f64; 2]) -> Self {
+        Self { at, error: [None; 2] }
+    }
+}
+
+impl PointsAndCurves<'_> {
+    fn shows(&self, at: [f64; 2]) -> bool {
+        let fits = |(x, scale): (f64, AxisScale)| x.is_finite() && (scale == AxisScale::Linear || x > 0.0);
+        at.into_iter().zip(self.scales).all(fits)
+    }
+
+    /// An axis that holds all points and their bars; without points, all curves.
+    fn axis(&self, which: usize) -> Option<Axis> {
+        let points = || {
+            self.series.iter().flat_map(|series| series.points.iter().filter(|point| self.shows(point.at)))
+        };
+        let logarithmic = self.scales[which] == AxisScale::Logarithmic;
+        let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
+        let mut hold = |x: f64| {
+            let x = if logarithmic { x.log10() } else { x };
+            if x.is_finite() {
+                ends = [ends[0].min(x), ends[1].max(x)];
+            }
+        };
+        for point in points() {
+            let reach = point.error[which].filter(|error| error.is_finite()).unwrap_or(0.0);
+            hold(point.at[which] - reach);
+            hold(point.at[which] + reach);
+        }
+        if points().next().is_none() {
+            let places = self.curves.iter().flat_map(|curve| &curve.points);
+            places.filter(|at| self.shows(**at)).for_each(|at| hold(at[which]));
+        }
+        if !ends[0].is_finite() {
+            return None;
+        }
+        let room = 0.04 * (ends[1] - ends[0]).max(1e-9 * ends[1].abs()).max(1e-12);
+        // Distances begin at the edge.
+        let at_zero = !logarithmic && ends[0] >= 0.0 && ends[0] < 0.2 * ends[1];
+        let range = [if at_zero { 0.0 } else { ends[0] - room }, ends[1] + room];
+        Some(if logarithmic {
+            Axis::logarithmic(self.labels[which], range.map(|x| 10f64.powf(x)))
+        } else {
+            Axis::linear(self.labels[which], range)
+        })
+    }
+}
+
 /// Points with bars of one standard error, curves, and a line at zero where it lies on the axis. The axes hold all points and bars;
 /// curves are cut off.
 #[must_use]
 pub fn points_and_curves(chart: &PointsAndCurves<'_>) -> String {
-    let finite = |point: &&ErrorPoint| point.at.iter().all(|x| x.is_finite());
-    let points = || chart.series.iter().flat_map(|series| series.points.iter().filter(finite));
-    let range = |axis: usize| {
-        let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut hold = |x: f64| ends = [ends[0].min(x), ends[1].max(x)];
-        for point in points() {
-            let reach = point.error[axis].filter(|error| error.is_finite()).unwrap_or(0.0);
-            hold(point.at[axis] - reach);
-            hold(point.at[axis] + reach);
-        }
-        if points().next().is_none() {
-            chart.curves.iter().flat_map(|curve| &curve.points).for_each(|at| hold(at[axis]));
-        }
-        let room = 0.04 * (ends[1] - ends[0]);
-        // Distances begin at the edge.
-        let begin = if ends[0] >= 0.0 && ends[0] < 0.2 * ends[1] { 0.0 } else { ends[0] - room };
-        [begin, ends[1] + room]
-    };
-    let layout = ChartLayout {
-        title: chart.title,
-        size: [440.0, 290.0],
-        left: 66.0,
-        x: Axis::linear(chart.labels[0], range(0)),
-        y: Axis::linear(chart.labels[1], range(1)),
-    };
-    let Some(mut picture) = Chart::new(layout) else {
+    let axes = chart.axis(0).zip(chart.axis(1));
+    let layout =
+        axes.map(|(x, y)| ChartLayout { title: chart.title, size: [440.0, 290.0], left: 66.0, x, y });
+    let Some(mut picture) = layout.and_then(Chart::new) else {
         return no_data(chart.title);
     };
     let [x, _] = picture.axes();
     let zero = [[x.range[0], 0.0], [x.range[1], 0.0]];
-    if picture.contains(zero[0]) {
+    if chart.scales[1] == AxisScale::Linear && picture.contains(zero[0]) {
         picture.curve(&zero, &format!(r#"stroke="{INK}" stroke-width=".8""#));
     }
     for curve in chart.curves {
-        picture.clipped_curve(&curve.points, &curve_style(curve));
+        let place = |&at: &[f64; 2]| if chart.shows(at) { at } else { [f64::NAN; 2] };
+        let points: Vec<[f64; 2]> = curve.points.iter().map(place).collect();
+        picture.clipped_curve(&points, &curve_style(curve));
     }
     for series in chart.series {
-        draw_points(&mut picture, series);
+        draw_points(&mut picture, chart, series);
     }
     picture.frame();
     let points = chart.series.iter().map(|series| {
@@ -133,14 +164,16 @@ fn curve_style(curve: &CurveSeries<'_>) -> String {
     format!(r#"stroke="{}" stroke-width="1.6" stroke-linejoin="round"{dashes}"#, curve.colour)
 }
 
-fn draw_points(chart: &mut Chart, series: &PointSeries<'_>) {
+fn draw_points(chart: &mut Chart, figure: &PointsAndCurves<'_>, series: &PointSeries<'_>) {
     let (mut bars, mut marks) = (PathData::new(), PathData::new());
-    for point in series.points.iter().filter(|point| chart.contains(point.at)) {
+    let shown = series.points.iter().filter(|point| figure.shows(point.at) && chart.contains(point.at));
+    for point in shown {
         for axis in [0, 1] {
             if let Some(error) = point.error[axis].filter(|error| error.is_finite()) {
                 let end = |sign: f64| {
                     let mut at = point.at;
-                    at[axis] += sign * error;
+                    let [low, high] = chart.axes()[axis].range;
+                    at[axis] = (at[axis] + sign * error).clamp(low, high);
                     chart.place(at)
                 };
                 bars.line(&[end(-1.0), end(1.0)]);

@@ -6,8 +6,8 @@ use voronudge_report::arrows::ArrowScale;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
 use voronudge_report::figure::{
-    CellScalar, CollapseRow, Curve, CurveAxes, CurveRole, Landmark, LineStyle, MapLine, PhaseMap, collapse,
-    configuration_map, curves, distribution, phase_map,
+    CellScalar, CollapseRow, CurveSeries, Landmark, LineStyle, MapLine, PhaseMap, PointsAndCurves, Stroke,
+    collapse, configuration_map, distribution, phase_map, points_and_curves,
 };
 
 const ACROSS: [f64; 3] = [3.0, 3.5, 4.0];
@@ -56,19 +56,25 @@ fn scaled_points_have_a_colour_for_each_chirality() {
 
 #[test]
 fn curves_leave_out_what_a_logarithm_cannot_show() {
-    let curve = Curve {
-        label: "course".into(),
+    let curve = CurveSeries {
+        label: "course",
+        colour: "#000",
+        stroke: Stroke::Solid,
         points: vec![[1.0, 1.0], [2.0, 0.0], [3.0, 0.01]],
-        role: CurveRole::First,
     };
-    let axes =
-        CurveAxes {
-            title: "course", x: ("time", AxisScale::Linear), y: ("⟨v²⟩", AxisScale::Logarithmic)
-        };
-    let svg = curves(&axes, &[curve]);
+    let chart = |curves: &[CurveSeries<'_>]| {
+        points_and_curves(&PointsAndCurves {
+            title: "course",
+            labels: ["time", "⟨v²⟩"],
+            scales: [AxisScale::Linear, AxisScale::Logarithmic],
+            series: &[],
+            curves,
+        })
+    };
+    let svg = chart(&[curve]);
     assert_has(&svg, &["course", "time", "0.01"]);
     assert!(!svg.contains("NaN") && !svg.contains("inf"));
-    assert!(curves(&axes, &[]).contains("no data"));
+    assert!(chart(&[]).contains("no data"));
 }
 
 #[test]

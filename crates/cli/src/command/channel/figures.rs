@@ -3,6 +3,7 @@
 use super::report::Findings;
 use super::request::ChannelRequest;
 use voronudge_infer::DecayShape;
+use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use voronudge_report::figure::{
     CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
@@ -192,7 +193,7 @@ impl Figures<'_> {
         series: &[PointSeries<'_>],
         curves: &[CurveSeries<'_>],
     ) -> String {
-        points_and_curves(&PointsAndCurves { title, labels, series, curves })
+        points_and_curves(&PointsAndCurves { title, labels, scales: [AxisScale::Linear; 2], series, curves })
     }
 
     fn decay(&self, name: &str, label: &'static str, colour: &'static str) -> Vec<CurveSeries<'static>> {

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use std::path::Path;
 use voronudge_infer::LinePoint;
 use voronudge_report::ChiralityReport;
+use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::{BLUE, GREY};
 use voronudge_report::figure::{
     CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
@@ -65,6 +66,7 @@ pub(super) fn page(
     let svg = points_and_curves(&PointsAndCurves {
         title: "v_y against v_x",
         labels: ["v_x (unit of the data)", "v_y (unit of the data)"],
+        scales: [AxisScale::Linear; 2],
         series: &series,
         curves: &curves,
     });

@@ -7,18 +7,23 @@ use crate::failure::Failure;
 use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, areas};
 use voronudge_report::arrows::ArrowScale;
 use voronudge_report::chart::AxisScale;
+use voronudge_report::colour::{BLUE, GREY, VERMILLION};
 use voronudge_report::figure::{
-    CellScalar, Curve, CurveAxes, CurveRole, Landmark, configuration_map, curves, distribution,
+    CellScalar, CurveSeries, ErrorPoint, Landmark, PointSeries, PointsAndCurves, Stroke, configuration_map,
+    distribution, points_and_curves,
 };
+use voronudge_report::markers::Marker;
 use voronudge_report::numbers::{label_with_unit, significant, unit_text};
 use voronudge_report::page::{Card, Figure};
 use voronudge_report::{ChangedEdges, FrameView, SimulatePage, Units};
 use voronudge_simulate::Simulation;
-use voronudge_simulate::measure::shape_indices;
+use voronudge_simulate::measure::{StructureFactor, shape_indices};
 use voronudge_theory::hexagon_perimeter;
 
 /// Cells up to which all are drawn; of more, those in a corner of the box.
 const MOST_DRAWN: usize = 2500;
+/// Points of a curve up to which they are marked.
+const MOST_MARKS: usize = 60;
 /// Mean speeds below this share of K_P ℓ₀ are rest.
 const AT_REST: f64 = 1e-4;
 
@@ -140,41 +145,38 @@ fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units)
 }
 
 fn course(report: &Report, measurements: &Measurements, units: &Units) -> Vec<Figure> {
-    let one = |points: &[[f64; 2]], label: &str, role: CurveRole| Curve {
-        label: label.into(),
-        points: points.to_vec(),
-        role,
-    };
     let velocity = label_with_unit("⟨v²⟩", &format!("({})^2", units.velocity_text()));
-    let mut series = vec![one(&measurements.velocities, "⟨v²⟩", CurveRole::First)];
-    if let Some(mean) = report.mean_square_velocity {
-        let time = report.request.time;
-        let level = [[0.5 * time, mean], [time, mean]];
-        series.push(one(&level, "mean over the second half", CurveRole::Second));
-    }
     let squares = || measurements.velocities.iter().map(|point| point[1]).filter(|&square| square > 0.0);
     let (low, high) = (squares().fold(f64::INFINITY, f64::min), squares().fold(0.0, f64::max));
     let scale = if high > 30.0 * low { AxisScale::Logarithmic } else { AxisScale::Linear };
-    let time = label_with_unit("time", &units.time);
-    let axes =
-        CurveAxes { title: "mean square velocity", x: (&time, AxisScale::Linear), y: (&velocity, scale) };
-    let velocities = Figure::new(
-        curves(&axes, &series),
-        "Mean square velocity of the cells at each frame. It falls to zero in a solid and goes on in a liquid.",
+    let mut series = vec![curve("⟨v²⟩", BLUE, Stroke::Solid, measurements.velocities.clone())];
+    if let Some(mean) = report.mean_square_velocity {
+        let time = report.request.time;
+        let level = vec![[0.5 * time, mean], [time, mean]];
+        series.push(curve("mean over the second half", VERMILLION, Stroke::Dashed, level));
+    }
+    let velocities = chart(
+        "mean square velocity",
+        [(&label_with_unit("time", &units.time), AxisScale::Linear), (&velocity, scale)],
+        &series,
     );
-    let mut moved = vec![one(&measurements.displacements, "MSD", CurveRole::First)];
+    let mut moved = vec![curve("MSD", BLUE, Stroke::Solid, measurements.displacements.clone())];
     if let Some(&[lag, square]) = measurements.displacements.last() {
         let from = measurements.displacements[0][0];
-        let guide: Vec<[f64; 2]> = [from, lag].iter().map(|t| [*t, square * t / lag]).collect();
-        moved.push(one(&guide, "in proportion to time", CurveRole::Guide));
+        let guide = [from, lag].map(|t| [t, square * t / lag]).to_vec();
+        moved.push(curve("in proportion to time", GREY, Stroke::Dashed, guide));
     }
     let lag = label_with_unit("lag", &units.time);
     let square = label_with_unit("MSD", &format!("{}^2", units.length));
     let logarithmic = AxisScale::Logarithmic;
-    let axes =
-        CurveAxes { title: "mean square displacement", x: (&lag, logarithmic), y: (&square, logarithmic) };
+    let displacements =
+        chart("mean square displacement", [(&lag, logarithmic), (&square, logarithmic)], &moved);
+    let velocities = Figure::new(
+        velocities,
+        "Mean square velocity of the cells at each frame. It falls to zero in a solid and goes on in a liquid.",
+    );
     let displacements = Figure::new(
-        curves(&axes, &moved),
+        displacements,
         "Mean square displacement against the time between two frames. Large lags rest on few pairs of frames.",
     );
     vec![velocities, displacements]
@@ -188,31 +190,36 @@ fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units
     let shape = distribution("shape index", "shape index P/√A", shapes, Some(&hexagon));
     let area_label = label_with_unit("area", &format!("{}^2", units.length));
     let area = distribution("area", &area_label, &areas(tessellation, positions)[..cells], None);
-    let curve =
-        |label: &str, role: CurveRole, of: fn(&voronudge_simulate::measure::StructureFactor) -> f64| Curve {
-            label: label.into(),
-            points: measurements.structure.iter().map(|shell| [shell.wave_number, of(shell)]).collect(),
-            role,
-        };
     let q = label_with_unit("q", &format!("1/{}", units.length));
-    let axes = |title, y| CurveAxes { title, x: (&q, AxisScale::Linear), y: (y, AxisScale::Linear) };
-    let density = [curve("", CurveRole::First, |shell| shell.density)];
+    let shells = |of: fn(&StructureFactor) -> f64| -> Vec<[f64; 2]> {
+        measurements.structure.iter().map(|shell| [shell.wave_number, of(shell)]).collect()
+    };
+    let linear = AxisScale::Linear;
+    let density = chart(
+        "structure factor",
+        [(&q, linear), ("S(q) of density", linear)],
+        &[curve("", BLUE, Stroke::Solid, shells(|shell| shell.density))],
+    );
     let velocity_label = label_with_unit("S(q) of velocity", &format!("({})^2", units.velocity_text()));
-    let velocity = [
-        curve("longitudinal", CurveRole::First, |shell| shell.longitudinal),
-        curve("transverse", CurveRole::Second, |shell| shell.transverse),
-    ];
+    let velocity = chart(
+        "structure factors of velocity",
+        [(&q, linear), (&velocity_label, linear)],
+        &[
+            curve("longitudinal", BLUE, Stroke::Solid, shells(|shell| shell.longitudinal)),
+            curve("transverse", VERMILLION, Stroke::Dashed, shells(|shell| shell.transverse)),
+        ],
+    );
     let frames = measurements.structure_frames;
     vec![
         Figure::new(shape, "Shape index of the cells at the end of the run."),
         Figure::new(
-            curves(&axes("structure factor", "S(q) of density"), &density),
+            density,
             &format!(
                 "Structure factor of the density, mean over {frames} frames of the second half. Random positions have 1."
             ),
         ),
         Figure::new(
-            curves(&axes("structure factors of velocity", &velocity_label), &velocity),
+            velocity,
             "The same of the velocity, along the wave vector (compression) and across it (shear).",
         ),
         Figure::new(area, "Areas of the cells at the end of the run."),
@@ -226,4 +233,27 @@ pub(super) fn cell_box(simulation: &Simulation, request: &Request) -> Result<Per
         Domain::Periodic(cell_box) => Ok(cell_box),
         Domain::Open => Err(voronudge_simulate::Error::OpenDomain.into()),
     }
+}
+
+fn curve<'a>(label: &'a str, colour: &'a str, stroke: Stroke, points: Vec<[f64; 2]>) -> CurveSeries<'a> {
+    CurveSeries { label, colour, stroke, points }
+}
+
+/// Curves; the points of unbroken ones are marked where they are few.
+fn chart(title: &str, [x, y]: [(&str, AxisScale); 2], curves: &[CurveSeries<'_>]) -> String {
+    let few = |curve: &&CurveSeries<'_>| curve.stroke == Stroke::Solid && curve.points.len() <= MOST_MARKS;
+    let marked = curves.iter().filter(few).map(|curve| PointSeries {
+        label: "",
+        colour: curve.colour,
+        marker: Marker::Circle,
+        points: curve.points.iter().map(|&at| ErrorPoint::from(at)).collect(),
+    });
+    let marked: Vec<PointSeries<'_>> = marked.collect();
+    points_and_curves(&PointsAndCurves {
+        title,
+        labels: [x.0, y.0],
+        scales: [x.1, y.1],
+        series: &marked,
+        curves,
+    })
 }
