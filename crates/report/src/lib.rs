@@ -53,8 +53,8 @@ pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
 pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use page::{
-    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, ResultPage, SectionPage, SimulatePage,
-    SpectrumPage, Uncertainty,
+    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SectionPage, SimulatePage, SpectrumPage,
+    Uncertainty,
 };
 pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};

@@ -18,8 +18,19 @@ pub struct Section {
     pub text: Vec<String>,
     /// Lines of a table: name and content.
     pub rows: Vec<[String; 2]>,
+    /// A table with a header.
+    pub table: Option<Table>,
     /// Figures, two side by side where there is room.
     pub figures: Vec<Figure>,
+}
+
+/// A table whose first column names the rows.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Table {
+    /// Names of the columns.
+    pub header: Vec<String>,
+    /// Rows of cells.
+    pub rows: Vec<Vec<String>>,
 }
 
 /// A page whose sections are its caller's.

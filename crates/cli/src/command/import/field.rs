@@ -13,8 +13,8 @@ use voronudge_geometry::{Edge, FieldOfView, Tessellation};
 use voronudge_io::{FieldImport, FieldLinking, FieldOptions, OutputDirectory, WantedExtrema, import_field};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Figure, ResultSection};
-use voronudge_report::{FieldReport, ResultPage, Units};
+use voronudge_report::page::{Card, Figure, Section, SectionPage};
+use voronudge_report::{FieldReport, Units};
 
 /// Polygons larger than this multiple of the median area are taken for the rim of the field of view.
 const LARGEST_AREA: f64 = 3.0;
@@ -169,7 +169,7 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
     let first = report.frames.first().copied().unwrap_or(0);
     let headline =
         format!("{first} cells are found in the first frame, {} in all frames together.", report.tracks);
-    let page = ResultPage {
+    let page = SectionPage {
         title: &file.display().to_string(),
         headline: &headline,
         summary: &[format!(
@@ -177,7 +177,7 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
             report.frames.len(),
             report.linked
         )],
-        cards: vec![
+        cards: &[
             Card { label: "cells".into(), value: first.to_string(), note: "in the first frame".into() },
             Card {
                 label: "least prominence".into(),
@@ -186,14 +186,13 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
             },
         ],
         guide: GUIDE,
-        sections: vec![ResultSection {
-            heading: "The field and its cells",
-            text: Vec::new(),
-            table: None,
+        sections: &[Section {
+            heading: "The field and its cells".into(),
             figures: vec![Figure::new(
                 extrema_map(&frame, &field, &report.units),
                 "The field in the first frame, with the extrema taken for cells (dots) and their Voronoi polygons.",
             )],
+            ..Section::default()
         }],
         run: &report.run,
     };

@@ -13,9 +13,9 @@ use voronudge_geometry::{
 use voronudge_io::{OutputDirectory, ShapeImport};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Figure, ResultSection, ResultTable};
+use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
 use voronudge_report::shape_report::{AgreementRecord, FrameAgreement, ShapeReport};
-use voronudge_report::{FrameView, ResultPage, Units};
+use voronudge_report::{FrameView, Units};
 
 /// Polygons larger than this multiple of the median area are taken for the rim of the field of view.
 const LARGEST_AREA: f64 = 3.0;
@@ -243,17 +243,17 @@ fn page(
         ),
         "The same of perimeters.",
     ));
-    let page = ResultPage {
+    let page = SectionPage {
         title: &source.file.display().to_string(),
         headline: &headline,
         summary: &summary,
-        cards,
+        cards: &cards,
         guide: GUIDE,
-        sections: vec![ResultSection {
-            heading: "Voronoi polygons against outlines",
-            text: Vec::new(),
-            table: Some(ResultTable { header: header.split('|').map(str::to_owned).collect(), rows }),
+        sections: &[Section {
+            heading: "Voronoi polygons against outlines".into(),
+            table: Some(Table { header: header.split('|').map(str::to_owned).collect(), rows }),
             figures,
+            ..Section::default()
         }],
         run: &report.run,
     };

@@ -4,10 +4,9 @@ use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_infer::phase_diffusion::PhaseDiffusion;
-use voronudge_report::ResultPage;
 use voronudge_report::figure::{GrowthCurve, GrowthPoint, growth_matrix};
 use voronudge_report::numbers::{significant, unit_text, with_interval};
-use voronudge_report::page::{Card, Figure, ResultSection, ResultTable};
+use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
 use voronudge_report::phase_diffusion_report::{Diffusivity, PhaseDiffusionReport};
 
 /// Cross diffusivities beyond so many standard errors, of both together, are told from none: 95 % of χ² with two degrees of freedom.
@@ -96,39 +95,36 @@ pub(super) fn page(
         significant(report.residual_correlation, 2)
     )];
     let header = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-    let page = ResultPage {
+    let page = SectionPage {
         title,
         headline: &headline(report),
         summary: &summary,
-        cards: vec![
+        cards: &[
             card("D∥", &d.D_parallel),
             card("D⊥", &d.D_perp),
             card("D∥ˣ", &d.D_parallel_cross),
             card("D⊥ˣ", &d.D_perp_cross),
         ],
         guide: GUIDE,
-        sections: vec![
-            ResultSection {
-                heading: "Growth matrix",
-                text: Vec::new(),
-                table: None,
+        sections: &[
+            Section {
+                heading: "Growth matrix".into(),
                 figures: vec![Figure::new(
                     growth_matrix(&points, &curve, &report.units),
                     "Entries of D(q), fitted to each wave vector alone (marks, with one standard error) and to all together (lines). Without \
                      chirality those off the diagonal are zero.",
                 )],
+                ..Section::default()
             },
-            ResultSection {
-                heading: "Phase diffusivities",
-                text: Vec::new(),
-                table: Some(ResultTable { header: header(&["", "value", "95 % interval", "unit"]), rows }),
-                figures: Vec::new(),
+            Section {
+                heading: "Phase diffusivities".into(),
+                table: Some(Table { header: header(&["", "value", "95 % interval", "unit"]), rows }),
+                ..Section::default()
             },
-            ResultSection {
-                heading: "Moduli they imply, over the friction of a cell",
-                text: Vec::new(),
-                table: Some(ResultTable { header: header(&["", "value", "unit"]), rows: modulus_rows }),
-                figures: Vec::new(),
+            Section {
+                heading: "Moduli they imply, over the friction of a cell".into(),
+                table: Some(Table { header: header(&["", "value", "unit"]), rows: modulus_rows }),
+                ..Section::default()
             },
         ],
         run: &report.run,
