@@ -187,7 +187,7 @@ fn draw_cells(chart: &mut Chart, (columns, rows): (&[f64], &[f64]), values: &[f6
 fn draw_lines(chart: &mut Chart, lines: &[MapLine]) -> Vec<KeyEntry> {
     let mut key = Vec::new();
     for line in lines {
-        if !line.points.iter().any(|&point| chart.contains(point)) {
+        if !line.points.windows(2).any(|ends| crosses(chart, [ends[0], ends[1]])) {
             continue;
         }
         let strokes = line.style.strokes();
@@ -202,6 +202,15 @@ fn draw_lines(chart: &mut Chart, lines: &[MapLine]) -> Vec<KeyEntry> {
         }));
     }
     key
+}
+
+/// Whether a straight piece has a part on the chart.
+fn crosses(chart: &Chart, [from, to]: [[f64; 2]; 2]) -> bool {
+    const PARTS: usize = 64;
+    (0..=PARTS).any(|part| {
+        let share = part as f64 / PARTS as f64;
+        chart.contains([0, 1].map(|axis| from[axis] + share * (to[axis] - from[axis])))
+    })
 }
 
 fn bar_ticks([low, high]: [f64; 2], scale: AxisScale) -> Vec<(f64, String)> {

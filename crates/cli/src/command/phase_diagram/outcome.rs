@@ -188,7 +188,7 @@ fn lines(request: &Request, diagram: &Diagram) -> Vec<MapLine> {
     lines.push(line(
         "P_{MF}, honeycomb",
         LineStyle::Dashed,
-        along(low - margin, high + margin).map(|alpha| [limit, alpha]).collect(),
+        vec![[limit, low - margin], [limit, high + margin]],
     ));
     lines.push(line("exceptional line", LineStyle::DashDotted, exceptional(request, diagram)));
     lines

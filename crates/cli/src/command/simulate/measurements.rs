@@ -18,8 +18,8 @@ const MOST_DISPLACEMENTS: f64 = 2e9;
 const MOST_POSITIONS: usize = 20_000_000;
 /// Frames whose structure factors are averaged at most.
 const MOST_SPECTRA: usize = 50;
-/// Sines that structure factors may cost.
-const MOST_SINES: f64 = 2e8;
+/// Sines that structure factors may cost, some 70 ns each with all that belongs to them.
+const MOST_SINES: f64 = 5e7;
 /// Wave numbers up to which structure factors are computed, times ℓ₀; neighbours are at about 2π.
 const LARGEST_WAVE_NUMBER: f64 = 4.0 * std::f64::consts::PI;
 
