@@ -1,7 +1,7 @@
 //! What moves cells besides the model: shear of the box, self-propulsion, noise.
 
 use crate::Error;
-use rand::Rng;
+use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
@@ -185,6 +185,16 @@ impl Driving {
 }
 
 /// The random numbers of one chunk of cells in one step.
+///
+/// The three numbers are mixed into a seed (the finaliser of SplitMix64, Steele et al. 2014). Generators that differ by the
+/// increment of their recurrence alone would repeat themselves from step to step.
 pub(crate) fn stream(seed: u64, step: u64, chunk: u64) -> Pcg64 {
-    Pcg64::new(u128::from(seed) << 64 | 0x5851_F42D_4C95_7F2D, u128::from(step) << 64 | u128::from(chunk))
+    Pcg64::seed_from_u64([seed, step, chunk].into_iter().fold(0, |key, number| mixed(key ^ number)))
+}
+
+fn mixed(number: u64) -> u64 {
+    let z = number.wrapping_add(0x9E37_79B9_7F4A_7C15);
+    let z = (z ^ z >> 30).wrapping_mul(0xBF58_476D_1CE4_E5B9);
+    let z = (z ^ z >> 27).wrapping_mul(0x94D0_49BB_1331_11EB);
+    z ^ z >> 31
 }

@@ -100,7 +100,7 @@ impl Figures<'_> {
     }
 
     /// Both velocities from edge to edge.
-    pub fn from_edge_to_edge(&self) -> Figure {
+    pub fn edge_to_edge(&self) -> Figure {
         let [v_x, v_y] = &self.full.velocity;
         let points = [
             series("v_x", BLUE, Marker::Circle, &self.full.centres, v_x),

@@ -14,8 +14,11 @@ pub(super) struct Frames {
     every: usize,
     first: usize,
     interval: f64,
-    kept: Vec<Vec<(usize, Vector<f64>, Vector<f64>)>>,
+    kept: Vec<Vec<Seen>>,
 }
+
+/// A cell in a frame: its life, position and velocity.
+type Seen = (usize, Vector<f64>, Vector<f64>);
 
 /// Numbers in positions and velocities that are kept at most: 8 GB.
 const LARGEST: usize = 1_000_000_000;

@@ -40,12 +40,7 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
     let mut sections = vec![
         Section {
             heading: "Flow".into(),
-            figures: vec![
-                figures.velocities(),
-                figures.ratio(),
-                figures.from_edge_to_edge(),
-                figures.density(),
-            ],
+            figures: vec![figures.velocities(), figures.ratio(), figures.edge_to_edge(), figures.density()],
             rows: decay_rows(report),
             ..Section::default()
         },
