@@ -42,8 +42,8 @@ fn mean(values: &[f64]) -> (f64, f64) {
 }
 
 /// Preferred perimeters and chiralities of the study of edge currents.
-const EDGE_PERIMETERS: [f64; 5] = [3.0, 3.3, 3.5, 3.7, 3.9];
-const EDGE_CHIRALITIES: [f64; 7] = [0.02, 0.05, 0.1, 0.15, 0.2, 0.3, 0.5];
+const EDGE_PERIMETERS: [f64; 4] = [3.0, 3.4, 3.7, 3.9];
+const EDGE_CHIRALITIES: [f64; 6] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5];
 /// Time before edge currents are averaged, and the time averaged over.
 const TRANSIENT: f64 = 60.0;
 const AVERAGE: f64 = 40.0;
