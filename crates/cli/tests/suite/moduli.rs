@@ -19,7 +19,8 @@ fn assert_described(report: &Value) {
 #[test]
 fn a_honeycomb_is_as_the_theory_says() {
     let out = Folder::new();
-    let line = "moduli --start honeycomb --cells 30 --box 60 51.96152422706632 --K_A 0.01 --P_0 30 --alpha -0.4";
+    let line =
+        "moduli --start honeycomb --cells 30 --box 60 51.96152422706632 --K_A 0.01 --P_0 30 --alpha -0.4";
     succeed(line, &[("--out", out.path())]);
     assert_eq!(out.names(), ["report.html", "report.json"]);
     let report = report(out.path());
@@ -47,7 +48,8 @@ fn replicas_are_averaged_and_viscosities_measured() {
     assert_eq!(report["replicas"][1]["motion"], "flowing");
     let viscosity = &report["viscosities"][1];
     assert_eq!(viscosity["name"], "odd_shear_viscosity");
-    let each: Vec<f64> = viscosity["replicas"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
+    let each: Vec<f64> =
+        viscosity["replicas"].as_array().unwrap().iter().map(|v| v.as_f64().unwrap()).collect();
     assert!((viscosity["value"].as_f64().unwrap() - 0.5 * (each[0] + each[1])).abs() < 1e-12);
 }
 
@@ -70,6 +72,9 @@ fn impossible_requests_are_refused() {
     refuse("moduli --start honeycomb --replicas 3", "--replicas 3");
     refuse("moduli --time -1", "--time is -1");
     refuse("moduli --average nan", "--average is NaN");
-    refuse("moduli --cells 16 --time 0.1 --average 0.1 --transient 0 --viscosity --rate -1", "shear rate is -1");
+    refuse(
+        "moduli --cells 16 --time 0.1 --average 0.1 --transient 0 --viscosity --rate -1",
+        "shear rate is -1",
+    );
     assert_eq!(voronudge(["moduli"]).code, Some(2));
 }
