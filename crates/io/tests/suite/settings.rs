@@ -79,7 +79,7 @@ fn a_boundary_flag_mends_an_incomplete_file() {
 fn unknown_keys_are_told_with_line_and_known_keys() {
     let facts = ["dataset.toml, line 3: unknown key \"frame_intervall\""];
     let toml = "boundary = \"open\"\n\nframe_intervall = 2\n";
-    assert_told(load(toml), &facts, "boundary, box, frame_interval, length_unit");
+    assert_told(load(toml), &facts, "boundary, box, box_offset, walls, frame_interval, length_unit");
     let facts = ["dataset.toml, line 2: unknown key \"microscope\""];
     assert_told(load("boundary = \"open\"\n[microscope]\n"), &facts, "y_axis");
 }
