@@ -186,7 +186,9 @@ impl Error {
                 Some("give a rectangular box and a model without such effects, or no walls")
             }
             Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
-            Self::Driving { .. } | Self::Rate { .. } | Self::Interrupted => None,
+            Self::Driving { .. } => Some("give zero or more, or leave it out"),
+            Self::Rate { .. } => Some("leave it out for the default"),
+            Self::Interrupted => None,
             Self::Turnover { .. } => Some("give rates per cell and time, and lengths in the unit of the box"),
             Self::ShearedChannel { .. } => Some("give a box with a right angle"),
             Self::Extinct { .. } => Some("lower the rate of extrusion, or raise that of proliferation"),

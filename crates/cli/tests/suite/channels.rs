@@ -110,7 +110,7 @@ fn results_do_not_depend_on_threads() {
 fn a_population_that_explodes_keeps_what_there_was_and_answers_no() {
     let out = Folder::new();
     let line = "channel --width 6 --length 6 --proliferation-rate 1 --proliferation-length 3 --relaxation 0 --time 20 \
-                --most-cells 60 --samples 64 --frames 20 --quiet --out";
+                --most-cells 60 --samples 64 --frames 400 --quiet --out";
     let words = line.split_whitespace().map(OsStr::new).chain([out.path().as_os_str()]);
     let outcome = voronudge(words);
     assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);

@@ -20,7 +20,7 @@ fn assert_described(report: &Value) {
 fn a_honeycomb_is_as_the_theory_says() {
     let out = Folder::new();
     let line =
-        "moduli --start honeycomb --cells 30 --box 60 51.96152422706632 --K_A 0.01 --P_0 30 --alpha -0.4";
+        "moduli --start honeycomb --cells 36 --box 60 51.96152422706632 --K_A 0.01 --P_0 30 --alpha -0.4";
     succeed(line, &[("--out", out.path())]);
     assert_eq!(out.names(), ["report.html", "report.json"]);
     let report = report(out.path());

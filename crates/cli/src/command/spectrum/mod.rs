@@ -14,6 +14,7 @@ use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, Param
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
+use crate::snapshot::domain_at;
 use clap::Args;
 use frame::Solved;
 use lattice::Lattice;
@@ -62,6 +63,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         Some(lattice) => (lattice.data_set(), "the honeycomb".to_owned()),
         None => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
     };
+    domain_at(&data, 0)?;
     let frames = match &arguments.frames {
         Some(selection) => {
             selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
