@@ -42,12 +42,12 @@ fn tissue(
 }
 
 fn fourier(size: Size) -> Result<Made, Box<dyn Error>> {
-    let (cells, time, frames) = size.pick((400, 12.0, 4), (10_000, 60.0, 20));
+    let (cells, time, frames) = size.pick((400, 12.0, 4), (10_000, 60.0, 6));
     let parameters = Parameters { preferred_perimeter: 4.0, chirality: 0.2, ..Parameters::default() };
     let mut simulation = tissue(cells, &parameters, 1)?;
     let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
     let schedule = Schedule { time, time_step: 0.02, frames };
-    let largest = 16.0;
+    let largest = 10.0;
     let mut sums: Vec<[f64; 4]> = Vec::new();
     let mut taken = 0.0;
     run(&mut simulation, &schedule, |event| {

@@ -47,45 +47,64 @@ fn mean(values: &[f64]) -> (f64, f64) {
 const EDGE_PERIMETERS: [f64; 4] = [3.0, 3.4, 3.7, 3.9];
 const EDGE_CHIRALITIES: [f64; 6] = [0.02, 0.05, 0.1, 0.2, 0.3, 0.5];
 /// Time before edge currents are averaged, and the time averaged over.
-const TRANSIENT: f64 = 60.0;
-const AVERAGE: f64 = 40.0;
+pub(crate) const TRANSIENT: f64 = 60.0;
+pub(crate) const AVERAGE: f64 = 40.0;
 const EDGE_STEP: f64 = 0.02;
 
-/// v_E of cells between four walls, seed by seed, beside both estimates of the threshold.
-pub fn edge(seeds: u64) -> Outcome {
-    println!("| P_0 | α | printed threshold | row slips at | v_E | of the last tenth |");
-    println!("|---|---|---|---|---|---|");
+/// An edge current.
+pub(crate) struct EdgeCurrent {
+    pub preferred_perimeter: f64,
+    pub chirality: f64,
+    /// The printed threshold, and where a row of the lattice slips.
+    pub thresholds: [f64; 2],
+    /// `v_E` and its standard error over seeds.
+    pub velocity: (f64, f64),
+    /// Mean over the last tenth of the time.
+    pub late: f64,
+}
+
+/// v_E of cells between four walls, beside both estimates of the threshold.
+pub(crate) fn edge_currents(seeds: u64, [transient, average]: [f64; 2]) -> Result<Vec<EdgeCurrent>, Failure> {
     let points: Vec<(f64, f64)> =
         EDGE_PERIMETERS.into_iter().flat_map(|p| EDGE_CHIRALITIES.map(|a| (p, a))).collect();
-    let rows = on_one_core_each(points.len() as u64, |k| {
-        let (perimeter, chirality) = points[k as usize];
-        let at = parameters(perimeter, chirality);
+    on_one_core_each(points.len() as u64, |k| {
+        let (preferred_perimeter, chirality) = points[k as usize];
+        let at = parameters(preferred_perimeter, chirality);
         let (mut all, mut late) = (Vec::new(), Vec::new());
         for seed in 1..=seeds {
             let mut simulation = random(EDGE_CELLS, &at, seed)?.with_walls(Walls::Both)?;
             let steps = |time: f64| (time / EDGE_STEP).round() as usize;
-            let (mut average, mut last) = (BlockAverage::default(), BlockAverage::default());
-            for step in 0..steps(TRANSIENT + AVERAGE) {
+            let (mut whole, mut last) = (BlockAverage::default(), BlockAverage::default());
+            for step in 0..steps(transient + average) {
                 simulation.step(EDGE_STEP)?;
-                let Some(v) = simulation.edge_velocity().filter(|_| step >= steps(TRANSIENT)) else {
+                let Some(v) = simulation.edge_velocity().filter(|_| step >= steps(transient)) else {
                     continue;
                 };
-                average.add(v);
-                if step >= steps(TRANSIENT + 0.9 * AVERAGE) {
+                whole.add(v);
+                if step >= steps(transient + 0.9 * average) {
                     last.add(v);
                 }
             }
-            all.push(average.mean().unwrap_or(f64::NAN));
+            all.push(whole.mean().unwrap_or(f64::NAN));
             late.push(last.mean().unwrap_or(f64::NAN));
         }
-        let ((value, error), (late, _)) = (mean(&all), mean(&late));
         let theory = theory(&at, AREA_ELASTICITY)?;
-        let (printed, slip) = (theory.edge_current_threshold(), theory.edge_slip_chirality());
-        Ok(format!(
-            "| {perimeter} | {chirality} | {printed:.3} | {slip:.3} | {value:.5} ± {error:.5} | {late:.1e} |"
-        ))
-    })?;
-    rows.iter().for_each(|row| println!("{row}"));
+        let thresholds = [theory.edge_current_threshold(), theory.edge_slip_chirality()];
+        let (velocity, (late, _)) = (mean(&all), mean(&late));
+        Ok(EdgeCurrent { preferred_perimeter, chirality, thresholds, velocity, late })
+    })
+}
+
+pub fn edge(seeds: u64) -> Outcome {
+    println!("| P_0 | α | printed threshold | row slips at | v_E | of the last tenth |");
+    println!("|---|---|---|---|---|---|");
+    for current in edge_currents(seeds, [TRANSIENT, AVERAGE])? {
+        let EdgeCurrent { preferred_perimeter, chirality, thresholds, velocity, late } = current;
+        println!(
+            "| {preferred_perimeter} | {chirality} | {:.3} | {:.3} | {:.5} ± {:.5} | {late:.1e} |",
+            thresholds[0], thresholds[1], velocity.0, velocity.1
+        );
+    }
     Ok(())
 }
 
@@ -93,29 +112,39 @@ pub fn edge(seeds: u64) -> Outcome {
 const PINCH_PERIMETERS: [f64; 4] = [3.0, 3.4, 3.7, 4.0];
 const PINCH_CHIRALITIES: [f64; 4] = [0.4, 0.8, 1.6, 3.2];
 /// Time before the first snapshot, and between snapshots.
-const SETTLE: f64 = 30.0;
-const APART: f64 = 5.0;
+pub(crate) const SETTLE: f64 = 30.0;
+pub(crate) const APART: f64 = 5.0;
 const SNAPSHOTS: usize = 4;
 
-/// v_y/v_x of a pinched honeycomb and of pinched snapshots of simulations, beside the formula.
-pub fn pinching(seeds: u64) -> Outcome {
-    println!("| P_0 | α | α/(3 − aP_0) | with K_A | honeycomb | simulated | ratio | ⟨v²⟩ |");
-    println!("|---|---|---|---|---|---|---|---|");
+/// Flow across a density gradient.
+pub(crate) struct PinchedRatio {
+    pub preferred_perimeter: f64,
+    pub chirality: f64,
+    /// The formula, as printed up to its sign and with K_A.
+    pub formulas: [f64; 2],
+    pub honeycomb: f64,
+    /// v_y/v_x of snapshots and its standard error over seeds.
+    pub simulated: (f64, f64),
+    pub mean_square_velocity: f64,
+}
+
+/// v_y/v_x of a pinched honeycomb and of pinched snapshots of simulations from a time on, beside the formula.
+pub(crate) fn pinched_ratios(seeds: u64, [settle, apart]: [f64; 2]) -> Result<Vec<PinchedRatio>, Failure> {
     let points: Vec<(f64, f64)> =
         PINCH_PERIMETERS.into_iter().flat_map(|p| PINCH_CHIRALITIES.map(|a| (p, a))).collect();
-    let rows = on_one_core_each(points.len() as u64, |k| {
-        let (perimeter, chirality) = points[k as usize];
-        let at = parameters(perimeter, chirality);
+    on_one_core_each(points.len() as u64, |k| {
+        let (preferred_perimeter, chirality) = points[k as usize];
+        let at = parameters(preferred_perimeter, chirality);
         let (lattice, cell_box) = honeycomb(PINCH_CELLS)?;
         let lattice = Simulation::new(lattice, Domain::Periodic(cell_box), Model::chiral_voronoi(&at))?;
-        let perfect = pinched(&lattice)?.ratio();
+        let honeycomb = pinched(&lattice)?.ratio();
         let (mut ratios, mut squares) = (Vec::new(), Vec::new());
         for seed in 1..=seeds {
             let mut simulation = random(PINCH_CELLS, &at, seed)?;
             let time_step = recommended_time_step(&at, 1.0);
             let mut sum = [0.0; 2];
             for snapshot in 0..SNAPSHOTS {
-                let time = if snapshot == 0 { SETTLE } else { APART };
+                let time = if snapshot == 0 { settle } else { apart };
                 for _ in 0..(time / time_step).round() as usize {
                     simulation.step(time_step)?;
                 }
@@ -125,18 +154,38 @@ pub fn pinching(seeds: u64) -> Outcome {
             }
             ratios.push(sum[1] / sum[0]);
         }
-        let (value, error) = mean(&ratios);
         let expected = |k_a: f64| -> Result<f64, Failure> {
             Ok(theory(&at, k_a)?.transverse_flow().unwrap_or(f64::NAN))
         };
-        let (printed, with_area) = (expected(0.0)?, expected(AREA_ELASTICITY)?);
-        Ok(format!(
-            "| {perimeter} | {chirality} | {printed:.3} | {with_area:.3} | {perfect:.3} | {value:.3} ± {error:.3} | {:.3} | {:.1e} |",
+        Ok(PinchedRatio {
+            preferred_perimeter,
+            chirality,
+            formulas: [expected(0.0)?, expected(AREA_ELASTICITY)?],
+            honeycomb,
+            simulated: mean(&ratios),
+            mean_square_velocity: mean(&squares).0,
+        })
+    })
+}
+
+pub fn pinching(seeds: u64) -> Outcome {
+    println!("| P_0 | α | α/(3 − aP_0) | with K_A | honeycomb | simulated | ratio | ⟨v²⟩ |");
+    println!("|---|---|---|---|---|---|---|---|");
+    for ratio in pinched_ratios(seeds, [SETTLE, APART])? {
+        let PinchedRatio {
+            preferred_perimeter,
+            chirality,
+            formulas: [printed, with_area],
+            honeycomb,
+            simulated: (value, error),
+            ..
+        } = ratio;
+        println!(
+            "| {preferred_perimeter} | {chirality} | {printed:.3} | {with_area:.3} | {honeycomb:.3} | {value:.3} ± {error:.3} | {:.3} | {:.1e} |",
             value / with_area,
-            mean(&squares).0
-        ))
-    })?;
-    rows.iter().for_each(|row| println!("{row}"));
+            ratio.mean_square_velocity
+        );
+    }
     Ok(())
 }
 

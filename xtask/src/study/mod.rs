@@ -2,7 +2,7 @@
 
 mod channel;
 mod discover;
-mod flows;
+pub(crate) mod flows;
 mod nada;
 mod noise;
 mod phases;
