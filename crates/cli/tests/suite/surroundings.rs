@@ -14,10 +14,13 @@ fn simulate(flags: &str) -> Folder {
     out
 }
 
+/// Strain rate at a time.
+type Rate = fn(f64) -> f64;
+
 /// Recorded velocities are those of the model and the streaming γ̇ y of the shear.
 #[test]
 fn a_sheared_run_is_evaluated_in_its_box() {
-    let rates: [(&str, fn(f64) -> f64); 3] = [
+    let rates: [(&str, Rate); 3] = [
         ("--shear-strain 0.3", |_| 0.0),
         ("--shear-rate -0.4", |_| -0.4),
         ("--shear-amplitude 0.2 --shear-frequency 3", |t| 0.6 * (3.0 * t).cos()),
@@ -85,7 +88,7 @@ fn wrong_offsets_are_told() {
         ("box_offset = [0.0, 0.0, nan, 0.0]", "must be finite"),
         ("walls = \"y\"", "walls is \"y\""),
     ] {
-        run.write("dataset.toml", &format!("{}{line}{}", &settings[..start], &settings[end..]));
+        run.write("dataset.toml", format!("{}{line}{}", &settings[..start], &settings[end..]));
         assert_refused("evaluate", run.path(), &[], &[fact]);
     }
 }
