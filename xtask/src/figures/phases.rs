@@ -43,6 +43,12 @@ pub(super) const FIGURES: &[Figure] = &[
         stated: "odd waves set in at a line defined by ⟨ω²⟩ = 40",
         make: frequencies,
     },
+    Figure {
+        name: "m1h",
+        title: "tissues of four phases",
+        stated: "hexatic solid, hexatic liquid, disordered solid, disordered liquid",
+        make: phases,
+    },
 ];
 
 /// A quantity of a phase diagram, and its axes.
@@ -277,5 +283,29 @@ fn frequencies(size: Size) -> Result<Made, Box<dyn Error>> {
             caption: "Mean square frequency of all modes".into(),
             svg: output.picture("mean square frequency")?,
         }],
+    })
+}
+
+fn phases(size: Size) -> Result<Made, Box<dyn Error>> {
+    let rest = size.pick("--cells 36 --time 4 --dt 0.02 --seed 1", "--cells 100 --time 200 --seed 1");
+    let (mut panels, mut found) = (Vec::new(), Vec::new());
+    for (name, expected, point) in [
+        ("1", "hexatic solid", "--P_0 3.3 --alpha 2"),
+        ("2", "hexatic liquid", "--P_0 3.7 --alpha 2"),
+        ("3", "disordered solid", "--P_0 3.3 --alpha 0"),
+        ("4", "disordered liquid", "--P_0 4 --alpha 1"),
+    ] {
+        let output = command::run(&format!("simulate {point} {rest}"))?;
+        let report = output.report()?;
+        let number = |name: &str| report[name].as_f64().unwrap_or(f64::NAN);
+        let (square, order) = (number("mean_square_velocity"), number("hexatic_order"));
+        let caption = format!("{expected}, {point}: ⟨v²⟩ = {square:.1e}, Ψ₆ = {order:.2}");
+        found.push(caption.clone());
+        panels.push(Panel { name, caption, svg: output.picture("shape index P/√A, the end of the run")? });
+    }
+    Ok(Made {
+        settings: format!("`voronudge simulate --P_0 … --alpha … {rest}`"),
+        found: vec![format!("{}.", found.join("; "))],
+        panels,
     })
 }
