@@ -89,6 +89,11 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
                 svg: output.picture("velocities")?,
             },
             Panel {
+                name: "rates",
+                caption: "Births and extrusions".into(),
+                svg: output.picture("births and extrusions")?,
+            },
+            Panel {
                 name: "ratio",
                 caption: "v_y against v_x".into(),
                 svg: output.picture("v_y against v_x")?,

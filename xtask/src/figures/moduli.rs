@@ -7,13 +7,21 @@ use voronudge_report::figure::ErrorPoint;
 use voronudge_simulate::collapse::critical_perimeter;
 use voronudge_theory::{MeanField, Moduli, Parameters};
 
-pub(super) const FIGURES: &[Figure] = &[Figure {
-    name: "2c-m1b-moduli",
-    title: "elastic moduli of disordered tissues",
-    stated: "μ falls with P₀ and vanishes at P₀* = 3.81 − |α|, as one function of the distance from it; in solids B, μ and Kᵒ follow the \
+pub(super) const FIGURES: &[Figure] = &[
+    Figure {
+        name: "2c-m1b-moduli",
+        title: "elastic moduli of disordered tissues",
+        stated: "μ falls with P₀ and vanishes at P₀* = 3.81 − |α|, as one function of the distance from it; in solids B, μ and Kᵒ follow the \
              mean field",
-    make: elastic,
-}];
+        make: elastic,
+    },
+    Figure {
+        name: "moduli-ghi",
+        title: "viscosities of the liquid",
+        stated: "the chiral liquid has a shear viscosity η and an odd viscosity ηᵒ, −0.1 and −0.09 γ for HT1080 (P₀ = 4.0, α = 2.9)",
+        make: viscous,
+    },
+];
 
 fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
     let output = command::run(size.pick(
@@ -80,5 +88,37 @@ fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
         settings: output.typed.clone(),
         found: vec![format!("μ/K_P is {}.", found.collect::<Vec<_>>().join("; "))],
         panels,
+    })
+}
+
+fn viscous(size: Size) -> Result<Made, Box<dyn Error>> {
+    let (chiralities, rest): (&[f64], _) = size.pick(
+        (&[0.0, 1.0], "--cells 16 --replicas 2 --time 1 --transient 0.2 --average 0.5 --viscosity --period 2 --periods 1 --dt 0.02"),
+        (
+            &[0.0, 0.5, 1.0, 2.0],
+            "--cells 100 --replicas 2 --time 20 --transient 10 --average 20 --viscosity --periods 2 --dt 0.01",
+        ),
+    );
+    let mut series =
+        ["η", "ηᵒ"].map(|name| Series { name: name.into(), drawn: Drawn::JoinedMarks, points: Vec::new() });
+    let mut found = Vec::new();
+    for &alpha in chiralities {
+        let report = command::run(&format!("moduli --P_0 4 --alpha {alpha} {rest}"))?.report()?;
+        let own = |k: usize| {
+            let number = |name: &str| report["viscosities"][k][name].as_f64().unwrap_or(f64::NAN);
+            (number("value"), number("error"))
+        };
+        for (k, series) in series.iter_mut().enumerate() {
+            let (value, error) = own(k);
+            series.points.push(ErrorPoint { at: [alpha, value], error: [None, Some(error)] });
+        }
+        let ((eta, eta_error), (odd, odd_error)) = (own(0), own(1));
+        found.push(format!("{eta:.3} ± {eta_error:.3} and {odd:.3} ± {odd_error:.3} at α = {alpha}"));
+    }
+    let svg = super::chart("viscosities", ["α", "η, ηᵒ (friction of a cell)"], EVEN, &series);
+    Ok(Made {
+        settings: format!("`voronudge moduli --P_0 4 --alpha … {rest}`: square wave of rate ±0.01"),
+        found: vec![format!("η and ηᵒ are {}.", found.join("; "))],
+        panels: vec![Panel { name: "", caption: "Viscosities against chirality at P₀ = 4".into(), svg }],
     })
 }
