@@ -1,5 +1,6 @@
 //! Figures that a command of the tool draws.
 
+use super::Panel;
 use std::error::Error;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -58,8 +59,12 @@ impl Output {
         Ok(serde_json::from_str(&std::fs::read_to_string(self.path().join("report.json"))?)?)
     }
 
-    /// The picture of the page with this title.
-    pub fn picture(&self, title: &str) -> Result<String, Box<dyn Error>> {
+    /// The picture of the page with this title, as a panel.
+    pub fn panel(&self, name: &'static str, caption: &str, title: &str) -> Result<Panel, Box<dyn Error>> {
+        Ok(Panel { name, caption: caption.into(), svg: self.picture(title)? })
+    }
+
+    fn picture(&self, title: &str) -> Result<String, Box<dyn Error>> {
         pictures(&self.page)
             .into_iter()
             .find(|svg| svg.contains(&format!("<title>{title}")))

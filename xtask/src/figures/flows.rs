@@ -78,31 +78,15 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
             format!("Decay lengths and 95 % intervals: {}.", lengths.join(", ")),
         ],
         panels: vec![
-            Panel {
-                name: "density",
-                caption: "Density".into(),
-                svg: output.picture("density across the channel")?,
-            },
-            Panel {
-                name: "velocity",
-                caption: "Velocities, with the continuum theory".into(),
-                svg: output.picture("velocities")?,
-            },
-            Panel {
-                name: "rates",
-                caption: "Births and extrusions".into(),
-                svg: output.picture("births and extrusions")?,
-            },
-            Panel {
-                name: "ratio",
-                caption: "v_y against v_x".into(),
-                svg: output.picture("v_y against v_x")?,
-            },
-            Panel {
-                name: "births",
-                caption: "How much a birth changes velocities nearby, on a vertex and beside a mother".into(),
-                svg: output.picture("disturbance by a birth")?,
-            },
+            output.panel("density", "Density", "density across the channel")?,
+            output.panel("velocity", "Velocities, with the continuum theory", "velocities")?,
+            output.panel("rates", "Births and extrusions", "births and extrusions")?,
+            output.panel("ratio", "v_y against v_x", "v_y against v_x")?,
+            output.panel(
+                "births",
+                "How much a birth changes velocities nearby, on a vertex and beside a mother",
+                "disturbance by a birth",
+            )?,
         ],
     })
 }

@@ -161,21 +161,13 @@ fn velocities(size: Size) -> Result<Made, Box<dyn Error>> {
             format!("{hexatic} of {} points have Ψ₆ > 0.7, the largest is {largest:.2}.", order.values.len()),
         ],
         panels: vec![
-            Panel {
-                name: "velocity",
-                caption: "Mean square velocity in the steady state".into(),
-                svg: output.picture("mean square velocity")?,
-            },
-            Panel {
-                name: "order",
-                caption: "Hexatic order Ψ₆".into(),
-                svg: output.picture("hexatic order")?,
-            },
-            Panel {
-                name: "onset",
-                caption: "Mean square velocity near the transition, small chirality".into(),
-                svg: fine.picture("mean square velocity")?,
-            },
+            output.panel("velocity", "Mean square velocity in the steady state", "mean square velocity")?,
+            output.panel("order", "Hexatic order Ψ₆", "hexatic order")?,
+            fine.panel(
+                "onset",
+                "Mean square velocity near the transition, small chirality",
+                "mean square velocity",
+            )?,
         ],
     })
 }
@@ -212,11 +204,11 @@ fn collapse(size: Size) -> Result<Made, Box<dyn Error>> {
     Ok(Made {
         settings: output.typed.clone(),
         found: vec![found],
-        panels: vec![Panel {
-            name: "",
-            caption: "Scaled mean square velocities".into(),
-            svg: output.picture(if record.is_null() { "mean square velocity" } else { "collapse" })?,
-        }],
+        panels: vec![output.panel(
+            "",
+            "Scaled mean square velocities",
+            if record.is_null() { "mean square velocity" } else { "collapse" },
+        )?],
     })
 }
 
@@ -278,11 +270,7 @@ fn frequencies(size: Size) -> Result<Made, Box<dyn Error>> {
              zero at P_MF. See [corrections](corrections.md) and [validation](validation/model.md#modes).",
             found.join(", ")
         )],
-        panels: vec![Panel {
-            name: "",
-            caption: "Mean square frequency of all modes".into(),
-            svg: output.picture("mean square frequency")?,
-        }],
+        panels: vec![output.panel("", "Mean square frequency of all modes", "mean square frequency")?],
     })
 }
 
@@ -301,7 +289,7 @@ fn phases(size: Size) -> Result<Made, Box<dyn Error>> {
         let (square, order) = (number("mean_square_velocity"), number("hexatic_order"));
         let caption = format!("{expected}, {point}: ⟨v²⟩ = {square:.1e}, Ψ₆ = {order:.2}");
         found.push(caption.clone());
-        panels.push(Panel { name, caption, svg: output.picture("shape index P/√A, the end of the run")? });
+        panels.push(output.panel(name, &caption, "shape index P/√A, the end of the run")?);
     }
     Ok(Made {
         settings: format!("`voronudge simulate --P_0 … --alpha … {rest}`"),

@@ -113,6 +113,19 @@ pub struct PageHead<'a> {
     pub run: &'a RunRecord,
 }
 
+impl<'a> PageHead<'a> {
+    /// A page without doubts, whose warnings are those of the run.
+    pub(super) fn sound(
+        [title, headline]: [&'a str; 2],
+        summary: &'a [String],
+        cards: Vec<Card>,
+        run: &'a RunRecord,
+    ) -> Self {
+        let warnings = run.warnings.iter().map(String::as_str).collect();
+        Self { title, headline, summary, doubts: &[], warnings, cards, run }
+    }
+}
+
 /// A template of this crate or of a caller; it may extend `base.html` and import `macros.html`.
 #[derive(Debug, Clone, Copy)]
 pub struct Template {

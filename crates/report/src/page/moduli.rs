@@ -56,15 +56,7 @@ impl ModuliPage<'_> {
             note: format!("± {}", significant(record.error, 1)),
         });
         let context = Context {
-            head: PageHead {
-                title: self.title,
-                headline: self.headline,
-                summary: self.summary,
-                doubts: &[],
-                warnings: report.run.warnings.iter().map(String::as_str).collect(),
-                cards: cards.collect(),
-                run: &report.run,
-            },
+            head: PageHead::sound([self.title, self.headline], self.summary, cards.collect(), &report.run),
             report,
             figure: Figure::new(
                 moduli(&report.moduli, &unit),

@@ -72,15 +72,7 @@ impl PhasePage<'_> {
                 format!("fitted; scatter {} in ln ⟨v²⟩", significant(fitted.scatter, 2)),
             ));
         }
-        let head = PageHead {
-            title: self.title,
-            headline: self.headline,
-            summary: self.summary,
-            doubts: &[],
-            warnings: report.run.warnings.iter().map(String::as_str).collect(),
-            cards,
-            run: &report.run,
-        };
+        let head = PageHead::sound([self.title, self.headline], self.summary, cards, &report.run);
         render(TEMPLATE, &Context { head, report, maps: self.maps, collapse: self.collapse })
     }
 }

@@ -66,15 +66,7 @@ impl SectionPage<'_> {
     ///
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
-        let head = PageHead {
-            title: self.title,
-            headline: self.headline,
-            summary: self.summary,
-            doubts: &[],
-            warnings: self.run.warnings.iter().map(String::as_str).collect(),
-            cards: self.cards.to_vec(),
-            run: self.run,
-        };
+        let head = PageHead::sound([self.title, self.headline], self.summary, self.cards.to_vec(), self.run);
         render(TEMPLATE, &Context { head, guide: self.guide, sections: self.sections })
     }
 }

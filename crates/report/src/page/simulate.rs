@@ -45,15 +45,7 @@ impl SimulatePage<'_> {
     ///
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
-        let head = PageHead {
-            title: self.title,
-            headline: self.headline,
-            summary: self.summary,
-            doubts: &[],
-            warnings: self.run.warnings.iter().map(String::as_str).collect(),
-            cards: self.cards.to_vec(),
-            run: self.run,
-        };
+        let head = PageHead::sound([self.title, self.headline], self.summary, self.cards.to_vec(), self.run);
         let Self { configuration, course, structure, .. } = *self;
         render(TEMPLATE, &Context { head, configuration, course, structure })
     }

@@ -64,15 +64,12 @@ impl SpectrumPage<'_> {
     pub fn render(&self) -> Result<String, ReportError> {
         let report = self.report;
         let unit = format!("1/{}", report.units.time);
-        let head = PageHead {
-            title: self.title,
-            headline: self.headline,
-            summary: self.summary,
-            doubts: &[],
-            warnings: report.run.warnings.iter().map(String::as_str).collect(),
-            cards: report.frames.first().map(|frame| cards(frame, &unit)).unwrap_or_default(),
-            run: &report.run,
-        };
+        let head = PageHead::sound(
+            [self.title, self.headline],
+            self.summary,
+            report.frames.first().map(|frame| cards(frame, &unit)).unwrap_or_default(),
+            &report.run,
+        );
         let context = Context {
             head,
             report,

@@ -66,7 +66,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let scale = arguments.scale;
-    let is_scaled = scale.pixel_size.is_some() || scale.frame_interval.is_some();
+    let is_scaled = scale.image.pixel_size.is_some() || scale.image.frame_interval.is_some();
     let options = FlowOptions {
         columns: FlowColumnNames {
             frame: arguments.frame_column,
@@ -77,12 +77,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             mask: arguments.mask_column,
         },
         boundary: scale.boundary(),
-        pixel_size: scale.pixel_size,
+        pixel_size: scale.image.pixel_size,
         grid_spacing: arguments.grid_spacing,
-        length_unit: scale.length_unit,
-        time_unit: scale.time_unit,
-        frame_interval: scale.frame_interval,
-        y_axis: scale.y_axis,
+        length_unit: scale.image.length_unit,
+        time_unit: scale.image.time_unit,
+        frame_interval: scale.image.frame_interval,
+        y_axis: scale.image.y_axis,
         positions: arguments.positions,
     };
     let import = import_flow(&arguments.files, &options)?;

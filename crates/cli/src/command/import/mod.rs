@@ -38,21 +38,8 @@ enum What {
 /// What files of other programs do not say about themselves.
 #[derive(Debug, Args)]
 struct ScaleArguments {
-    /// Length of a pixel: coordinates and displacements are multiplied by it.
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
-    pixel_size: Option<f64>,
-    /// Time between frames.
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
-    frame_interval: Option<f64>,
-    /// Unit of length after scaling.
-    #[arg(long, value_name = "UNIT")]
-    length_unit: Option<String>,
-    /// Unit of time.
-    #[arg(long, value_name = "UNIT")]
-    time_unit: Option<String>,
-    /// Direction of y in the files [default: down, as in images].
-    #[arg(long, value_name = "up|down")]
-    y_axis: Option<YAxis>,
+    #[command(flatten)]
+    image: ImageArguments,
     /// Periodic box (default: an open field of view).
     #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
     box_lengths: Option<Vec<f64>>,
@@ -61,7 +48,7 @@ struct ScaleArguments {
 /// What images do not say about themselves.
 #[derive(Debug, Args)]
 struct ImageArguments {
-    /// Length of a pixel [default: 1].
+    /// Length of a pixel: coordinates and displacements are multiplied by it [default: 1].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pixel_size: Option<f64>,
     /// Time between frames.

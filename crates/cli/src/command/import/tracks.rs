@@ -62,11 +62,11 @@ pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
             y: table.y_column,
         },
         boundary: scale.boundary(),
-        pixel_size: scale.pixel_size,
-        length_unit: scale.length_unit,
-        time_unit: scale.time_unit,
-        frame_interval: scale.frame_interval,
-        y_axis: scale.y_axis,
+        pixel_size: scale.image.pixel_size,
+        length_unit: scale.image.length_unit,
+        time_unit: scale.image.time_unit,
+        frame_interval: scale.image.frame_interval,
+        y_axis: scale.image.y_axis,
     };
     let Import { dataset, track_ids, summary } = read(&table.file, &options)?;
     if summary.left_out_duplicate > 0 {
