@@ -40,7 +40,7 @@ impl<S: Scalar> Default for CellPolygon<S> {
 impl<S: Scalar> CellPolygon<S> {
     /// Takes the ring of `cell` from a tessellation. The cell must be closed.
     pub fn fill(&mut self, tessellation: &Tessellation, positions: &[Vector<S>], cell: usize) {
-        self.fill_ring(tessellation.ring(cell).map(|h| tessellation.displacement(positions, cell, h)));
+        self.fill_ring(tessellation.displacements(positions, cell));
     }
 
     /// Takes the positions of the neighbours relative to the cell, counter-clockwise, at least three.

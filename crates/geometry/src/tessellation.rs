@@ -135,6 +135,18 @@ impl Tessellation {
         self.domain.displacement(positions[cell], positions[self.neighbour(h)], self.image[h])
     }
 
+    /// Displacements from `cell` to its neighbours, in the order of its ring.
+    #[inline]
+    pub fn displacements<S: Scalar>(
+        &self,
+        positions: &[Vector<S>],
+        cell: usize,
+    ) -> impl ExactSizeIterator<Item = Vector<S>> {
+        let (ring, domain, from) = (self.ring(cell), self.domain, positions[cell]);
+        (self.neighbour[ring.clone()].iter().zip(&self.image[ring]))
+            .map(move |(&to, &image)| domain.displacement(from, positions[to as usize], image))
+    }
+
     /// The Delaunay triangles (Voronoi vertices), each once. Two per cell in a periodic box.
     pub fn triangles(&self) -> Vec<Triangle> {
         (0..self.len())

@@ -190,10 +190,13 @@ impl Simulation {
             return Err(Error::TimeStep { time_step });
         }
         let mut stage = std::mem::take(&mut self.stage);
-        let attempt = match self.method {
+        let many = self.now.positions.len() > step::CHUNK;
+        let mut attempt = || match self.method {
             Method::RungeKutta4 => self.runge_kutta(&mut stage, time_step),
             Method::BogackiShampine { tolerance } => self.in_parts(&mut stage, time_step, tolerance),
         };
+        // A parallel loop that starts outside the pool puts the caller to sleep, and the cells into another core's cache.
+        let attempt = if many { rayon::scope(|_| attempt()) } else { attempt() };
         self.stage = stage;
         if attempt.is_err() {
             self.settle()?;

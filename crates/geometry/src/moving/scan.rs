@@ -69,24 +69,22 @@ fn scan_cells(
     let mut suspects = Vec::new();
     let mut ring: Vec<Lifted> = Vec::with_capacity(16);
     for cell in cells {
-        let half_edges = tessellation.ring(cell);
-        let sides = half_edges.len();
+        ring.clear();
+        ring.extend(tessellation.displacements(positions, cell).map(|d| (d, d.x * d.x + d.y * d.y)));
+        let sides = ring.len();
         if sides < 3 {
             return None;
         }
-        ring.clear();
-        ring.extend(half_edges.map(|h| {
-            let d = tessellation.displacement(positions, cell, h);
-            (d, d.x * d.x + d.y * d.y)
-        }));
         let (farthest, total) =
             ring.iter().fold((0.0f64, 0.0), |(most, sum), (_, square)| (most.max(*square), sum + square));
         ring.extend_from_within(..2);
         let (mut least_cross, mut least) = (f64::INFINITY, f64::INFINITY);
+        let mut first = cross(ring[0].0, ring[1].0);
         for corner in ring.windows(3) {
-            let (before, here, after) = (corner[0], corner[1], corner[2]);
-            least_cross = least_cross.min(cross(before.0, here.0));
-            least = least.min(determinant(before, here, after));
+            let second = cross(corner[1].0, corner[2].0);
+            least_cross = least_cross.min(second);
+            least = least.min(determinant(corner[0], corner[1], corner[2], first, second));
+            first = second;
         }
         let length = farthest.sqrt();
         // Extrema pass over NaN, sums do not.
@@ -98,7 +96,8 @@ fn scan_cells(
             continue;
         }
         for (m, corner) in ring.windows(3).enumerate() {
-            if determinant(corner[0], corner[1], corner[2]) <= margin {
+            let (first, second) = (cross(corner[0].0, corner[1].0), cross(corner[1].0, corner[2].0));
+            if determinant(corner[0], corner[1], corner[2], first, second) <= margin {
                 let h = tessellation.half_edge_start(cell) + (m + 1) % sides;
                 let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);
                 // Each edge from one end only.
@@ -111,9 +110,9 @@ fn scan_cells(
     Some(suspects)
 }
 
-/// `a² (b × c) − b² (a × c) + c² (a × b)`, positive if the edge from the cell at 0 to b, between the triangles (0, a, b)
-/// and (0, b, c), is a Delaunay edge: c then lies outside the circle through 0, a and b.
+/// `a² (b × c) − b² (a × c) + c² (a × b)`, given the cross products of the two triangles (0, a, b) and (0, b, c): positive if
+/// the edge between them, from the cell at 0 to b, is a Delaunay edge. c then lies outside the circle through 0, a and b.
 #[inline]
-fn determinant((a, a2): Lifted, (b, b2): Lifted, (c, c2): Lifted) -> f64 {
-    a2 * cross(b, c) - b2 * cross(a, c) + c2 * cross(a, b)
+fn determinant((a, a2): Lifted, (_, b2): Lifted, (c, c2): Lifted, a_cross_b: f64, b_cross_c: f64) -> f64 {
+    a2 * b_cross_c - b2 * cross(a, c) + c2 * a_cross_b
 }

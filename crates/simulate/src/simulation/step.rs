@@ -13,7 +13,7 @@ const LIMIT: f64 = 1.0;
 const LEAST_PART: f64 = 1e-6;
 
 /// Cells per task in sums over fields.
-const CHUNK: usize = 4096;
+pub(super) const CHUNK: usize = 1024;
 
 impl Simulation {
     pub(super) fn runge_kutta(&mut self, stage: &mut Stage, time_step: f64) -> Result<(), Error> {
