@@ -34,6 +34,9 @@ fn a_channel_of_ht1080_cells_flows_as_in_the_paper() {
     let slope = line(&profile, BIRTH_LAYER).unwrap().slope;
     let chirality = case.chirality_of_flow(slope).unwrap();
     assert!((chirality / 2.9 - 1.0).abs() < 0.15, "{chirality}");
+    // The forces between the cells balance their friction: what flows along the channel is what the shear stress drives.
+    let [transport, stress] = [&profile.transport, &profile.shear_stress].map(|values| values[4].value);
+    assert!(transport > 0.5 && (stress / transport - 1.0).abs() < 0.15, "{transport} {stress}");
 }
 
 /// α changes `v_y` and not `v_x` (Extended Data Fig. m5F, G), and the mirror image of a tissue flows the other way along the edges.

@@ -3,8 +3,8 @@
 use crate::{HalfEdgeForces, Model};
 use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
 
-/// Mean stress `σ = −(1/S) Σ_k Σ_i f_{k,i} ⊗ (r_i − r_k)`, row = component of the force, in units of length² × rate
-/// (friction is absorbed).
+/// Mean stress `σ = −(1/S) Σ_k Σ_i f_{k,i} ⊗ (r_i − r_k)`, row = component of the force, in units of rate (friction
+/// is absorbed).
 ///
 /// `S` is the total area of the cells summed over: all in a periodic box, those with a closed polygon and `counts`
 /// otherwise.

@@ -54,6 +54,8 @@ pub struct ChannelReport {
     pub decays: BTreeMap<&'static str, DecayRecord>,
     /// Conservation of cells.
     pub conservation: ConservationRecord,
+    /// Balance of forces along the channel.
+    pub momentum: MomentumRecord,
     /// The continuum theory with the moduli of the honeycomb, where it has a steady state.
     pub continuum: Option<ContinuumRecord>,
     /// The chirality that the slope of v_y against v_x implies.
@@ -128,6 +130,19 @@ pub struct ConservationRecord {
     pub largest_in_errors: f64,
     /// Largest size of k_prolif − k_extr.
     pub largest_rate: f64,
+}
+
+/// What carries cells along the channel between a distance from the edge and the middle, each with its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct MomentumRecord {
+    /// Distance from the edge, next to where the decays are fitted from.
+    pub distance: f64,
+    /// ∫ ρ v_y dx from there to the middle.
+    pub transport: (f64, Option<f64>),
+    /// σ_yx at the middle less σ_yx there: equal to it in the steady state.
+    pub shear_stress: (f64, Option<f64>),
+    /// ½ (τ − τ at the middle): the part of the stress that is due to torques of the cells.
+    pub torque: (f64, Option<f64>),
 }
 
 /// The theory beside the simulation.

@@ -57,7 +57,7 @@ pub use honeycomb::honeycomb;
 pub use method::Method;
 pub use placement::{Generator, RandomPlacement, generator, seed_of_run};
 pub use schedule::{Completion, Event, Frame, RunState, Schedule, Summary, resume, run};
-pub use simulation::{Simulation, State};
+pub use simulation::{Bond, Simulation, State};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
 pub use turnover::{EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Proliferation, Turnover};

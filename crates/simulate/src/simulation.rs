@@ -28,6 +28,17 @@ pub struct Simulation {
     stage: Stage,
 }
 
+/// A force between two places.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Bond {
+    /// Where one end is.
+    pub from: Vector<f64>,
+    /// Where the other end is, relative to it.
+    pub to: Vector<f64>,
+    /// The force on the other end; its opposite acts on the first.
+    pub force: Vector<f64>,
+}
+
 /// All that a simulation needs to go on, besides what it was made of.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
 pub struct State {
@@ -233,6 +244,19 @@ impl Simulation {
     /// The tessellation of the current positions; between walls of [`Simulation::positions_with_images`].
     pub fn tessellation(&self) -> &Tessellation {
         self.tessellation.tessellation()
+    }
+
+    /// The force of each cell's element on each of its neighbours; the opposite force acts on the cell. Between walls of the cells, not
+    /// of their images.
+    pub fn bonds(&self) -> impl Iterator<Item = Bond> {
+        let (tessellation, positions) = (self.tessellation(), self.positions_with_images());
+        (0..self.now.positions.len()).flat_map(move |cell| {
+            let displacements = tessellation.displacements(positions, cell);
+            tessellation.ring(cell).zip(displacements).map(move |(half_edge, to)| {
+                let force = self.forces.on_neighbour(half_edge);
+                Bond { from: positions[cell], to, force }
+            })
+        })
     }
 
     /// The model that moves the cells.

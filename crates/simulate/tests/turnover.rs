@@ -133,6 +133,16 @@ fn the_books_balance() {
         let difference = profile.flux_rate[face].value - profile.net_rate[face].value;
         assert!((difference - imbalance.value).abs() < 1e-9);
     }
+    // In the steady state friction balances the shear stress; the difference is the drift of single cells in a short run.
+    let middle = profile.faces.len() / 2;
+    assert_eq!((profile.transport[middle].value, profile.shear_stress[middle].value), (0.0, 0.0));
+    let moved: f64 =
+        (0..middle).map(|bin| profile.density[bin].value * profile.velocity[1][bin].value * spacing).sum();
+    assert!((profile.transport[0].value - moved).abs() < 1e-9);
+    let [[_, xy], [yx, _]] = &profile.stress;
+    let tau = |bin: usize| xy[bin].value - yx[bin].value;
+    let at = |face: usize| 0.5 * (tau(face) + tau(face - 1));
+    assert!((profile.torque[1].value - 0.5 * (at(1) - at(middle))).abs() < 1e-9);
     // No net momentum: the flux through the whole channel vanishes in both directions.
     for axis in [0, 1] {
         let flux: f64 =

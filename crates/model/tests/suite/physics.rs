@@ -2,8 +2,11 @@
 
 use crate::samples::{difference, jittered, largest, parameters, periodic, random};
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector};
-use voronudge_model::{Model, Parameters, base_terms, columns, parameter_derivatives, stress, velocities};
+use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector, perimeters};
+use voronudge_model::{
+    HalfEdgeForces, Model, Parameters, base_terms, cell_virial, columns, parameter_derivatives, stress,
+    velocities,
+};
 
 #[test]
 fn the_preferred_area_is_a_gauge() -> Result<(), Error> {
@@ -95,6 +98,20 @@ fn the_chiral_turn_acts_on_vertices_and_not_on_centres() -> Result<(), Error> {
     // Contractility is −P ∂P/∂r_v; turning the velocity of the centre instead would give ẑ × (−column).
     let turned: Vec<_> = fields[2].iter().map(|v| -Vector::new(-v.y, v.x)).collect();
     assert!(difference(&fields[3], &turned) > 0.1 * largest(&turned));
+    Ok(())
+}
+
+#[test]
+fn the_antisymmetric_stress_is_the_density_of_torques() -> Result<(), Error> {
+    let side = 8.0;
+    let positions = random(64, [side, side], 8);
+    let tessellation = Tessellation::new(&positions, periodic([side, side])?)?;
+    let p = parameters();
+    let sigma = stress(&tessellation, &positions, &Model::chiral_voronoi(&p), |_| true);
+    let of_a_cell = |perimeter: f64| p.perimeter_elasticity * p.chirality * perimeter * perimeter;
+    let torque: f64 = perimeters(&tessellation, &positions).into_iter().map(of_a_cell).sum();
+    let (found, expected) = (sigma[0][1] - sigma[1][0], torque / (side * side));
+    assert!((found - expected).abs() < 1e-11 * expected.abs(), "{found} {expected}");
     Ok(())
 }
 

@@ -9,7 +9,7 @@ pub use lineage::{Life, Origin};
 pub use rates::{EdgeRate, Injection, Proliferation, Turnover};
 
 use crate::driving::stream;
-use crate::{Channel, Error, Simulation};
+use crate::{Bond, Channel, Error, Simulation};
 use places::{Birth, Demand, Places};
 use rand::Rng;
 use voronudge_geometry::Vector;
@@ -67,6 +67,8 @@ pub struct LastStep {
     pub from: Vec<Vector<f64>>,
     /// Positions of the same cells after they moved, before anything else.
     pub to: Vec<Vector<f64>>,
+    /// Forces between the cells there ([`Simulation::bonds`]).
+    pub bonds: Vec<Bond>,
     /// Where cells were extruded.
     pub extrusions: Vec<Vector<f64>>,
     /// Where cells were born.
@@ -134,7 +136,9 @@ impl LivingTissue {
         let moved = self.move_in_parts(time_step, 1);
         self.last.to.clear();
         self.last.to.extend_from_slice(self.simulation.positions());
+        self.last.bonds.clear();
         moved?;
+        self.last.bonds.extend(self.simulation.bonds());
         self.turn_over(time_step)
     }
 

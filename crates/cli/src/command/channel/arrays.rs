@@ -15,7 +15,8 @@ pub(super) fn write(
 ) -> Result<(), Failure> {
     out.write_array("x.npy", Array1::from(full.centres.clone()).view())?;
     out.write_array("face.npy", Array1::from(full.faces.clone()).view())?;
-    let profiles: [(&str, &[Estimate]); 7] = [
+    let [[stress_xx, stress_xy], [stress_yx, stress_yy]] = &full.stress;
+    let profiles: [(&str, &[Estimate]); 13] = [
         ("density.npy", &full.density),
         ("velocity_x.npy", &full.velocity[0]),
         ("velocity_y.npy", &full.velocity[1]),
@@ -23,6 +24,12 @@ pub(super) fn write(
         ("extrusion_rate.npy", &full.death_rate),
         ("flux_rate.npy", &full.flux_rate),
         ("net_rate.npy", &full.net_rate),
+        ("stress_xx.npy", stress_xx),
+        ("stress_xy.npy", stress_xy),
+        ("stress_yx.npy", stress_yx),
+        ("stress_yy.npy", stress_yy),
+        ("transport.npy", &full.transport),
+        ("torque.npy", &full.torque),
     ];
     for (name, profile) in profiles {
         let array = Array2::from_shape_fn((profile.len(), 2), |(place, column)| match column {

@@ -99,6 +99,26 @@ impl Figures<'_> {
         )
     }
 
+    /// What moves along the channel between a place and the middle, and what drives it.
+    pub fn momentum(&self) -> Figure {
+        let units = &self.request.units;
+        let label = format!("transport to the middle ({})", unit_text(&format!("1/{}", units.time)));
+        let faces = &self.folded.faces;
+        let points = [
+            series("∫ρ v_y dx", BLUE, Marker::Circle, faces, &self.folded.transport),
+            series("shear stress", GREY, Marker::Square, faces, &self.folded.shear_stress),
+            series("torques of the cells", VERMILLION, Marker::Diamond, faces, &self.folded.torque),
+        ];
+        let svg =
+            self.chart("what drives the flow along the channel", [&self.distance(), &label], &points, &[]);
+        Figure::new(
+            svg,
+            "Cells that flow along the channel between a distance and the middle, per time; the difference of the shear stress between the \
+             ends of that stretch, which balances their friction in the steady state; and half the difference of the density of torques, the \
+             part of the stress that cells bring about by turning.",
+        )
+    }
+
     /// Both velocities from edge to edge.
     pub fn edge_to_edge(&self) -> Figure {
         let [v_x, v_y] = &self.full.velocity;

@@ -45,6 +45,12 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
             ..Section::default()
         },
         Section {
+            heading: "What drives the flow along the channel".into(),
+            text: vec![momentum(report)],
+            figures: vec![figures.momentum()],
+            ..Section::default()
+        },
+        Section {
             heading: "Births, extrusions and conservation".into(),
             text: vec![format!(
                 "∂_x(ρ v_x)/ρ and the net proliferation counted differ by at most {} {}, {} standard errors, where the largest rate is {}.",
@@ -153,6 +159,24 @@ fn cards(report: &ChannelReport) -> Vec<Card> {
         });
     }
     cards
+}
+
+fn momentum(report: &ChannelReport) -> String {
+    let momentum = report.momentum;
+    let value = |(value, error): (f64, Option<f64>)| match error {
+        Some(error) => format!("{} ± {}", significant(value, 3), significant(error, 1)),
+        None => significant(value, 3),
+    };
+    format!(
+        "Between {} {} from the edge and the middle ∫ρ v_y dx is {} {}; the shear stress over that stretch gives {}, the torques of the \
+         cells alone {}.",
+        significant(momentum.distance, 3),
+        report.units.length_text(),
+        value(momentum.transport),
+        rate_unit(report),
+        value(momentum.shear_stress),
+        value(momentum.torque),
+    )
 }
 
 fn interval(decay: &DecayRecord) -> String {

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use voronudge_infer::{DecayFit, DecayPoint, DecayShape, Intercept, fit_decay};
 use voronudge_report::channel_report::{
     CellNumbers, ChannelReport, ConservationRecord, ContinuumRecord, DecayRecord, DisturbanceRecord,
-    TurnoverRecord,
+    MomentumRecord, TurnoverRecord,
 };
 use voronudge_simulate::measure::{ChannelProfile, Estimate};
 use voronudge_simulate::{ChannelRun, Injection, LivingTissue, Proliferation};
@@ -126,6 +126,7 @@ pub(super) fn findings(
         ended: outcome.ended.as_ref().map(ToString::to_string),
         decays,
         conservation: conservation(folded),
+        momentum: momentum(folded, from),
         continuum: continuum.as_ref().map(|continuum| continuum.record),
         chirality_from_flow,
         birth_disturbance: disturbance,
@@ -155,6 +156,18 @@ fn conservation(folded: &ChannelProfile) -> ConservationRecord {
         largest_difference: largest(&mut folded.imbalance.iter().map(|at| at.value.abs())),
         largest_in_errors: largest(&mut folded.imbalance.iter().map(in_errors)),
         largest_rate: largest(&mut folded.net_rate.iter().map(|at| at.value.abs())),
+    }
+}
+
+fn momentum(folded: &ChannelProfile, from: f64) -> MomentumRecord {
+    let beyond = folded.faces.iter().position(|distance| *distance >= from);
+    let face = beyond.unwrap_or(folded.faces.len() - 1);
+    let at = |profile: &[Estimate]| (profile[face].value, profile[face].error);
+    MomentumRecord {
+        distance: folded.faces[face],
+        transport: at(&folded.transport),
+        shear_stress: at(&folded.shear_stress),
+        torque: at(&folded.torque),
     }
 }
 

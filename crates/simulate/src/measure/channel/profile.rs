@@ -19,7 +19,14 @@ use crate::Channel;
 /// ∂_x(ρ v_x)/ρ        and        k_prolif − k_extr
 /// ```
 ///
-/// which agree in the steady state, since cells are conserved (continuity equation of the main text).
+/// which agree in the steady state, since cells are conserved (continuity equation of the main text). Along the channel
+///
+/// ```text
+/// ∫ ρ v_y dx    =    σ_yx(W/2) − σ_yx(x)    =    ½ [τ(x) − τ(W/2)] + part of the symmetric shear stress,        τ = σ_xy − σ_yx
+/// ```
+///
+/// from the face at `x` to the middle: the force on the cells between, which is their friction. τ is the density of torques, of
+/// cells with a chiral cortex `ρ ⟨α K_P P²⟩`.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelProfile {
     /// Centres of the bins, from the left edge.
@@ -28,6 +35,8 @@ pub struct ChannelProfile {
     pub density: Vec<Estimate>,
     /// Velocities v_x and v_y.
     pub velocity: [Vec<Estimate>; 2],
+    /// Stress, row = component of the force, of the bonds in a bin (Irving and Kirkwood).
+    pub stress: [[Vec<Estimate>; 2]; 2],
     /// Births per cell and time.
     pub birth_rate: Vec<Estimate>,
     /// Extrusions per cell and time.
@@ -40,6 +49,12 @@ pub struct ChannelProfile {
     pub net_rate: Vec<Estimate>,
     /// The difference of both: the rate at which cells become fewer there.
     pub imbalance: Vec<Estimate>,
+    /// ∫ ρ v_y dx from there to the middle.
+    pub transport: Vec<Estimate>,
+    /// σ_yx(W/2) − σ_yx there, which drives it.
+    pub shear_stress: Vec<Estimate>,
+    /// ½ (τ − τ(W/2)) there, the part of it that is due to torques.
+    pub torque: Vec<Estimate>,
 }
 
 impl ChannelProfile {
@@ -78,6 +93,15 @@ impl ChannelProfile {
         let there = |sample: &Sample, face: usize| {
             around[face].iter().map(|&(bin, _)| 0.5 * sample.residence[bin]).sum::<f64>()
         };
+        let middle = bins / if around.len() > bins { 1 } else { 2 };
+        let transport = |sample: &Sample, face: usize| {
+            let between = |from: usize, to: usize| sample.displacement[1][from..to].iter().sum::<f64>();
+            (if face <= middle { between(face, middle) } else { -between(middle, face) }) * width / area
+        };
+        let at_face = |values: &[f64], face: usize| {
+            0.5 * (values[around[face][0].0] + values[around[face][1].0]) / area
+        };
+        let from_middle = |values: &[f64], face: usize| at_face(values, face) - at_face(values, middle);
         let flux = |sample: &Sample, face: usize| {
             let [left, right] = around[face].map(|(bin, sign)| sign * sample.displacement[0][bin]);
             (right - left) / width
@@ -90,6 +114,13 @@ impl ChannelProfile {
                     (sample.displacement[axis][bin], sample.residence[bin])
                 })
             }),
+            stress: [0, 1].map(|row| {
+                [0, 1].map(|column| {
+                    over_bins(&move |sample: &Sample, bin| {
+                        (sample.virial[row][column][bin] / area, sample.duration)
+                    })
+                })
+            }),
             birth_rate: over_bins(&|sample, bin| (sample.births[bin], sample.residence[bin])),
             death_rate: over_bins(&|sample, bin| (sample.deaths[bin], sample.residence[bin])),
             faces: (0..around.len()).map(|face| face as f64 * width).collect(),
@@ -97,6 +128,14 @@ impl ChannelProfile {
             net_rate: over_faces(&|sample, face| (sample.net_at_face[face], there(sample, face))),
             imbalance: over_faces(&|sample, face| {
                 (flux(sample, face) - sample.net_at_face[face], there(sample, face))
+            }),
+            transport: over_faces(&|sample, face| (transport(sample, face), sample.duration)),
+            shear_stress: over_faces(&|sample, face| {
+                (-from_middle(&sample.virial[1][0], face), sample.duration)
+            }),
+            torque: over_faces(&|sample, face| {
+                let [[_, xy], [yx, _]] = &sample.virial;
+                (0.5 * (from_middle(xy, face) - from_middle(yx, face)), sample.duration)
             }),
         }
     }

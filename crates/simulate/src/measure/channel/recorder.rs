@@ -1,7 +1,7 @@
 //! Counting cells, their displacements, births and deaths in bins across a channel.
 
 use super::ChannelProfile;
-use crate::{Channel, Error, LastStep};
+use crate::{Bond, Channel, Error, LastStep};
 
 /// Sums over equal strips ("bins") of a channel and over equal pieces of time ("samples").
 ///
@@ -40,6 +40,8 @@ pub(super) struct Sample {
     pub residence: Vec<f64>,
     /// Displacements along x and y.
     pub displacement: [Vec<f64>; 2],
+    /// Virials `−f ⊗ d` of bonds times time, row = component of the force, by the share of the bond in the bin (Irving and Kirkwood).
+    pub virial: [[Vec<f64>; 2]; 2],
     pub births: Vec<f64>,
     pub deaths: Vec<f64>,
     /// Births minus deaths.
@@ -64,25 +66,24 @@ impl ChannelRecorder {
         let sample = &mut self.current;
         sample.duration += step.time_step;
         for (from, to) in step.from.iter().zip(&step.to) {
-            let [start, end] = [from.x, to.x].map(|x| x / width);
             let moved = to - from;
-            let mut enter = |bin: f64, share: f64| {
+            along(from.x / width, to.x / width, |bin, share| {
                 let bin = number(bin, bins);
                 sample.residence[bin] += share * step.time_step;
                 sample.displacement[0][bin] += share * moved.x;
                 sample.displacement[1][bin] += share * moved.y;
-            };
-            let [low, high] = if start <= end { [start, end] } else { [end, start] };
-            let (first, last) = (low.floor(), high.floor());
-            if first == last {
-                enter(first, 1.0);
-                continue;
-            }
-            let mut bin = first;
-            while bin <= last {
-                enter(bin, ((bin + 1.0).min(high) - bin.max(low)) / (high - low));
-                bin += 1.0;
-            }
+            });
+        }
+        for Bond { from, to, force } in &step.bonds {
+            let virial = force * to.transpose() * -step.time_step;
+            along(from.x / width, (from.x + to.x) / width, |bin, share| {
+                let bin = number(bin, bins);
+                for (row, sums) in sample.virial.iter_mut().enumerate() {
+                    for (column, sum) in sums.iter_mut().enumerate() {
+                        sum[bin] += share * virial[(row, column)];
+                    }
+                }
+            });
         }
         for (places, sign) in [(&step.births, 1.0), (&step.extrusions, -1.0)] {
             for place in places {
@@ -115,7 +116,7 @@ impl ChannelRecorder {
 
     /// Averages over the samples and over both halves of the channel, from an edge to the middle.
     ///
-    /// The channel is the same after a rotation by π about any point of its middle, α included: densities and rates are the same
+    /// The channel is the same after a rotation by π about any point of its middle, α included: densities and rates and stresses are the same
     /// at `x` and `W − x`, and both components of the velocity are opposite. (A mirror would turn α into −α.)
     pub fn folded_profile(&self) -> ChannelProfile {
         let folded: Vec<Sample> = self.samples.iter().map(Sample::folded).collect();
@@ -130,6 +131,7 @@ impl Sample {
             duration: 0.0,
             residence: zeros(),
             displacement: [zeros(), zeros()],
+            virial: [[zeros(), zeros()], [zeros(), zeros()]],
             births: zeros(),
             deaths: zeros(),
             net_at_face: zeros(),
@@ -148,10 +150,26 @@ impl Sample {
             duration: self.duration,
             residence: fold(&self.residence, 1.0),
             displacement: [0, 1].map(|axis| fold(&self.displacement[axis], -1.0)),
+            virial: self.virial.each_ref().map(|row| row.each_ref().map(|entry| fold(entry, 1.0))),
             births: fold(&self.births, 1.0),
             deaths: fold(&self.deaths, 1.0),
             net_at_face: faces.collect(),
         }
+    }
+}
+
+/// The bins between two places, in widths of a bin, and the share of the path in each.
+fn along(start: f64, end: f64, mut enter: impl FnMut(f64, f64)) {
+    let [low, high] = if start <= end { [start, end] } else { [end, start] };
+    let (first, last) = (low.floor(), high.floor());
+    if first == last {
+        enter(first, 1.0);
+        return;
+    }
+    let mut bin = first;
+    while bin <= last {
+        enter(bin, ((bin + 1.0).min(high) - bin.max(low)) / (high - low));
+        bin += 1.0;
     }
 }
 
