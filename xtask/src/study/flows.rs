@@ -12,11 +12,11 @@ type Failure = Box<dyn std::error::Error>;
 
 /// Cells between walls, and cells that are pinched: a wave of 20 cells, as shorter ones are dispersive.
 const EDGE_CELLS: usize = 100;
-const PINCH_CELLS: usize = 400;
+pub(super) const PINCH_CELLS: usize = 400;
 /// Area elasticity of all tissues here, with K_P = 1.
 const AREA_ELASTICITY: f64 = 0.1;
 
-fn parameters(preferred_perimeter: f64, chirality: f64) -> Parameters<f64> {
+pub(super) fn parameters(preferred_perimeter: f64, chirality: f64) -> Parameters<f64> {
     Parameters { area_elasticity: AREA_ELASTICITY, preferred_perimeter, chirality, ..Parameters::default() }
 }
 
@@ -29,14 +29,14 @@ fn theory(p: &Parameters<f64>, area_elasticity: f64) -> Result<MeanField, Failur
     })?)
 }
 
-fn random(cells: usize, p: &Parameters<f64>, seed: u64) -> Result<Simulation, Failure> {
+pub(super) fn random(cells: usize, p: &Parameters<f64>, seed: u64) -> Result<Simulation, Failure> {
     let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
     let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(seed))?;
     Ok(Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(p))?)
 }
 
 /// Mean and standard error of the mean.
-fn mean(values: &[f64]) -> (f64, f64) {
+pub(super) fn mean(values: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let mean = values.iter().sum::<f64>() / count;
     let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();

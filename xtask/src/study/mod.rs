@@ -6,6 +6,7 @@ pub(crate) mod flows;
 mod nada;
 mod noise;
 mod phases;
+mod pinch_relaxation;
 mod recovery;
 mod seeds;
 mod spectrum;
@@ -68,6 +69,8 @@ enum Study {
     Edge,
     /// Flow across a density gradient.
     Pinching,
+    /// What becomes of it in a liquid.
+    PinchRelaxation,
 }
 
 /// Runs a study.
@@ -83,6 +86,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Channel => channel::run(arguments.seeds),
         Study::Edge => flows::edge(arguments.seeds),
         Study::Pinching => flows::pinching(arguments.seeds),
+        Study::PinchRelaxation => pinch_relaxation::run(arguments.seeds),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

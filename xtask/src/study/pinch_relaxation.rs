@@ -1,0 +1,99 @@
+//! What becomes of the flow that a density gradient sets off in a liquid.
+
+use super::flows::{PINCH_CELLS, mean, parameters, random};
+use super::seeds::on_one_core_each;
+use crate::Outcome;
+use std::f64::consts::TAU;
+use voronudge_geometry::{Domain, Vector};
+use voronudge_simulate::{Error, Simulation};
+
+const PREFERRED_PERIMETER: f64 = 4.0;
+const CHIRALITIES: [f64; 2] = [0.8, 1.6];
+/// Amplitude of the wave in cell sizes: a strain of 0.3, so that it is seen above what chaos makes of two copies.
+const AMPLITUDE: f64 = 1.0;
+const PHASES: u32 = 16;
+const STEP: f64 = 0.005;
+/// Steps after the displacement.
+const STEPS: [u32; 9] = [0, 2, 5, 10, 20, 40, 80, 160, 320];
+/// Time before each of the snapshots.
+const SETTLE: [f64; 2] = [35.0, 5.0];
+
+/// Velocities in phase with the wave, per displacement and squared wave number; and the share of the density wave that is left.
+#[derive(Clone, Copy, Default)]
+struct Response {
+    along: f64,
+    across: f64,
+    density: f64,
+}
+
+/// A displaced copy of a tissue is followed beside one that was left alone.
+fn follow(simulation: &Simulation, phase: u32, sums: &mut [Response]) -> Result<(), Error> {
+    let width = simulation.cell_box().lengths()[0];
+    let q = TAU / width;
+    let angle = |r: &Vector<f64>| q * r.x + TAU * f64::from(phase) / f64::from(PHASES);
+    let copy = |positions| {
+        Simulation::new(positions, Domain::Periodic(simulation.cell_box()), simulation.model().clone())
+    };
+    let positions = simulation.positions().to_vec();
+    let displaced = positions.iter().map(|r| Vector::new(r.x + AMPLITUDE * angle(r).sin(), r.y)).collect();
+    let (mut pinched, mut alone) = (copy(displaced)?, copy(positions)?);
+    let in_phase = |tissue: &Simulation| {
+        let rows = tissue.positions().iter().zip(tissue.velocities());
+        rows.map(|(r, v)| Vector::new(v.x * angle(r).sin(), v.y * angle(r).sin())).sum::<Vector<f64>>()
+    };
+    let wave = |tissue: &Simulation| tissue.positions().iter().map(|r| angle(r).cos()).sum::<f64>();
+    let scale = -2.0 / (simulation.positions().len() as f64 * AMPLITUDE * q);
+    let mut made = 0;
+    for (sum, steps) in sums.iter_mut().zip(STEPS) {
+        while made < steps {
+            pinched.step(STEP)?;
+            alone.step(STEP)?;
+            made += 1;
+        }
+        let v = (in_phase(&pinched) - in_phase(&alone)) * (scale / q);
+        sum.along += v.x;
+        sum.across += v.y;
+        sum.density += (wave(&pinched) - wave(&alone)) * scale;
+    }
+    Ok(())
+}
+
+pub fn run(seeds: u64) -> Outcome {
+    println!("| α | time | −v_x/(a q²) | −v_y/(a q²) | v_y/v_x | density wave left |");
+    println!("|---|---|---|---|---|---|");
+    for chirality in CHIRALITIES {
+        let each = on_one_core_each(seeds, |seed| {
+            let mut simulation = random(PINCH_CELLS, &parameters(PREFERRED_PERIMETER, chirality), seed + 1)?;
+            let mut sums = [Response::default(); STEPS.len()];
+            for time in SETTLE {
+                for _ in 0..(time / STEP).round() as usize {
+                    simulation.step(STEP)?;
+                }
+                for phase in 0..PHASES {
+                    follow(&simulation, phase, &mut sums)?;
+                }
+            }
+            Ok(sums)
+        })?;
+        let count = f64::from(PHASES) * SETTLE.len() as f64;
+        for (k, steps) in STEPS.into_iter().enumerate() {
+            let of = |part: &dyn Fn(&Response) -> f64| {
+                mean(&each.iter().map(|sums| part(&sums[k])).collect::<Vec<_>>())
+            };
+            let (along, across) = (of(&|sum| sum.along / count), of(&|sum| sum.across / count));
+            let (ratio, density) = (of(&|sum| sum.across / sum.along), of(&|sum| sum.density / count));
+            println!(
+                "| {chirality} | {:.3} | {:.2} ± {:.2} | {:.2} ± {:.2} | {:.3} ± {:.3} | {:.3} |",
+                f64::from(steps) * STEP,
+                along.0,
+                along.1,
+                across.0,
+                across.1,
+                ratio.0,
+                ratio.1,
+                density.0
+            );
+        }
+    }
+    Ok(())
+}
