@@ -80,6 +80,7 @@ pub(super) fn findings(
         units: request.units.clone(),
         width,
         length: request.cell_box.lengths()[1],
+        walls: tissue.channel().is_walled().then_some("x"),
         cell_size: request.cell_size,
         parameters: BTreeMap::from([
             ("K_A", p.area_elasticity),

@@ -13,13 +13,14 @@ use crate::Channel;
 /// ```
 ///
 /// with the number of cells `N_b` in a bin of width `h` and the displacements `Δr` of steps `Δt`. The displacement of a step is the
-/// average of the model's velocity over it; births and deaths move no cell. Between bins, weighted by the distance from the face:
+/// average of the model's velocity over it; births and deaths move no cell. At the faces of bins, weighted by the distance from them:
 ///
 /// ```text
 /// ∂_x(ρ v_x)/ρ        and        k_prolif − k_extr
 /// ```
 ///
-/// which agree in the steady state, since cells are conserved (continuity equation of the main text).
+/// which agree in the steady state, since cells are conserved (continuity equation of the main text). Beyond a wall are the mirror
+/// images of the cells, which move the other way along x.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelProfile {
     /// Centres of the bins, from the left edge.
@@ -32,7 +33,7 @@ pub struct ChannelProfile {
     pub birth_rate: Vec<Estimate>,
     /// Extrusions per cell and time.
     pub death_rate: Vec<Estimate>,
-    /// Places between bins.
+    /// Faces of bins: one for both edges of a periodic channel, the first; otherwise with both ends.
     pub faces: Vec<f64>,
     /// ∂_x(ρ v_x)/ρ there.
     pub flux_rate: Vec<Estimate>,
@@ -47,21 +48,20 @@ impl ChannelProfile {
         let bins = samples.first().map_or(0, |sample| sample.residence.len());
         let width = channel.width() / bins as f64;
         let area = width * channel.length();
-        let around = |face: usize| [((face + bins - 1) % bins, 1.0), (face, 1.0)];
-        Self::over(samples, (width, area), (0..bins).map(around).collect())
+        let around = if channel.is_walled() {
+            (0..=bins).map(|face| beside_mirrors(face, bins)).collect()
+        } else {
+            (0..bins).map(|face| [((face + bins - 1) % bins, 1.0), (face, 1.0)]).collect()
+        };
+        Self::over(samples, (width, area), around)
     }
 
     pub(super) fn over_half(channel: Channel, samples: &[Sample]) -> Self {
         let bins = samples.first().map_or(0, |sample| sample.residence.len());
         let width = 0.5 * channel.width() / bins as f64;
         let area = 2.0 * width * channel.length();
-        // Beyond the edge and beyond the middle is the other half, where velocities are opposite. Faces there are counted twice.
-        let around = |face: usize| match face {
-            0 => [(0, -1.0), (0, 1.0)],
-            face if face == bins => [(bins - 1, 1.0), (bins - 1, -1.0)],
-            face => [(face - 1, 1.0), (face, 1.0)],
-        };
-        Self::over(samples, (width, area), (0..=bins).map(around).collect())
+        // Beyond the middle is the other half, and beyond the edge too, or mirror images: v_x is opposite.
+        Self::over(samples, (width, area), (0..=bins).map(|face| beside_mirrors(face, bins)).collect())
     }
 
     /// `around` names the bins left and right of each face, with the sign of the velocity there.
@@ -99,5 +99,14 @@ impl ChannelProfile {
                 (flux(sample, face) - sample.net_at_face[face], there(sample, face))
             }),
         }
+    }
+}
+
+/// Bins left and right of a face, with the sign of v_x there, where v_x is opposite beyond both ends. Faces there are counted twice.
+fn beside_mirrors(face: usize, bins: usize) -> [(usize, f64); 2] {
+    match face {
+        0 => [(0, -1.0), (0, 1.0)],
+        face if face == bins => [(bins - 1, 1.0), (bins - 1, -1.0)],
+        face => [(face - 1, 1.0), (face, 1.0)],
     }
 }
