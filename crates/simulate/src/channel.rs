@@ -69,6 +69,11 @@ impl Channel {
         self.length
     }
 
+    /// Whether a place between the edges is in the right half.
+    pub(crate) fn is_right(&self, place: Vector<f64>) -> bool {
+        place.x > 0.5 * self.width
+    }
+
     /// Distance `d_b` of a place, wrapped or not, from the nearer edge.
     pub fn edge_distance(&self, place: Vector<f64>) -> f64 {
         let x = place.x.rem_euclid(self.width);

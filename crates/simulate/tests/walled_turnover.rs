@@ -57,8 +57,8 @@ fn is_between(place: &Vector<f64>) -> bool {
     0.0 < place.x && place.x < WIDTH
 }
 
-/// The number of cells stays, every cell keeps its life until it is extruded, and all are between the walls, which they fill. After
-/// births and extrusions the simulation is the one that begins with the cells as they are.
+/// The number of cells stays, every cell keeps its life until it is extruded, and all are between the walls, which they fill. In each half
+/// as many are born as extruded. After that the simulation is the one that begins with the cells as they are.
 #[test]
 fn cells_stay_between_the_walls_and_keep_their_identity() {
     for turnover in [TURNOVER, DIVISION] {
@@ -71,7 +71,11 @@ fn cells_stay_between_the_walls_and_keep_their_identity() {
             let simulation = tissue.simulation();
             assert_eq!((simulation.positions().len(), simulation.positions_with_images().len()), (48, 96));
             let last = tissue.last_step();
+            let on_the_right = |places: &[Vector<f64>]| places.iter().filter(|r| r.x > 0.5 * WIDTH).count();
             assert_eq!(last.births.len(), last.extrusions.len());
+            if turnover == TURNOVER {
+                assert_eq!(on_the_right(&last.births), on_the_right(&last.extrusions));
+            }
             assert!(last.births.iter().chain(&last.extrusions).all(is_between));
             assert!(last.from.iter().chain(&last.to).chain(simulation.positions()).all(is_between));
             if step % 20 == 0 || !last.births.is_empty() {
@@ -203,6 +207,10 @@ fn folded(turnover: Turnover, time: f64) -> ChannelProfile {
     let schedule = ChannelSchedule { relaxation: 4.0, time, time_step: 0.01, samples: 16, bins: 16 };
     let run = run_channel(&mut tissue(turnover), &schedule, |_, _, _| ControlFlow::Continue(())).unwrap();
     assert_eq!((run.ended, run.cells), (None, [CELLS, CELLS]));
+    // Neither wall draws the births of the other.
+    let density = run.recorder.profile().density;
+    let half = |bins: &[Estimate]| bins.iter().map(|at| at.value).sum::<f64>();
+    assert!((half(&density[..8]) / half(&density[8..]) - 1.0).abs() < 0.2, "{density:?}");
     run.recorder.folded_profile()
 }
 

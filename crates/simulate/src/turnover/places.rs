@@ -19,12 +19,16 @@ const CLEARANCE: f64 = 1e-6;
 
 /// Draws places of one step. No two events of a step concern the same cells.
 ///
-/// Between walls new cells appear on vertices in front of a wall. At the vertices on it two cells meet their mirror images.
+/// Between walls new cells appear on vertices in front of a wall. At the vertices on it two cells meet their mirror images. The edges are
+/// apart there, and a new cell appears in the half of the one it replaces: otherwise the denser half, with its vertices nearer to
+/// the wall, would draw ever more of the births.
 pub(super) struct Places<'a> {
     tissue: &'a LivingTissue,
     injection: Injection,
     /// Cells that are extruded or next to a new cell.
     taken: Vec<bool>,
+    /// Whether each birth that replaces an extruded cell is in the right half; nothing without walls.
+    halves: Vec<bool>,
     births: usize,
     time_step: f64,
 }
@@ -33,7 +37,12 @@ impl<'a> Places<'a> {
     pub fn new(tissue: &'a LivingTissue, extruded: &[usize], births: usize, time_step: f64) -> Self {
         let mut taken = vec![false; tissue.simulation.positions().len()];
         extruded.iter().for_each(|&cell| taken[cell] = true);
-        Self { tissue, injection: tissue.turnover.injection, taken, births, time_step }
+        let mut halves = Vec::new();
+        if tissue.channel.is_walled() {
+            let positions = tissue.simulation.positions();
+            halves.extend(extruded.iter().map(|&cell| tissue.channel.is_right(positions[cell])));
+        }
+        Self { tissue, injection: tissue.turnover.injection, taken, halves, births, time_step }
     }
 
     /// The same by another way of injection.
@@ -49,13 +58,13 @@ impl<'a> Places<'a> {
                 let positions = self.tissue.simulation.positions();
                 let mut weights = self.weights(positions.iter().copied(), decay_length);
                 (0..self.births)
-                    .map(|_| {
+                    .map(|birth| {
                         weights
                             .iter_mut()
                             .zip(&self.taken)
                             .filter(|(_, taken)| **taken)
                             .for_each(|(w, _)| *w = 0.0);
-                        let mother = self.draw(&weights, rng)?;
+                        let mother = self.draw(birth, &weights, |cell| positions[cell], rng)?;
                         self.taken[mother] = true;
                         Ok(self.beside(mother, distance, rng))
                     })
@@ -105,13 +114,14 @@ impl<'a> Places<'a> {
             .collect();
         let mut weights = self.weights(vertices.iter().map(|(_, place)| *place), decay_length);
         (0..self.births)
-            .map(|_| {
+            .map(|birth| {
                 for (weight, (cells, _)) in weights.iter_mut().zip(&vertices) {
                     if !self.are_free(cells) {
                         *weight = 0.0;
                     }
                 }
-                let (cells, place) = vertices[self.draw(&weights, rng)?];
+                let (cells, place) =
+                    vertices[self.draw(birth, &weights, |vertex| vertices[vertex].1, rng)?];
                 cells.iter().for_each(|&cell| self.taken[cell] = true);
                 Ok(Birth { place, mother: None })
             })
@@ -158,9 +168,21 @@ impl<'a> Places<'a> {
         distances.iter().map(|distance| (-(distance - least) / decay_length).exp()).collect()
     }
 
-    fn draw(&self, weights: &[f64], rng: &mut impl Rng) -> Result<usize, Error> {
+    /// One of the places with these weights for a birth.
+    fn draw(
+        &self,
+        birth: usize,
+        weights: &[f64],
+        place: impl Fn(usize) -> Vector<f64>,
+        rng: &mut impl Rng,
+    ) -> Result<usize, Error> {
+        let half = self.halves.get(birth);
+        let fits =
+            |index: usize| half.is_none_or(|right| self.tissue.channel.is_right(place(index)) == *right);
+        let allowed =
+            weights.iter().enumerate().map(|(index, weight)| if fits(index) { *weight } else { 0.0 });
         // Fails if nothing is left.
-        let index = WeightedIndex::new(weights).map_err(|_| self.no_place())?;
+        let index = WeightedIndex::new(allowed).map_err(|_| self.no_place())?;
         Ok(index.sample(rng))
     }
 
