@@ -23,7 +23,7 @@ pub(crate) fn domain_at(data: &DataSet, frame: usize) -> Result<Domain, Failure>
             "the cells of these data are between walls (\"{walls}\"), which this command does not know of"
         ))
         .with_hint(
-            "only simulate does; without the line walls the box would be periodic, which is another tissue",
+            "only simulate and channel do; without the line walls the box would be periodic, which is another tissue",
         ));
     }
     Ok(match data.boundary {

@@ -28,6 +28,8 @@ pub struct ChannelReport {
     pub width: f64,
     /// Length, along y.
     pub length: f64,
+    /// `x` with torque-free walls at both edges; null in a periodic box.
+    pub walls: Option<&'static str>,
     /// The cell size ℓ₀ at the beginning.
     pub cell_size: f64,
     /// Parameters of the model, by the names of the interface.

@@ -112,6 +112,9 @@ pub enum Error {
         /// The displacement.
         offset: f64,
     },
+    /// Walls at its ends make a channel a box.
+    #[error("there are walls on all four sides, but a channel has open ends")]
+    ClosedChannel,
     /// All cells are gone.
     #[error("at time {time} the last cell is extruded")]
     Extinct {
@@ -191,11 +194,14 @@ impl Error {
             Self::Interrupted => None,
             Self::Turnover { .. } => Some("give rates per cell and time, and lengths in the unit of the box"),
             Self::ShearedChannel { .. } => Some("give a box with a right angle"),
+            Self::ClosedChannel => Some("give walls left and right only"),
             Self::Extinct { .. } => Some("lower the rate of extrusion, or raise that of proliferation"),
             Self::TooManyCells { .. } => {
                 Some("lower the rate of proliferation, raise that of extrusion, or allow more cells")
             }
-            Self::NoPlace { .. } => Some("take a smaller time step, or lower the rates"),
+            Self::NoPlace { .. } => Some(
+                "take a smaller time step, lower the rates, or widen a channel of one or two cells between walls",
+            ),
             Self::Bins { .. } => Some("take an even number, such as two for each cell size"),
             Self::State { .. } => Some("go on with the run that the state was taken from"),
             Self::Honeycomb { .. } => Some("take a multiple of four, such as 100"),

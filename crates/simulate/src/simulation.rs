@@ -152,15 +152,9 @@ impl Simulation {
     /// [`Error::Tessellation`] if a cell lies on a wall.
     pub fn with_walls(mut self, walls: Walls) -> Result<Self, Error> {
         walls::check(&self.model, &self.cell_box, &self.driving)?;
-        let mut mirrored = Mirrored::new(walls, &self.cell_box);
-        mirrored.place(&self.now.positions);
-        self.tessellation = mirrored
-            .domain()
-            .and_then(|domain| MovingTessellation::new(&mirrored.positions, domain))
+        let (mirrored, tessellation) = Mirrored::of(walls, &self.cell_box, &mut self.now.positions)
             .map_err(|source| Error::Tessellation { time: self.now.time, source })?;
-        let cells = self.now.positions.len();
-        self.now.positions.copy_from_slice(&mirrored.positions[..cells]);
-        self.mirrored = Some(mirrored);
+        (self.mirrored, self.tessellation) = (Some(mirrored), tessellation);
         self.settle()?;
         Ok(self)
     }

@@ -2,7 +2,7 @@
 
 use crate::{Driving, Error};
 use serde::{Deserialize, Serialize};
-use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Tessellation, Vector};
 use voronudge_model::Model;
 
 /// Straight walls without friction or torque at the sides of the box.
@@ -56,12 +56,19 @@ pub(crate) struct Mirrored {
 }
 
 impl Mirrored {
-    pub fn new(walls: Walls, cell_box: &PeriodicBox) -> Self {
-        Self { walls, lengths: cell_box.lengths(), positions: Vec::new(), signs: Vec::new() }
-    }
-
-    pub fn domain(&self) -> Result<Domain, voronudge_geometry::Error> {
-        self.walls.doubled(self.lengths).map(Domain::Periodic)
+    /// Cells at positions, which are put in front of the walls, and the tessellation of them and their images.
+    pub fn of(
+        walls: Walls,
+        cell_box: &PeriodicBox,
+        positions: &mut [Vector<f64>],
+    ) -> Result<(Self, MovingTessellation), voronudge_geometry::Error> {
+        let lengths = cell_box.lengths();
+        let mut mirrored = Self { walls, lengths, positions: Vec::new(), signs: Vec::new() };
+        mirrored.place(positions);
+        let domain = Domain::Periodic(walls.doubled(lengths)?);
+        let tessellation = MovingTessellation::new(&mirrored.positions, domain)?;
+        positions.copy_from_slice(&mirrored.positions[..positions.len()]);
+        Ok((mirrored, tessellation))
     }
 
     /// Places cells and images. A cell behind a wall is put where its image is, in front of it.

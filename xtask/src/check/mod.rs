@@ -47,7 +47,9 @@ impl Check {
             Self::Tidy => report(&tidy::violations(root)?),
             Self::Clippy => cargo(root, "clippy --workspace --all-targets --release -- -D warnings", &[]),
             Self::Test => cargo(root, "test --workspace --release", &[]),
-            Self::Doc => cargo(root, "doc --release --workspace --no-deps", &[("RUSTDOCFLAGS", "-D warnings")]),
+            Self::Doc => {
+                cargo(root, "doc --release --workspace --no-deps", &[("RUSTDOCFLAGS", "-D warnings")])
+            }
         }
     }
 }

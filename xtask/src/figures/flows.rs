@@ -65,8 +65,9 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
             Some(format!("{name} {:.0} µm ({} to {})", own["length"].as_f64()?, end(0), end(1)))
         })
         .collect();
+    let widths = widths(size)?;
     Ok(Made {
-        settings: output.typed.clone(),
+        settings: format!("{}; for the widths {}", output.typed, widths.settings),
         found: vec![
             format!(
                 "v_y/v_x = {}, which says α = {} ({} to {}; put in: 2.9).",
@@ -76,12 +77,14 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
                 number(&flow["alpha_ci95"][1])
             ),
             format!("Decay lengths and 95 % intervals: {}.", lengths.join(", ")),
+            widths.found,
         ],
         panels: vec![
             output.panel("density", "Density", "density across the channel")?,
             output.panel("velocity", "Velocities, with the continuum theory", "velocities")?,
             output.panel("rates", "Births and extrusions", "births and extrusions")?,
             output.panel("ratio", "v_y against v_x", "v_y against v_x")?,
+            widths.panel,
             output.panel(
                 "births",
                 "How much a birth changes velocities nearby, on a vertex and beside a mother",
@@ -89,6 +92,66 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
             )?,
         ],
     })
+}
+
+/// Channels of several widths.
+struct Widths {
+    settings: String,
+    found: String,
+    panel: Panel,
+}
+
+fn widths(size: Size) -> Result<Widths, Box<dyn Error>> {
+    let all: &[usize] = size.pick(&[100, 150], &[100, 200, 300, 500]);
+    let rest = size.pick(" --length 100 --relaxation 2 --time 6 --samples 4 --dt 0.02", "");
+    let (mut series, mut slopes, mut theory) = (Vec::new(), Vec::new(), f64::NAN);
+    let mut fastest = 0.0_f64;
+    for &width in all {
+        // Strips of half a cell.
+        let bins = (2 * width).div_ceil(25);
+        let bins = bins + bins % 2;
+        let run = command::run(&format!("channel --preset ht1080 --width {width} --bins {bins}{rest}"))?;
+        let report = run.report()?;
+        let flow = &report["chirality_from_flow"];
+        theory = report["continuum"]["ratio"].as_f64().unwrap_or(theory);
+        let number = |value: &serde_json::Value| value.as_f64().map_or("–".into(), |x| format!("{x:.2}"));
+        let [low, high] = [0, 1].map(|end| number(&flow["slope_ci95"][end]));
+        slopes.push(format!("{width} µm {} ({low} to {high})", number(&flow["slope"])));
+        let points = against_each_other(&run, flow["range"][0].as_f64().unwrap_or(0.0))?;
+        fastest = points.iter().map(|point| point.at[0]).fold(fastest, f64::max);
+        series.push(Series { name: format!("W = {width} µm"), drawn: Drawn::JoinedMarks, points });
+    }
+    series.push(Series {
+        name: "α/(3 − a P_0/ℓ_0)".into(),
+        drawn: Drawn::BrokenLine,
+        points: vec![[0.0, 0.0].into(), [1.1 * fastest, 1.1 * fastest * theory].into()],
+    });
+    let labels = ["v_x, towards the middle (µm/h)", "v_y, along the edge (µm/h)"];
+    let svg = super::chart("several widths", labels, EVEN, &series);
+    Ok(Widths {
+        settings: format!(
+            "`voronudge channel --preset ht1080 --width W{rest}`, W = {} µm",
+            all.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")
+        ),
+        found: format!("v_y/v_x for the widths: {}; theory {theory:.2}.", slopes.join(", ")),
+        panel: Panel {
+            name: "widths",
+            caption: "v_y against v_x of the edge flow for several widths, a point for each distance beyond the layer of births; bars are \
+                      standard errors"
+                .into(),
+            svg,
+        },
+    })
+}
+
+/// v_y over v_x with both errors, from a distance of the edge on.
+fn against_each_other(output: &Output, from: f64) -> Result<Vec<ErrorPoint>, Box<dyn Error>> {
+    let profile = read_flow_profile(&output.path().join("folded_profile.csv"))?;
+    let point = |row: usize| ErrorPoint {
+        at: [0, 1].map(|axis| profile.velocity[axis][row]),
+        error: [0, 1].map(|axis| profile.errors.as_ref().map(|errors| errors[axis][row])),
+    };
+    Ok((0..profile.x.len()).filter(|&row| profile.x[row] >= from).map(point).collect())
 }
 
 fn chiralities(size: Size) -> Result<Made, Box<dyn Error>> {

@@ -1,7 +1,7 @@
 //! `channel` and `estimate-chirality`: files, schemas, the chirality put in, and what is refused.
 
 use crate::program::{succeed, voronudge};
-use crate::refusal::assert_arguments_refused;
+use crate::refusal::{assert_arguments_refused, assert_refused};
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array1, Array2, Array3};
 use serde_json::Value;
@@ -97,19 +97,60 @@ fn a_channel_is_a_data_set_with_profiles_and_lives() {
     assert!((a - b).abs() < 1e-9, "{a} {b}");
 }
 
+/// Between walls every cell stays in the channel, the number of cells too, and the data set and the report tell of the walls.
+#[test]
+fn a_channel_between_walls_says_so() {
+    let (out, periodic) = (Folder::new(), Folder::new());
+    succeed(&format!("{SHORT} --frames 3 --walls x"), &[("--out", out.path())]);
+    succeed(SHORT, &[("--out", periodic.path())]);
+    let (walled, periodic) = (report(out.path()), report(periodic.path()));
+    for report in [&walled, &periodic] {
+        assert_described(report, "channel");
+    }
+    assert!(walled["walls"] == "x" && periodic["walls"].is_null());
+    for count in ["first", "last", "fewest", "most"] {
+        assert_eq!(number(&walled, &format!("/cells/{count}")), 48.0);
+    }
+    assert_eq!(number(&walled, "/cells/births"), number(&walled, "/cells/extrusions"));
+    let positions: Array3<f64> = read(&out.file("positions.npy"));
+    let x: Vec<f64> = positions.slice(ndarray::s![.., .., 0]).iter().copied().collect();
+    assert!(x.iter().all(|x| x.is_nan() || (0.0..=200.0).contains(x)), "{x:?}");
+    assert_eq!(x.iter().filter(|x| !x.is_nan()).count(), 3 * 48);
+    assert!(fs::read_to_string(out.file("dataset.toml")).unwrap().contains("walls = \"x\""));
+    assert_refused("infer", out.path(), &[], &["walls"]);
+    // Both walls are faces.
+    let faces: Array1<f64> = read(&out.file("face.npy"));
+    let flux: Array2<f64> = read(&out.file("flux_rate.npy"));
+    assert_eq!((faces.len(), faces[32], flux.dim()), (33, 200.0, (33, 2)));
+    // The fits begin beyond the edge current, which is far faster than the flow across.
+    assert_eq!(number(&walled, "/chirality_from_flow/range/0"), 50.0);
+    let [x, y]: [Array2<f64>; 2] = ["velocity_x.npy", "velocity_y.npy"].map(|name| read(&out.file(name)));
+    assert!(
+        y[(0, 0)] < -100.0 && y[(31, 0)] > 100.0 && x[(0, 0)].abs() < 10.0,
+        "{} {}",
+        x[(0, 0)],
+        y[(0, 0)]
+    );
+    let page = fs::read_to_string(out.file("report.html")).unwrap();
+    assert!(page.contains("torque-free walls at both edges"));
+}
+
 #[test]
 fn results_do_not_depend_on_threads() {
-    let profile = |threads: &str| {
+    let profile = |threads: &str, walls: &str| {
         let out = Folder::new();
         succeed(
             &format!(
-                "channel --width 6 --length 6 --relaxation 0 --time 2 --alpha 1 --threads {threads} --quiet"
+                "channel --width 6 --length 6 --relaxation 0 --time 2 --alpha 1 --threads {threads} {walls} --quiet"
             ),
             &[("--out", out.path())],
         );
         fs::read_to_string(out.file("folded_profile.csv")).unwrap()
     };
-    assert_eq!(profile("1"), profile("2"));
+    for walls in ["", "--walls x"] {
+        assert_eq!(profile("1", walls), profile("2", walls));
+    }
+    assert_ne!(profile("1", ""), profile("1", "--walls x"));
 }
 
 #[test]
@@ -160,6 +201,8 @@ fn senseless_channels_are_refused() {
         ("channel --samples 0", "--samples is 0"),
         ("channel --injection division --division-distance -1", "distance of a daughter"),
         ("channel --time -1", "duration is -1"),
+        ("channel --walls both", "possible values: x"),
+        ("channel --walls", "a value is required"),
         ("estimate-chirality nowhere.csv", "nowhere.csv"),
         ("estimate-chirality nowhere.csv --from -1", "--from is -1"),
     ] {

@@ -2,6 +2,7 @@
 
 use super::Simulation;
 use crate::Error;
+use crate::walls::Mirrored;
 use voronudge_geometry::{MovingTessellation, PeriodicBox, Vector};
 
 impl Simulation {
@@ -12,11 +13,11 @@ impl Simulation {
 
     /// Goes on from now with other cells: `positions` (N, in the unit of the box) in place of those that are there, and
     /// `headings` (N, radians) if cells propel themselves, otherwise none. The number of cells may change; time and steps
-    /// go on.
+    /// go on. Cells behind a wall are put where their mirror images are.
     ///
     /// # Errors
     /// [`Error::State`] if the directions are not those of as many cells; [`Error::Tessellation`] if the positions cannot be
-    /// tessellated (not finite, coincident, none). The simulation is then as it was.
+    /// tessellated (not finite, coincident with another or, on a wall, with its own image, none). The simulation is then as it was.
     ///
     /// ```
     /// use voronudge_geometry::{Domain, PeriodicBox, Vector};
@@ -32,16 +33,27 @@ impl Simulation {
     /// assert_eq!(simulation.time(), 0.01);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn replace_cells(&mut self, positions: Vec<Vector<f64>>, headings: Vec<f64>) -> Result<(), Error> {
+    pub fn replace_cells(
+        &mut self,
+        mut positions: Vec<Vector<f64>>,
+        headings: Vec<f64>,
+    ) -> Result<(), Error> {
         let cells = positions.len();
         let directions = if self.driving.speed == 0.0 { 0 } else { cells };
         if headings.len() != directions {
             return Err(Error::State { cells, positions: cells, headings: headings.len() });
         }
         let time = self.now.time;
-        let domain = self.domain_at(time).map_err(|source| Error::Tessellation { time, source })?;
-        self.tessellation = MovingTessellation::new(&positions, domain)
-            .map_err(|source| Error::Tessellation { time, source })?;
+        let renewed = match self.walls() {
+            Some(walls) => Mirrored::of(walls, &self.cell_box, &mut positions)
+                .map(|(mirrored, tessellation)| (Some(mirrored), tessellation)),
+            None => self
+                .domain_at(time)
+                .and_then(|domain| MovingTessellation::new(&positions, domain))
+                .map(|tessellation| (None, tessellation)),
+        };
+        (self.mirrored, self.tessellation) =
+            renewed.map_err(|source| Error::Tessellation { time, source })?;
         self.spacing = (self.cell_box.area() / cells as f64).sqrt();
         (self.now.positions, self.now.headings) = (positions, headings);
         self.settle()

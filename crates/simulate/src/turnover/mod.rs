@@ -65,7 +65,7 @@ pub struct LastStep {
     pub time_step: f64,
     /// Positions (N) before the step, unwrapped.
     pub from: Vec<Vector<f64>>,
-    /// Positions of the same cells after they moved, before anything else.
+    /// Positions of the same cells after they moved, before anything else; between walls in front of them.
     pub to: Vec<Vector<f64>>,
     /// Forces between the cells there ([`Simulation::bonds`]).
     pub bonds: Vec<Bond>,
@@ -80,10 +80,10 @@ impl LivingTissue {
     ///
     /// # Errors
     /// [`Error::Turnover`] if a rate is negative or not finite, or a length not positive; [`Error::ShearedChannel`] for a
-    /// sheared box; [`Error::TooManyCells`] if there are too many already.
+    /// sheared box, [`Error::ClosedChannel`] between four walls; [`Error::TooManyCells`] if there are too many already.
     pub fn new(simulation: Simulation, turnover: Turnover) -> Result<Self, Error> {
         turnover.check()?;
-        let channel = Channel::new(&simulation.cell_box())?;
+        let channel = Channel::of(&simulation)?;
         let (cells, time) = (simulation.positions().len(), simulation.time());
         if cells > turnover.most_cells {
             return Err(Error::TooManyCells { time, cells, limit: turnover.most_cells });

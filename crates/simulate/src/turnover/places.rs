@@ -1,10 +1,11 @@
 //! Places for new cells.
 
 use super::{Injection, LivingTissue, Proliferation};
-use crate::Error;
+use crate::{Channel, Error};
 use rand::Rng;
 use rand::distr::{Distribution, weighted::WeightedIndex};
-use voronudge_geometry::{CellPolygon, Vector, circumcentre};
+use std::f64::consts::{PI, TAU};
+use voronudge_geometry::{CellPolygon, Triangle, Vector, circumcentre};
 
 /// Where a cell is born, and from whom.
 pub(super) struct Birth {
@@ -13,12 +14,21 @@ pub(super) struct Birth {
     pub mother: Option<usize>,
 }
 
+/// A new cell is this far from a wall at least, in mean spacings: on it, it would lie on its own mirror image.
+const CLEARANCE: f64 = 1e-6;
+
 /// Draws places of one step. No two events of a step concern the same cells.
+///
+/// Between walls new cells appear on vertices in front of a wall. At the vertices on it two cells meet their mirror images. The edges are
+/// apart there, and a new cell appears in the half of the one it replaces: otherwise the denser half, with its vertices nearer to
+/// the wall, would draw ever more of the births.
 pub(super) struct Places<'a> {
     tissue: &'a LivingTissue,
     injection: Injection,
     /// Cells that are extruded or next to a new cell.
     taken: Vec<bool>,
+    /// Whether each birth that replaces an extruded cell is in the right half; nothing without walls.
+    halves: Vec<bool>,
     births: usize,
     time_step: f64,
 }
@@ -27,7 +37,12 @@ impl<'a> Places<'a> {
     pub fn new(tissue: &'a LivingTissue, extruded: &[usize], births: usize, time_step: f64) -> Self {
         let mut taken = vec![false; tissue.simulation.positions().len()];
         extruded.iter().for_each(|&cell| taken[cell] = true);
-        Self { tissue, injection: tissue.turnover.injection, taken, births, time_step }
+        let mut halves = Vec::new();
+        if tissue.channel.is_walled() {
+            let positions = tissue.simulation.positions();
+            halves.extend(extruded.iter().map(|&cell| tissue.channel.is_right(positions[cell])));
+        }
+        Self { tissue, injection: tissue.turnover.injection, taken, halves, births, time_step }
     }
 
     /// The same by another way of injection.
@@ -43,15 +58,15 @@ impl<'a> Places<'a> {
                 let positions = self.tissue.simulation.positions();
                 let mut weights = self.weights(positions.iter().copied(), decay_length);
                 (0..self.births)
-                    .map(|_| {
+                    .map(|birth| {
                         weights
                             .iter_mut()
                             .zip(&self.taken)
                             .filter(|(_, taken)| **taken)
                             .for_each(|(w, _)| *w = 0.0);
-                        let mother = self.draw(&weights, rng)?;
+                        let mother = self.draw(birth, &weights, |cell| positions[cell], rng)?;
                         self.taken[mother] = true;
-                        Ok(beside(positions, mother, distance, rng))
+                        Ok(self.beside(mother, distance, rng))
                     })
                     .collect()
             }
@@ -60,52 +75,90 @@ impl<'a> Places<'a> {
 
     /// The place of the daughter of a given mother.
     pub fn of_mother(&mut self, mother: usize, rng: &mut impl Rng) -> Result<Birth, Error> {
-        let (tessellation, positions) =
-            (self.tissue.simulation.tessellation(), self.tissue.simulation.positions());
         if let Injection::Division { distance } = self.injection {
-            return Ok(beside(positions, mother, distance, rng));
+            return Ok(self.beside(mother, distance, rng));
         }
+        let (tessellation, positions) =
+            (self.tissue.simulation.tessellation(), self.tissue.simulation.positions_with_images());
         let mut polygon = CellPolygon::default();
         polygon.fill(tessellation, positions, mother);
+        let vertices: Vec<_> = polygon.vertices().map(|vertex| positions[mother] + vertex).collect();
         let neighbours = tessellation.neighbours(mother);
         let sides = neighbours.len();
         // Vertex m lies between neighbours m and m + 1.
         let beyond = |m: usize| [neighbours[m] as usize, neighbours[(m + 1) % sides] as usize];
-        let free: Vec<usize> =
-            (0..sides).filter(|&m| beyond(m).iter().all(|&cell| !self.taken[cell])).collect();
+        let is_free = |&m: &usize| self.is_in_front(&beyond(m), vertices[m]) && self.are_free(&beyond(m));
+        let free: Vec<usize> = (0..sides).filter(is_free).collect();
         if free.is_empty() {
             return Err(self.no_place());
         }
         let chosen = free[rng.random_range(0..free.len())];
         beyond(chosen).into_iter().chain([mother]).for_each(|cell| self.taken[cell] = true);
-        let vertex = polygon.vertices().nth(chosen).unwrap_or_default();
-        Ok(Birth { place: positions[mother] + vertex, mother: Some(mother) })
+        Ok(Birth { place: vertices[chosen], mother: Some(mother) })
     }
 
     fn on_any_vertices(&mut self, decay_length: f64, rng: &mut impl Rng) -> Result<Vec<Birth>, Error> {
         let (tessellation, positions) =
-            (self.tissue.simulation.tessellation(), self.tissue.simulation.positions());
+            (self.tissue.simulation.tessellation(), self.tissue.simulation.positions_with_images());
         let domain = tessellation.domain();
-        let triangles = tessellation.triangles();
-        let place = |triangle: &voronudge_geometry::Triangle| {
-            let [first, second, third] = triangle.cells.map(|cell| positions[cell as usize]);
+        let vertex = |triangle: Triangle| {
+            let cells = triangle.cells.map(|cell| cell as usize);
+            let [first, second, third] = cells.map(|cell| positions[cell]);
             let [_, a, b] = triangle.images;
-            first + circumcentre(domain.displacement(first, second, a), domain.displacement(first, third, b))
+            let centre =
+                circumcentre(domain.displacement(first, second, a), domain.displacement(first, third, b));
+            (cells, first + centre)
         };
-        let places: Vec<_> = triangles.iter().map(place).collect();
-        let mut weights = self.weights(places.iter().copied(), decay_length);
+        let vertices: Vec<_> = (tessellation.triangles().into_iter().map(vertex))
+            .filter(|(cells, place)| self.is_in_front(cells, *place))
+            .collect();
+        let mut weights = self.weights(vertices.iter().map(|(_, place)| *place), decay_length);
         (0..self.births)
-            .map(|_| {
-                for (weight, triangle) in weights.iter_mut().zip(&triangles) {
-                    if triangle.cells.iter().any(|&cell| self.taken[cell as usize]) {
+            .map(|birth| {
+                for (weight, (cells, _)) in weights.iter_mut().zip(&vertices) {
+                    if !self.are_free(cells) {
                         *weight = 0.0;
                     }
                 }
-                let chosen = self.draw(&weights, rng)?;
-                triangles[chosen].cells.iter().for_each(|&cell| self.taken[cell as usize] = true);
-                Ok(Birth { place: places[chosen], mother: None })
+                let (cells, place) =
+                    vertices[self.draw(birth, &weights, |vertex| vertices[vertex].1, rng)?];
+                cells.iter().for_each(|&cell| self.taken[cell] = true);
+                Ok(Birth { place, mother: None })
             })
             .collect()
+    }
+
+    /// Whether a vertex at which these cells meet is one between the walls: of cells alone, no mirror images, and not on a wall.
+    fn is_in_front(&self, cells: &[usize], place: Vector<f64>) -> bool {
+        let simulation = &self.tissue.simulation;
+        let count = simulation.positions().len();
+        cells.iter().all(|&cell| cell < count)
+            && room(self.tissue.channel, place, CLEARANCE * simulation.spacing())
+                .iter()
+                .all(|&room| room > 0.0)
+    }
+
+    fn are_free(&self, cells: &[usize]) -> bool {
+        cells.iter().all(|&cell| !self.taken[cell])
+    }
+
+    /// The place of a daughter beside a mother, in a random direction; between walls in one that does not lead behind them.
+    fn beside(&self, mother: usize, distance: f64, rng: &mut impl Rng) -> Birth {
+        let simulation = &self.tissue.simulation;
+        let from = simulation.positions()[mother];
+        let angle = rng.random_range(0.0..TAU);
+        let [left, right] = room(self.tissue.channel, from, CLEARANCE * simulation.spacing());
+        let [first, last] = [right, -left].map(|room| (room / distance).clamp(-1.0, 1.0).acos());
+        // From the direction as far to the right as there is room on to the left, and back below.
+        let angle = if first == 0.0 && last == PI {
+            angle
+        } else if angle < PI {
+            first + angle / PI * (last - first)
+        } else {
+            TAU - first - (TAU - angle) / PI * (last - first)
+        };
+        let place = from + Vector::new(angle.cos(), angle.sin()) * distance;
+        Birth { place, mother: Some(mother) }
     }
 
     /// `exp(−d_b/d)` of each place, relative to the largest.
@@ -115,9 +168,21 @@ impl<'a> Places<'a> {
         distances.iter().map(|distance| (-(distance - least) / decay_length).exp()).collect()
     }
 
-    fn draw(&self, weights: &[f64], rng: &mut impl Rng) -> Result<usize, Error> {
+    /// One of the places with these weights for a birth.
+    fn draw(
+        &self,
+        birth: usize,
+        weights: &[f64],
+        place: impl Fn(usize) -> Vector<f64>,
+        rng: &mut impl Rng,
+    ) -> Result<usize, Error> {
+        let half = self.halves.get(birth);
+        let fits =
+            |index: usize| half.is_none_or(|right| self.tissue.channel.is_right(place(index)) == *right);
+        let allowed =
+            weights.iter().enumerate().map(|(index, weight)| if fits(index) { *weight } else { 0.0 });
         // Fails if nothing is left.
-        let index = WeightedIndex::new(weights).map_err(|_| self.no_place())?;
+        let index = WeightedIndex::new(allowed).map_err(|_| self.no_place())?;
         Ok(index.sample(rng))
     }
 
@@ -146,8 +211,11 @@ impl Demand {
     }
 }
 
-fn beside(positions: &[Vector<f64>], mother: usize, distance: f64, rng: &mut impl Rng) -> Birth {
-    let angle = rng.random_range(0.0..std::f64::consts::TAU);
-    let place = positions[mother] + Vector::new(angle.cos(), angle.sin()) * distance;
-    Birth { place, mother: Some(mother) }
+/// How far a place is from the walls left and right of it, less a clearance; infinitely if there are none.
+fn room(channel: Channel, place: Vector<f64>, clearance: f64) -> [f64; 2] {
+    if channel.is_walled() {
+        [place.x, channel.width() - place.x].map(|distance| distance - clearance)
+    } else {
+        [f64::INFINITY; 2]
+    }
 }

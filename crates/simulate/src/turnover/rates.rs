@@ -48,7 +48,7 @@ impl EdgeRate {
 #[serde(rename_all = "snake_case")]
 pub enum Proliferation {
     /// One for each cell that is extruded, in the same step, as in the paper; where is drawn with the weight `exp(−d_b/d)`. The
-    /// number of cells is constant.
+    /// number of cells is constant. Between walls it is born in the same half of the channel.
     Replacing {
         /// The decay length `d` of the weight.
         decay_length: f64,

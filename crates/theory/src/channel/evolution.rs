@@ -10,7 +10,13 @@ use crate::Error;
 /// ```
 ///
 /// with the force balance of [`ChannelMedium`]. At the edge and in the middle both velocities vanish, by the symmetry of the
-/// periodic box under rotations by π. Densities belong to the cells of a grid, velocities to the faces between; fluxes cancel, so
+/// periodic box under rotations by π.
+///
+/// Between torque-free walls `v_x` vanishes at the edge too, since no cell passes, and without viscosities the theory is the same. `v_y` of
+/// the cells does not: at the wall it is the shear stress `σ_yx` that vanishes, and the step up to the chiral prestress of the
+/// tissue, which has no gradient elsewhere, drives an edge current that is not in here. With viscosities `v_y = 0` is the wrong condition there.
+///
+/// Densities belong to the cells of a grid, velocities to the faces between; fluxes cancel, so
 /// cells are conserved to rounding. Second order in space, classical Runge–Kutta steps in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelEvolution {

@@ -47,10 +47,13 @@ impl Figures<'_> {
 
     pub fn velocities(&self) -> Figure {
         let [v_x, v_y] = &self.folded.velocity;
-        let points = [
+        let mut points = [
             series("v_x, towards the middle", BLUE, Marker::Circle, &self.folded.centres, v_x),
             series("v_y, along the edge", VERMILLION, Marker::Diamond, &self.folded.centres, v_y),
         ];
+        if self.walled() {
+            points[1].points.retain(|point| point.at[0] >= self.findings.from);
+        }
         let mut curves = self.decay("velocity_x", "exponential decay", BLUE);
         curves.extend(self.decay("velocity_y", "", VERMILLION));
         if let Some(continuum) = &self.findings.continuum {
@@ -59,10 +62,14 @@ impl Figures<'_> {
             curves.push(curve("", VERMILLION, Stroke::Dashed, y));
         }
         let svg = self.chart("velocities", [&self.distance(), &self.velocity("velocity")], &points, &curves);
+        let caption = "Mean velocities against the distance from the edge, both halves together, with signs as at the left edge: the \
+                       channel is the same after a rotation by half a turn, which turns both components round.";
         Figure::new(
             svg,
-            "Mean velocities against the distance from the edge, both halves together, with signs as at the left edge: the channel is \
-             the same after a rotation by half a turn, which turns both components round.",
+            &self.with_note(
+                caption,
+                "v_y is left out where the edge current along the wall outweighs all else.",
+            ),
         )
     }
 
@@ -128,10 +135,8 @@ impl Figures<'_> {
         ];
         let x = format!("x ({})", self.request.units.length_text());
         let svg = self.chart("from edge to edge", [&x, &self.velocity("velocity")], &points, &[]);
-        Figure::new(
-            svg,
-            "The same from edge to edge, not folded. Cells converge on the middle and slide past each other along it.",
-        )
+        let caption = "The same from edge to edge, not folded. Cells converge on the middle and slide past each other along it.";
+        Figure::new(svg, &self.with_note(caption, "Along the walls runs an edge current."))
     }
 
     pub fn ratio(&self) -> Figure {
@@ -141,12 +146,12 @@ impl Figures<'_> {
             error: [at.0.error, at.1.error],
         };
         let record = self.findings.report.chirality_from_flow.as_ref();
-        let from = record.and_then(|record| record.range[0]).unwrap_or(0.0);
+        let from = self.findings.from;
         let pick = |inner: bool| {
             let pairs = self.folded.centres.iter().zip(v_x.iter().zip(v_y));
             pairs.filter(|(d, _)| (**d >= from) == inner).map(|(_, at)| place(at)).collect()
         };
-        let points = [
+        let mut points = vec![
             PointSeries {
                 label: "counts for the line",
                 colour: BLUE,
@@ -160,6 +165,9 @@ impl Figures<'_> {
                 points: pick(false),
             },
         ];
+        if self.walled() {
+            points.truncate(1);
+        }
         let farthest = v_x.iter().map(|at| at.value).filter(|v| v.is_finite()).fold(0.0, f64::max);
         let through = |slope: f64| vec![[0.0, 0.0], [1.2 * farthest, 1.2 * farthest * slope]];
         let mut curves = Vec::new();
@@ -171,10 +179,11 @@ impl Figures<'_> {
         }
         let svg =
             self.chart("v_y against v_x", [&self.velocity("v_x"), &self.velocity("v_y")], &points, &curves);
+        let caption = "Velocity along the edge against velocity towards the middle, one point for each distance. The dashed line is \
+                       what the mean-field theory says for the chirality put in.";
         Figure::new(
             svg,
-            "Velocity along the edge against velocity towards the middle, one point for each distance. The dashed line is what the \
-             mean-field theory says for the chirality put in.",
+            &self.with_note(caption, "Points within the edge current along the wall are left out."),
         )
     }
 
@@ -204,6 +213,15 @@ impl Figures<'_> {
             "How much one birth changes the velocity of a cell at once, at the end of the run, for random places of births: a new cell on \
              a vertex disturbs its surroundings less than one beside its mother.",
         )
+    }
+
+    fn walled(&self) -> bool {
+        self.request.walls.is_some()
+    }
+
+    /// A caption, with what is to be added between walls.
+    fn with_note(&self, caption: &str, between_walls: &str) -> String {
+        if self.walled() { format!("{caption} {between_walls}") } else { caption.into() }
     }
 
     fn chart(

@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use ndarray::Array3;
 use std::fmt::Write as _;
 use voronudge_geometry::Vector;
-use voronudge_io::{Boundary, DataSet, OutputDirectory, YAxis};
+use voronudge_io::{Boundary, DataSet, OutputDirectory, WalledSides, YAxis};
 use voronudge_report::Units;
 use voronudge_simulate::{ChannelSchedule, LivingTissue, Origin};
 
@@ -126,7 +126,7 @@ impl Frames {
             labels: None,
             boundary: Boundary::Periodic { lengths: tissue.simulation().cell_box().lengths() },
             box_offset: None,
-            walls: None,
+            walls: tissue.channel().is_walled().then_some(WalledSides::X),
             frame_interval: self.interval,
             length_unit: units.length.clone(),
             time_unit: units.time.clone(),

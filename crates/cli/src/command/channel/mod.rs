@@ -81,6 +81,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             outcome.recorder.samples()
         ));
     }
+    let crossings = tissue.simulation().state().crossings;
+    if crossings > 0 {
+        run.warn(format!("cells crossed a wall {crossings} times and were put in front of it"));
+    }
     let (full, folded) = (outcome.recorder.profile(), outcome.recorder.folded_profile());
     let disturbance = disturbance(&request, &tissue, arguments.common.seed);
     let record = disturbance.as_ref().map(|[vertex, division]| DisturbanceRecord {
@@ -110,7 +114,10 @@ fn tissue(request: &ChannelRequest, seed: u64) -> Result<LivingTissue, Failure> 
     let mut positions = RandomPlacement::new(request.cells, request.cell_box).draw(&mut generator(seed))?;
     sort_in_space(&mut positions, &request.cell_box);
     let model = Model::chiral_voronoi(&request.parameters);
-    let simulation = Simulation::new(positions, Domain::Periodic(request.cell_box), model)?;
+    let mut simulation = Simulation::new(positions, Domain::Periodic(request.cell_box), model)?;
+    if let Some(walls) = request.walls {
+        simulation = simulation.with_walls(walls)?;
+    }
     Ok(LivingTissue::new(simulation, request.turnover)?)
 }
 

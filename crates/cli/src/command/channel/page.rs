@@ -8,10 +8,23 @@ use voronudge_report::channel_report::{ChannelReport, DecayRecord};
 use voronudge_report::numbers::{significant, unit_text};
 use voronudge_report::page::{Card, Section, SectionPage};
 
+const PERIODIC: [&str; 2] = [
+    "Edges",
+    "The box is periodic: cells on both sides of an edge touch. Both velocities vanish there, since the channel is the same after half a turn \
+     about a place on the edge.",
+];
+
+const WALLED: [&str; 2] = [
+    "Walls",
+    "Torque-free walls stand at both edges: cells there meet mirror images. v_x vanishes at a wall; v_y does not, as chirality drives an edge \
+     current along it, births or not. The continuum does not contain it, and fits begin farther in. New cells appear on vertices in front of \
+     the wall.",
+];
+
 const GUIDE: [[&str; 2]; 5] = [
     [
         "What is simulated",
-        "Cells of the chiral Voronoi model in a periodic box. Cells are extruded and born at rates that fall with the distance from the \
+        "Cells of the chiral Voronoi model. Cells are extruded and born at rates that fall with the distance from the \
          nearer edge; more are born at the edge, more are extruded farther in, so cells flow from the edges to the middle.",
     ],
     [
@@ -26,7 +39,8 @@ const GUIDE: [[&str; 2]; 5] = [
     ],
     [
         "Exponential decay",
-        "A exp(−d/λ) from both edges (and a background for the density), fitted beyond the layer where cells are born.",
+        "A exp(−d/λ) from both edges (and a background for the density), fitted beyond the layer where cells are born, and beyond the \
+         edge current of walls.",
     ],
     [
         "α from the flow",
@@ -76,12 +90,14 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
             ..Section::default()
         });
     }
+    let mut guide = GUIDE.to_vec();
+    guide.insert(1, if report.walls.is_some() { WALLED } else { PERIODIC });
     let page = SectionPage {
         title: &figures.request.title,
         headline: &headline(report),
         summary: &[cells(report), setting(report)],
         cards: &cards(report),
-        guide: &GUIDE,
+        guide: &guide,
         sections: &sections,
         run: &report.run,
     };
@@ -123,15 +139,24 @@ fn cells(report: &ChannelReport) -> String {
 fn setting(report: &ChannelReport) -> String {
     let unit = report.units.length_text();
     format!(
-        "A channel of {} × {} {unit}; averages over {} {} in {} samples, after {} {}.",
+        "A channel of {} × {} {unit}, {}; averages over {} {} in {} samples, after {} {}.",
         significant(report.width, 3),
         significant(report.length, 3),
+        boundary(report),
         significant(report.time, 3),
         report.units.time,
         report.samples,
         significant(report.relaxation, 3),
         report.units.time
     )
+}
+
+fn boundary(report: &ChannelReport) -> &'static str {
+    if report.walls.is_some() {
+        "with torque-free walls at both edges"
+    } else {
+        "periodic in both directions"
+    }
 }
 
 fn cards(report: &ChannelReport) -> Vec<Card> {
@@ -208,6 +233,9 @@ fn rate_unit(report: &ChannelReport) -> String {
 
 pub(super) fn summary(report: &ChannelReport, out: &Path) -> String {
     let mut text = format!("{}\n", cells(report));
+    if report.walls.is_some() {
+        let _ = writeln!(text, "{}", boundary(report));
+    }
     let unit = report.units.length_text();
     for (name, decay) in &report.decays {
         let _ = writeln!(

@@ -26,10 +26,14 @@ pub(super) struct Findings {
     pub report: ChannelReport,
     pub continuum: Option<Continuum>,
     pub fits: Vec<(&'static str, DecayFit, DecayShape)>,
+    /// Distance from the edge from which on decays and the slope are fitted.
+    pub from: f64,
 }
 
 /// Births come about within this many decay lengths of their weight; beyond, profiles decay.
 const BIRTH_LAYER: f64 = 3.0;
+/// Cells within this many cell sizes of a wall are in rows along it, and flow with the edge current.
+const WALL_LAYER: f64 = 2.0;
 /// Grid cells of the theory for the shorter of both decay lengths, and how many it has at most.
 const RESOLUTION: f64 = 4.0;
 const FINEST: usize = 400;
@@ -44,7 +48,8 @@ pub(super) fn findings(
     let width = request.cell_box.lengths()[0];
     // Founders are lives too; everything else was born.
     let lives = tissue.lives();
-    let from = (BIRTH_LAYER * request.proliferation_length()).min(0.25 * width);
+    let at_walls = request.walls.map_or(0.0, |_| WALL_LAYER * request.cell_size);
+    let from = (BIRTH_LAYER * request.proliferation_length()).max(at_walls).min(0.25 * width);
     let profiles: [(&str, &[Estimate], DecayShape); 3] = [
         ("density", &folded.density, DecayShape::Even),
         ("velocity_x", &folded.velocity[0], DecayShape::Odd),
@@ -80,6 +85,7 @@ pub(super) fn findings(
         units: request.units.clone(),
         width,
         length: request.cell_box.lengths()[1],
+        walls: tissue.channel().is_walled().then_some("x"),
         cell_size: request.cell_size,
         parameters: BTreeMap::from([
             ("K_A", p.area_elasticity),
@@ -131,7 +137,7 @@ pub(super) fn findings(
         chirality_from_flow,
         birth_disturbance: disturbance,
     };
-    Ok(Findings { report, continuum, fits })
+    Ok(Findings { report, continuum, fits, from })
 }
 
 fn decay(fit: &DecayFit, from: f64) -> DecayRecord {

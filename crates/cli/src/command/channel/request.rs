@@ -7,7 +7,7 @@ use voronudge_geometry::PeriodicBox;
 use voronudge_model::Parameters;
 use voronudge_report::Units;
 use voronudge_simulate::{
-    ChannelSchedule, EdgeRate, Injection, Proliferation, Turnover, recommended_time_step,
+    ChannelSchedule, EdgeRate, Injection, Proliferation, Turnover, Walls, recommended_time_step,
 };
 
 #[derive(Debug, Args)]
@@ -22,6 +22,9 @@ pub(super) struct ChannelArguments {
     /// Length of the channel, along y [default: 20 cell sizes].
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     length: Option<f64>,
+    /// Torque-free walls at both edges [default: none, the box is periodic].
+    #[arg(long, value_enum)]
+    walls: Option<WallsName>,
     /// Cell size ℓ₀, the square root of the mean area at the beginning [default: 1].
     #[arg(long, value_name = "SIZE", allow_negative_numbers = true)]
     cell_size: Option<f64>,
@@ -76,6 +79,12 @@ enum Preset {
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum WallsName {
+    /// Left and right, as of `simulate`; a channel has open ends.
+    X,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum InjectionName {
     /// On a vertex of the tessellation.
     Vertex,
@@ -88,6 +97,7 @@ pub(super) struct ChannelRequest {
     pub units: Units,
     pub cell_size: f64,
     pub cell_box: PeriodicBox,
+    pub walls: Option<Walls>,
     pub cells: usize,
     pub parameters: Parameters<f64>,
     pub turnover: Turnover,
@@ -183,6 +193,7 @@ impl ChannelArguments {
             },
             cell_size,
             cell_box: PeriodicBox::new([width, length])?,
+            walls: self.walls.map(|WallsName::X| Walls::X),
             cells: cells as usize,
             parameters,
             turnover,

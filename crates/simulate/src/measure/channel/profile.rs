@@ -13,13 +13,14 @@ use crate::Channel;
 /// ```
 ///
 /// with the number of cells `N_b` in a bin of width `h` and the displacements `Δr` of steps `Δt`. The displacement of a step is the
-/// average of the model's velocity over it; births and deaths move no cell. Between bins, weighted by the distance from the face:
+/// average of the model's velocity over it; births and deaths move no cell. At the faces of bins, weighted by the distance from them:
 ///
 /// ```text
 /// ∂_x(ρ v_x)/ρ        and        k_prolif − k_extr
 /// ```
 ///
-/// which agree in the steady state, since cells are conserved (continuity equation of the main text). Along the channel
+/// which agree in the steady state, since cells are conserved (continuity equation of the main text). Beyond a wall are
+/// the mirror images of the cells, which move the other way along x. Along the channel
 ///
 /// ```text
 /// ∫ ρ v_y dx    =    σ_yx(W/2) − σ_yx(x)    =    ½ [τ(x) − τ(W/2)] + part of the symmetric shear stress,        τ = σ_xy − σ_yx
@@ -41,7 +42,7 @@ pub struct ChannelProfile {
     pub birth_rate: Vec<Estimate>,
     /// Extrusions per cell and time.
     pub death_rate: Vec<Estimate>,
-    /// Places between bins.
+    /// Faces of bins: one for both edges of a periodic channel, the first; otherwise with both ends.
     pub faces: Vec<f64>,
     /// ∂_x(ρ v_x)/ρ there.
     pub flux_rate: Vec<Estimate>,
@@ -62,25 +63,35 @@ impl ChannelProfile {
         let bins = samples.first().map_or(0, |sample| sample.residence.len());
         let width = channel.width() / bins as f64;
         let area = width * channel.length();
-        let around = |face: usize| [((face + bins - 1) % bins, 1.0), (face, 1.0)];
-        Self::over(samples, (width, area), (0..bins).map(around).collect())
+        let around = if channel.is_walled() {
+            (0..=bins).map(|face| beside_mirrors(face, bins)).collect()
+        } else {
+            (0..bins).map(|face| [((face + bins - 1) % bins, 1.0), (face, 1.0)]).collect()
+        };
+        Self::over(
+            samples,
+            (width, area),
+            around,
+            Along { middle: bins / 2, walls: walls(channel, [0, bins]) },
+        )
     }
 
     pub(super) fn over_half(channel: Channel, samples: &[Sample]) -> Self {
         let bins = samples.first().map_or(0, |sample| sample.residence.len());
         let width = 0.5 * channel.width() / bins as f64;
         let area = 2.0 * width * channel.length();
-        // Beyond the edge and beyond the middle is the other half, where velocities are opposite. Faces there are counted twice.
-        let around = |face: usize| match face {
-            0 => [(0, -1.0), (0, 1.0)],
-            face if face == bins => [(bins - 1, 1.0), (bins - 1, -1.0)],
-            face => [(face - 1, 1.0), (face, 1.0)],
-        };
-        Self::over(samples, (width, area), (0..=bins).map(around).collect())
+        // Beyond the middle is the other half, and beyond the edge too, or mirror images: v_x is opposite.
+        let around = (0..=bins).map(|face| beside_mirrors(face, bins)).collect();
+        Self::over(samples, (width, area), around, Along { middle: bins, walls: walls(channel, [0, 0]) })
     }
 
     /// `around` names the bins left and right of each face, with the sign of the velocity there.
-    fn over(samples: &[Sample], (width, area): (f64, f64), around: Vec<[(usize, f64); 2]>) -> Self {
+    fn over(
+        samples: &[Sample],
+        (width, area): (f64, f64),
+        around: Vec<[(usize, f64); 2]>,
+        Along { middle, walls }: Along,
+    ) -> Self {
         let bins = samples.first().map_or(0, |sample| sample.residence.len());
         let over_bins = |pair: &dyn Fn(&Sample, usize) -> (f64, f64)| -> Vec<Estimate> {
             let series = |bin| samples.iter().map(|sample| pair(sample, bin)).collect::<Vec<_>>();
@@ -93,13 +104,14 @@ impl ChannelProfile {
         let there = |sample: &Sample, face: usize| {
             around[face].iter().map(|&(bin, _)| 0.5 * sample.residence[bin]).sum::<f64>()
         };
-        let middle = bins / if around.len() > bins { 1 } else { 2 };
         let transport = |sample: &Sample, face: usize| {
             let between = |from: usize, to: usize| sample.displacement[1][from..to].iter().sum::<f64>();
             (if face <= middle { between(face, middle) } else { -between(middle, face) }) * width / area
         };
-        let at_face = |values: &[f64], face: usize| {
-            0.5 * (values[around[face][0].0] + values[around[face][1].0]) / area
+        // No shear stress and no torque at a wall: they are opposite in the mirror.
+        let at_face = |values: &[f64], face: usize| match walls {
+            Some(walls) if walls.contains(&face) => 0.0,
+            _ => 0.5 * (values[around[face][0].0] + values[around[face][1].0]) / area,
         };
         let from_middle = |values: &[f64], face: usize| at_face(values, face) - at_face(values, middle);
         let flux = |sample: &Sample, face: usize| {
@@ -139,4 +151,24 @@ impl ChannelProfile {
             }),
         }
     }
+}
+
+/// Bins left and right of a face, with the sign of v_x there, where v_x is opposite beyond both ends. Faces there are counted twice.
+fn beside_mirrors(face: usize, bins: usize) -> [(usize, f64); 2] {
+    match face {
+        0 => [(0, -1.0), (0, 1.0)],
+        face if face == bins => [(bins - 1, 1.0), (bins - 1, -1.0)],
+        face => [(face - 1, 1.0), (face, 1.0)],
+    }
+}
+
+/// What the balance of forces along a channel needs to know of its faces.
+struct Along {
+    middle: usize,
+    /// The faces at walls.
+    walls: Option<[usize; 2]>,
+}
+
+fn walls(channel: Channel, faces: [usize; 2]) -> Option<[usize; 2]> {
+    channel.is_walled().then_some(faces)
 }

@@ -7,7 +7,7 @@ use crate::{Bond, Channel, Error, LastStep};
 ///
 /// A cell that moves from one bin to another in a step counts in both, by the share of its path. So the displacements in a bin are,
 /// without any error of the step, the number of cells that pass through each `x`, averaged over the bin, and the books balance:
-/// what flows in, plus births, minus deaths, is what is there more.
+/// what flows in, plus births, minus deaths, is what is there more. A cell that was put in front of a wall counts as having gone there.
 ///
 /// ```
 /// use voronudge_geometry::{PeriodicBox, Vector};
@@ -31,7 +31,7 @@ pub struct ChannelRecorder {
     samples: Vec<Sample>,
 }
 
-/// Sums over a piece of time. Vectors over bins, except those over the faces between them, where a place counts by its distance
+/// Sums over a piece of time. Vectors over bins, except those over the faces of bins, where a place counts by its distance
 /// from the face, falling to zero over the width of a bin on either side.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(super) struct Sample {
@@ -44,7 +44,7 @@ pub(super) struct Sample {
     pub virial: [[Vec<f64>; 2]; 2],
     pub births: Vec<f64>,
     pub deaths: Vec<f64>,
-    /// Births minus deaths.
+    /// Births minus deaths. While counting, at all faces from edge to edge; then as [`Sample::between_walls`] and the others say.
     pub net_at_face: Vec<f64>,
 }
 
@@ -62,13 +62,26 @@ impl ChannelRecorder {
 
     /// Takes in a step.
     pub fn add(&mut self, step: &LastStep) {
-        let (bins, width) = (self.bins, self.channel.width() / self.bins as f64);
+        let (bins, walled, width) =
+            (self.bins, self.channel.is_walled(), self.channel.width() / self.bins as f64);
+        let number = |bin: f64| match bin as i64 {
+            bin if walled => bin.clamp(0, bins as i64 - 1) as usize,
+            bin => bin.rem_euclid(bins as i64) as usize,
+        };
+        // What a cell does behind a wall, its mirror image does in front of it.
+        let mirrored = |bin: f64| match bin as i64 {
+            behind if walled && behind < 0 => (number((-1 - behind) as f64), -1.0),
+            behind if walled && behind >= bins as i64 => {
+                (number((2 * bins as i64 - 1 - behind) as f64), -1.0)
+            }
+            _ => (number(bin), 1.0),
+        };
         let sample = &mut self.current;
         sample.duration += step.time_step;
         for (from, to) in step.from.iter().zip(&step.to) {
             let moved = to - from;
             along(from.x / width, to.x / width, |bin, share| {
-                let bin = number(bin, bins);
+                let bin = number(bin);
                 sample.residence[bin] += share * step.time_step;
                 sample.displacement[0][bin] += share * moved.x;
                 sample.displacement[1][bin] += share * moved.y;
@@ -77,10 +90,10 @@ impl ChannelRecorder {
         for Bond { from, to, force } in &step.bonds {
             let virial = force * to.transpose() * -step.time_step;
             along(from.x / width, (from.x + to.x) / width, |bin, share| {
-                let bin = number(bin, bins);
+                let (bin, sign) = mirrored(bin);
                 for (row, sums) in sample.virial.iter_mut().enumerate() {
                     for (column, sum) in sums.iter_mut().enumerate() {
-                        sum[bin] += share * virial[(row, column)];
+                        sum[bin] += if row == column { share } else { sign * share } * virial[(row, column)];
                     }
                 }
             });
@@ -88,11 +101,11 @@ impl ChannelRecorder {
         for (places, sign) in [(&step.births, 1.0), (&step.extrusions, -1.0)] {
             for place in places {
                 let at = place.x / width;
-                let (bin, beyond) = (number(at.floor(), bins), at - at.floor());
+                let (bin, beyond) = (number(at.floor()), at - at.floor());
                 let counts = if sign > 0.0 { &mut sample.births } else { &mut sample.deaths };
                 counts[bin] += 1.0;
                 sample.net_at_face[bin] += sign * (1.0 - beyond);
-                sample.net_at_face[(bin + 1) % bins] += sign * beyond;
+                sample.net_at_face[bin + 1] += sign * beyond;
             }
         }
     }
@@ -111,13 +124,15 @@ impl ChannelRecorder {
 
     /// Averages over the samples, from edge to edge.
     pub fn profile(&self) -> ChannelProfile {
-        ChannelProfile::over_bins(self.channel, &self.samples)
+        let unfold = if self.channel.is_walled() { Sample::between_walls } else { Sample::periodic };
+        let samples: Vec<Sample> = self.samples.iter().map(unfold).collect();
+        ChannelProfile::over_bins(self.channel, &samples)
     }
 
     /// Averages over the samples and over both halves of the channel, from an edge to the middle.
     ///
-    /// The channel is the same after a rotation by π about any point of its middle, α included: densities and rates and stresses are the same
-    /// at `x` and `W − x`, and both components of the velocity are opposite. (A mirror would turn α into −α.)
+    /// The channel is the same after a rotation by π about any point of its middle, α included, between walls too: densities,
+    /// stresses and rates are the same at `x` and `W − x`, and both components of the velocity are opposite. (A mirror would turn α into −α.)
     pub fn folded_profile(&self) -> ChannelProfile {
         let folded: Vec<Sample> = self.samples.iter().map(Sample::folded).collect();
         ChannelProfile::over_half(self.channel, &folded)
@@ -134,18 +149,35 @@ impl Sample {
             virial: [[zeros(), zeros()], [zeros(), zeros()]],
             births: zeros(),
             deaths: zeros(),
-            net_at_face: zeros(),
+            net_at_face: vec![0.0; bins + 1],
         }
     }
 
-    /// The sum over both halves, seen from the left edge.
+    /// The same with both edges as one face, the first.
+    fn periodic(&self) -> Self {
+        let mut net_at_face = self.net_at_face.clone();
+        let last = net_at_face.pop();
+        net_at_face.iter_mut().zip(last).for_each(|(first, last)| *first += last);
+        Self { net_at_face, ..self.clone() }
+    }
+
+    /// The same with the walls as faces between the bins beside them and their mirror images.
+    fn between_walls(&self) -> Self {
+        let mut net_at_face = self.net_at_face.clone();
+        let last = net_at_face.len() - 1;
+        [0, last].into_iter().for_each(|wall| net_at_face[wall] *= 2.0);
+        Self { net_at_face, ..self.clone() }
+    }
+
+    /// The sum over both halves, seen from the left edge. Edge and middle are faces between a half and the other.
     fn folded(&self) -> Self {
         let bins = self.residence.len();
         let fold = |values: &[f64], sign: f64| -> Vec<f64> {
             (0..bins / 2).map(|bin| values[bin] + sign * values[bins - 1 - bin]).collect()
         };
+        let twice = |face: usize| if face == 0 { 2.0 } else { 1.0 };
         let faces =
-            (0..=bins / 2).map(|face| self.net_at_face[face] + self.net_at_face[(bins - face) % bins]);
+            (0..=bins / 2).map(|face| twice(face) * (self.net_at_face[face] + self.net_at_face[bins - face]));
         Self {
             duration: self.duration,
             residence: fold(&self.residence, 1.0),
@@ -171,8 +203,4 @@ fn along(start: f64, end: f64, mut enter: impl FnMut(f64, f64)) {
         enter(bin, ((bin + 1.0).min(high) - bin.max(low)) / (high - low));
         bin += 1.0;
     }
-}
-
-fn number(bin: f64, bins: usize) -> usize {
-    (bin as i64).rem_euclid(bins as i64) as usize
 }
