@@ -57,7 +57,9 @@ fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
         let svg = over_perimeter(label, label, &field, Some(&errors), theory(of, &field)?);
         panels.push(Panel {
             name,
-            caption: format!("{label}; broken lines are the mean field of the honeycomb"),
+            caption: format!(
+                "{label}; broken lines are the mean field of the honeycomb, within the range of the values"
+            ),
             svg,
         });
     }
