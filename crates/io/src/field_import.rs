@@ -94,7 +94,7 @@ struct Found {
     track: usize,
 }
 
-/// Imports extrema of a field, `.npy` or TIFF, of one frame or several.
+/// Imports extrema of a field, `.npy` or TIFF of one frame or several, or grey PNG.
 ///
 /// Pixel (row, column) has its centre at (column + ½, row + ½) pixels. See [`extrema`] for what counts and [`link_nearest`] for how cells
 /// are followed.

@@ -1,12 +1,14 @@
-//! Images with one number for each pixel: `.npy` arrays and TIFF.
+//! Images with one number for each pixel: `.npy` arrays, TIFF and PNG.
 
-use std::io::Cursor;
+mod png;
+mod tiff;
+
 use std::path::Path;
 
 use ndarray::{Array3, ArrayD, Axis, Ix3};
-use tiff::decoder::{Decoder, DecodingResult};
-use tiff::{ColorType, TiffError};
 
+use self::png::{Indices, parse_png};
+use self::tiff::{integers, parse_tiff, reals};
 use crate::array::{parse_integers, parse_reals};
 use crate::error::{Error, FormatFault, ImageFault, ShapeFault};
 use crate::tracks::SIZE_LIMIT;
@@ -15,7 +17,8 @@ use crate::tracks::SIZE_LIMIT;
 pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Array3<i64>, Error> {
     let labels = match kind(path, bytes)? {
         Kind::Array => stack(path, parse_integers(path, bytes).map_err(as_image_fault)?)?,
-        Kind::Tiff => parse_tiff(path, bytes, integers)?,
+        Kind::Tiff => parse_tiff(path, bytes, integers).map_err(as_picture)?,
+        Kind::Png => parse_png(path, bytes, Indices::Numbers).map_err(as_picture)?.mapv(i64::from),
     };
     let negative = labels.indexed_iter().find(|&(_, &label)| label < 0);
     match negative {
@@ -31,6 +34,7 @@ pub(crate) fn parse_field_images(path: &Path, bytes: &[u8]) -> Result<Array3<f64
     let field = match kind(path, bytes)? {
         Kind::Array => stack(path, parse_reals(path, bytes).map_err(as_image_fault)?)?,
         Kind::Tiff => parse_tiff(path, bytes, reals)?,
+        Kind::Png => parse_png(path, bytes, Indices::Colours)?.mapv(f64::from),
     };
     let missing = field.indexed_iter().find(|(_, value)| !value.is_finite());
     match missing {
@@ -48,12 +52,15 @@ pub(crate) fn image_error(path: &Path, fault: ImageFault) -> Error {
 enum Kind {
     Array,
     Tiff,
+    Png,
 }
 
 fn kind(path: &Path, bytes: &[u8]) -> Result<Kind, Error> {
     let is = |signature: &[u8]| bytes.starts_with(signature);
     if is(b"II*\0") || is(b"MM\0*") || is(b"II+\0") || is(b"MM\0+") {
         Ok(Kind::Tiff)
+    } else if is(b"\x89PNG\r\n\x1a\n") {
+        Ok(Kind::Png)
     } else if is(b"\x93NUMPY") || bytes.is_empty() {
         Ok(Kind::Array)
     } else {
@@ -73,6 +80,28 @@ fn as_image_fault(error: Error) -> Error {
     }
 }
 
+/// Colours in place of labels: no channel of them can be taken for the labels.
+fn as_picture(error: Error) -> Error {
+    match error {
+        Error::Image { path, fault: ImageFault::Colour { page, colour } } => {
+            Error::Image { path, fault: ImageFault::PictureOfLabels { page, colour } }
+        }
+        other => other,
+    }
+}
+
+/// Refuses pages that do not fit in memory, before anything is allocated for their pixels.
+fn check_size(path: &Path, page: usize, size: [u32; 2]) -> Result<(), Error> {
+    let [columns, rows] = size;
+    let needed = 8 * (page as u64 + 1) * u64::from(columns) * u64::from(rows);
+    if needed > SIZE_LIMIT {
+        let size = [columns as usize, rows as usize];
+        let fault = ImageFault::TooLarge { page, size, bytes: needed, limit: SIZE_LIMIT };
+        return Err(image_error(path, fault));
+    }
+    Ok(())
+}
+
 fn stack<T: Clone>(path: &Path, array: ArrayD<T>) -> Result<Array3<T>, Error> {
     const EXPECTED: &str = "(ny, nx) or (frames, ny, nx)";
     let found = array.shape().to_vec();
@@ -88,75 +117,4 @@ fn stack<T: Clone>(path: &Path, array: ArrayD<T>) -> Result<Array3<T>, Error> {
         }
     }
     Ok(array)
-}
-
-/// The pages of a TIFF file, each a frame.
-fn parse_tiff<T: Clone>(
-    path: &Path,
-    bytes: &[u8],
-    numbers: fn(DecodingResult) -> Result<Vec<T>, ImageFault>,
-) -> Result<Array3<T>, Error> {
-    let failure = |fault| image_error(path, fault);
-    let mut page = 0;
-    let broken = |page: usize| {
-        move |error: TiffError| image_error(path, ImageFault::Tiff { page, detail: error.to_string() })
-    };
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(broken(0))?;
-    let (mut pixels, mut first): (Vec<T>, Option<[usize; 2]>) = (Vec::new(), None);
-    loop {
-        let (columns, rows) = decoder.dimensions().map_err(broken(page))?;
-        let size = [columns as usize, rows as usize];
-        let expected = *first.get_or_insert(size);
-        if size != expected {
-            return Err(failure(ImageFault::OtherSize { page, found: size, expected }));
-        }
-        // Before anything is allocated for the pixels.
-        let needed = 8 * (page as u64 + 1) * u64::from(columns) * u64::from(rows);
-        if needed > SIZE_LIMIT {
-            return Err(failure(ImageFault::TooLarge { page, size, bytes: needed, limit: SIZE_LIMIT }));
-        }
-        match decoder.colortype().map_err(broken(page))? {
-            ColorType::Gray(_) => {}
-            colour => return Err(failure(ImageFault::Colour { page, colour: format!("{colour:?}") })),
-        }
-        pixels.extend(numbers(decoder.read_image().map_err(broken(page))?).map_err(failure)?);
-        page += 1;
-        if !decoder.more_images() {
-            break;
-        }
-        decoder.next_image().map_err(broken(page))?;
-    }
-    let [columns, rows] = first.unwrap_or_default();
-    let found = pixels.len();
-    Array3::from_shape_vec((page, rows, columns), pixels).map_err(|_| {
-        failure(ImageFault::Tiff { page: 0, detail: format!("{found} pixels do not fill {page} pages") })
-    })
-}
-
-fn integers(pixels: DecodingResult) -> Result<Vec<i64>, ImageFault> {
-    let real = |found: &str| Err(ImageFault::RealLabels { found: found.to_owned() });
-    Ok(match pixels {
-        DecodingResult::U8(values) => values.into_iter().map(i64::from).collect(),
-        DecodingResult::U16(values) => values.into_iter().map(i64::from).collect(),
-        DecodingResult::U32(values) => values.into_iter().map(i64::from).collect(),
-        // Labels beyond i64 are told as negative ones, which they are when read as signed.
-        DecodingResult::U64(values) => values.into_iter().map(|value| value as i64).collect(),
-        DecodingResult::I8(values) => values.into_iter().map(i64::from).collect(),
-        DecodingResult::I16(values) => values.into_iter().map(i64::from).collect(),
-        DecodingResult::I32(values) => values.into_iter().map(i64::from).collect(),
-        DecodingResult::I64(values) => values,
-        DecodingResult::F16(_) => return real("float16"),
-        DecodingResult::F32(_) => return real("float32"),
-        DecodingResult::F64(_) => return real("float64"),
-    })
-}
-
-fn reals(pixels: DecodingResult) -> Result<Vec<f64>, ImageFault> {
-    Ok(match pixels {
-        DecodingResult::F16(values) => values.into_iter().map(f64::from).collect(),
-        DecodingResult::F32(values) => values.into_iter().map(f64::from).collect(),
-        DecodingResult::F64(values) => values,
-        DecodingResult::U64(values) => values.into_iter().map(|value| value as f64).collect(),
-        whole => integers(whole)?.into_iter().map(|value| value as f64).collect(),
-    })
 }

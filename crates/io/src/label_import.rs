@@ -48,7 +48,7 @@ pub struct LabelOptions {
     pub border: BorderCells,
 }
 
-/// Imports label images, `.npy` or TIFF, of one frame or several: centroids, areas, perimeters and contacts.
+/// Imports label images, `.npy` or TIFF of one frame or several, or PNG: centroids, areas, perimeters and contacts.
 ///
 /// Pixel (row, column) takes up the square from (column, row) to (column + 1, row + 1) pixels. Areas count pixels; the perimeter is
 /// that of [`Mask::cells`]. Cells are numbered along the axis of cells in the order of their labels, frame by frame.

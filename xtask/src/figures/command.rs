@@ -13,7 +13,7 @@ pub(super) struct Output {
     page: String,
 }
 
-/// Runs the tool.
+/// Runs the tool in the root of the repository.
 pub(super) fn run(arguments: &str) -> Result<Output, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
     let status = Command::new(program()?)
@@ -21,6 +21,7 @@ pub(super) fn run(arguments: &str) -> Result<Output, Box<dyn Error>> {
         .arg("--quiet")
         .arg("--out")
         .arg(folder.path())
+        .current_dir(crate::root())
         .status()?;
     if !status.success() {
         return Err(format!("voronudge {arguments}: {status}").into());

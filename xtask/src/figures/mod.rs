@@ -9,6 +9,7 @@ mod landscapes;
 mod moduli;
 mod page;
 mod phases;
+mod slices;
 mod structure;
 
 use crate::Outcome;
@@ -86,7 +87,15 @@ struct Panel {
 
 /// All figures, in the order of the paper.
 fn all() -> Vec<Figure> {
-    [landscapes::FIGURES, phases::FIGURES, moduli::FIGURES, flows::FIGURES, structure::FIGURES].concat()
+    [
+        landscapes::FIGURES,
+        slices::FIGURES,
+        phases::FIGURES,
+        moduli::FIGURES,
+        flows::FIGURES,
+        structure::FIGURES,
+    ]
+    .concat()
 }
 
 /// What a series is drawn as.

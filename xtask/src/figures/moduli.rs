@@ -12,7 +12,7 @@ pub(super) const FIGURES: &[Figure] = &[
         name: "2c-m1b-moduli",
         title: "elastic moduli of disordered tissues",
         stated: "μ falls with P₀ and vanishes at P₀* = 3.81 − |α|, as one function of the distance from it; in solids B, μ and Kᵒ follow the \
-             mean field",
+             mean field, in which A = 0",
         make: elastic,
     },
     Figure {
@@ -25,8 +25,8 @@ pub(super) const FIGURES: &[Figure] = &[
 
 fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
     let output = command::run(size.pick(
-        "phase-diagram --P_0 3 3.2 2 --alpha 0 0.2 2 --cells 36 --time 4 --quantities shear_modulus,odd_shear_modulus,bulk_modulus",
-        "phase-diagram --P_0 3 4 11 --alpha 0 0.3 4 --cells 64 --time 50 --dt 0.02 --quantities shear_modulus,odd_shear_modulus,bulk_modulus",
+        "phase-diagram --P_0 3 3.2 2 --alpha 0 0.2 2 --cells 36 --time 4 --quantities shear_modulus,odd_shear_modulus,bulk_modulus,odd_bulk_modulus",
+        "phase-diagram --P_0 3 4 11 --alpha 0 0.3 4 --cells 64 --replicas 4 --time 50 --dt 0.02 --quantities shear_modulus,odd_shear_modulus,bulk_modulus,odd_bulk_modulus",
     ))?;
     let shear = Field::read(&output, "shear_modulus")?;
     let theory = |of: fn(&Moduli) -> f64, field: &Field| -> Result<Vec<Series>, Box<dyn Error>> {
@@ -50,12 +50,16 @@ fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
         ("mu", "shear_modulus", "μ / K_P", (|m| m.shear) as fn(&Moduli) -> f64),
         ("ko", "odd_shear_modulus", "Kᵒ / K_P", |m| m.odd_shear),
         ("b", "bulk_modulus", "B / K_P", |m| m.bulk),
+        ("a", "odd_bulk_modulus", "A / K_P", |m| m.odd_bulk),
     ] {
         let field = Field::read(&output, quantity)?;
-        let svg = over_perimeter(label, label, &field, theory(of, &field)?);
+        let errors = Field::read(&output, &format!("{quantity}_error"))?;
+        let svg = over_perimeter(label, label, &field, Some(&errors), theory(of, &field)?);
         panels.push(Panel {
             name,
-            caption: format!("{label}; broken lines are the mean field of the honeycomb"),
+            caption: format!(
+                "{label}; broken lines are the mean field of the honeycomb, within the range of the values"
+            ),
             svg,
         });
     }
@@ -77,18 +81,34 @@ fn elastic(size: Size) -> Result<Made, Box<dyn Error>> {
             &distance,
         ),
     });
-    let found = shear.rows().filter_map(|(alpha, row)| {
-        let (first, last) = (row.first()?, row.last()?);
-        Some(format!(
-            "{:.3} at P₀ = {} and {:.3} at P₀ = {} for α = {alpha}",
-            first[1], first[0], last[1], last[0]
-        ))
+    let mut found = Vec::new();
+    for (symbol, quantity) in [("μ", "shear_modulus"), ("A", "odd_bulk_modulus")] {
+        let ends =
+            ends(&Field::read(&output, quantity)?, &Field::read(&output, &format!("{quantity}_error"))?);
+        found.push(format!("{symbol}/K_P is {}.", ends.join("; ")));
+    }
+    let last = shear.preferred_perimeters.last().copied().unwrap_or(f64::NAN);
+    found.push(format!(
+        "So A is not that of the honeycomb, which has A = 0, wherever there is chirality: in solids by displacements that do not follow \
+         the strain (see [moduli](commands/moduli.md#what-was-measured)), in liquids because perimeters grow less than lengths do. If they \
+         did not grow at all, A/K_P would be α P₀²/2, that is {:.1} α at P₀ = {last}.",
+        0.5 * last.powi(2)
+    ));
+    Ok(Made { settings: output.typed.clone(), found, panels })
+}
+
+/// The first and the last value of each row, with errors.
+fn ends(field: &Field, errors: &Field) -> Vec<String> {
+    let both = field.rows().zip(errors.rows());
+    let words = both.filter_map(|((alpha, values), (_, errors))| {
+        let end = |value: &[f64; 2], error: &[f64; 2]| {
+            // Minus zero is zero.
+            format!("{:.3} ± {:.3} at P₀ = {}", (1e3 * value[1]).round() / 1e3 + 0.0, error[1], value[0])
+        };
+        let [first, last] = [end(values.first()?, errors.first()?), end(values.last()?, errors.last()?)];
+        Some(format!("{first} and {last} for α = {alpha}"))
     });
-    Ok(Made {
-        settings: output.typed.clone(),
-        found: vec![format!("μ/K_P is {}.", found.collect::<Vec<_>>().join("; "))],
-        panels,
-    })
+    words.collect()
 }
 
 fn viscous(size: Size) -> Result<Made, Box<dyn Error>> {

@@ -8,7 +8,8 @@ pub(super) fn render(figures: &[Figure], record: &Record) -> String {
     let mut page = String::from(
         "# Gallery\n\nThe figures of *Chirality across scales in tissue dynamics* that can be computed, made anew by \
          `cargo xtask figures NAME`, with what the paper states beside what came out. Panels that show experiments or \
-         sketches are not here; slices of the loss of measured data are drawn by `infer --landscape`. This page is written by that command; `--quick` makes small ones in `target/figures`.\n",
+         sketches are not here. The paper's measured data are not public: slices of the loss, which it draws for them, are drawn here for a \
+         simulated tissue with noise (M0H). This page is written by that command; `--quick` makes small ones in `target/figures`.\n",
     );
     for figure in figures {
         let Some(entry) = record.get(figure.name) else { continue };

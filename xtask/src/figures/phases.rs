@@ -212,14 +212,25 @@ fn collapse(size: Size) -> Result<Made, Box<dyn Error>> {
     })
 }
 
-/// Curves over P_0, one for each chirality, and what a theory says of them.
-pub(super) fn over_perimeter(title: &str, label: &str, field: &Field, theory: Vec<Series>) -> String {
-    let series = |(alpha, row): (f64, Vec<[f64; 2]>)| Series {
+/// Curves over P_0, one for each chirality, with errors where they are given, and what a theory says of them.
+pub(super) fn over_perimeter(
+    title: &str,
+    label: &str,
+    field: &Field,
+    errors: Option<&Field>,
+    theory: Vec<Series>,
+) -> String {
+    let series = |(row, (alpha, points)): (usize, (f64, Vec<[f64; 2]>))| Series {
         name: format!("α = {alpha}"),
         drawn: Drawn::JoinedMarks,
-        points: row.into_iter().map(ErrorPoint::from).collect(),
+        points: (points.into_iter().enumerate())
+            .map(|(column, at)| ErrorPoint {
+                at,
+                error: [None, errors.map(|errors| errors.values[[row, column]])],
+            })
+            .collect(),
     };
-    let all: Vec<Series> = theory.into_iter().chain(field.rows().map(series)).collect();
+    let all: Vec<Series> = theory.into_iter().chain(field.rows().enumerate().map(series)).collect();
     super::chart(title, ["P_0 / ℓ_0", label], EVEN, &all)
 }
 
@@ -245,7 +256,7 @@ fn lyapunov(size: Size) -> Result<Made, Box<dyn Error>> {
         panels: vec![Panel {
             name: "",
             caption: "Largest Lyapunov exponent against preferred perimeter".into(),
-            svg: over_perimeter("largest Lyapunov exponent", "λ / K_P", &field, Vec::new()),
+            svg: over_perimeter("largest Lyapunov exponent", "λ / K_P", &field, None, Vec::new()),
         }],
     })
 }

@@ -73,17 +73,18 @@ fn solids_rest_and_liquids_flow() {
 }
 
 /// A disordered solid deep below the transition has nearly the honeycomb's μ = 1.008 and B = 2.792. Four runs of 100 cells give
-/// Kᵒ = −0.35 ± 0.02, two thirds of the honeycomb's −√3 α.
+/// Kᵒ = −0.35 ± 0.02, two thirds of the honeycomb's −√3 α, and an odd bulk modulus, which the honeycomb lacks.
 #[test]
 fn moduli_of_a_solid_are_near_those_of_the_honeycomb() {
     let out = diagram(
         "phase-diagram --P_0 3 3 1 --alpha 0.3 0.3 1 --cells 64 --time 40 --quiet \
-         --quantities shear_modulus,odd_shear_modulus,bulk_modulus",
+         --quantities shear_modulus,odd_shear_modulus,bulk_modulus,odd_bulk_modulus",
     );
     let modulus = |name: &str| read::<f64, ndarray::Ix2>(&out.file(&format!("{name}.npy")))[(0, 0)];
     assert!((modulus("shear_modulus") / 1.008 - 1.0).abs() < 0.15, "{}", modulus("shear_modulus"));
     assert!((modulus("bulk_modulus") / 2.792 - 1.0).abs() < 0.15, "{}", modulus("bulk_modulus"));
     assert!((-0.55..-0.2).contains(&modulus("odd_shear_modulus")), "{}", modulus("odd_shear_modulus"));
+    assert!((0.02..0.3).contains(&modulus("odd_bulk_modulus")), "{}", modulus("odd_bulk_modulus"));
 }
 
 #[test]

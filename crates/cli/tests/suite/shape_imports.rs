@@ -193,7 +193,7 @@ fn what_is_no_label_image_is_refused() {
     assert_labels_refused("a.npy", npy("<i8", "False", "(20, 20)", &zeros), &["frame 0", "all background"]);
     assert_labels_refused("a.npy", npy("<i8", "False", "(400,)", &zeros), &["shape (400,)", "(ny, nx)"]);
     assert_labels_refused("x_seg.npy", npy("|O", "False", "()", &[0; 50]), &["pickled"]);
-    assert_labels_refused("a.png", b"\x89PNG\r\n\x1a\n", &["neither"]);
+    assert_labels_refused("a.jpg", b"\xff\xd8\xff\xe0", &["neither", "PNG"]);
     assert_labels_refused("a.npy", npy("<i8", "False", "(3000000, 3000000)", &zeros), &["truncated"]);
     let mut negative = zeros.clone();
     negative[8 * 45..8 * 46].copy_from_slice(&(-3_i64).to_le_bytes());
@@ -216,6 +216,128 @@ fn a_damaged_tiff_is_refused() {
     let mut encoder = TiffEncoder::new(&mut bytes).unwrap();
     encoder.write_image::<colortype::RGB8>(4, 4, &[0; 48]).unwrap();
     assert_labels_refused("a.tif", bytes.into_inner(), &["page 0", "colour"]);
+}
+
+fn png_bytes(colour: png::ColorType, depth: png::BitDepth, size: [u32; 2], samples: &[u8]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut encoder = png::Encoder::new(&mut bytes, size[0], size[1]);
+    encoder.set_color(colour);
+    encoder.set_depth(depth);
+    if colour == png::ColorType::Indexed {
+        encoder.set_palette([200, 10, 90].repeat(1 << (depth as usize)));
+    }
+    encoder.write_header().unwrap().write_image_data(samples).unwrap();
+    bytes
+}
+
+const SIZE: [u32; 2] = [COLUMNS as u32, ROWS as u32];
+
+/// The numbers of a PNG are labels whatever their bits, also those of a palette whose colours are all one.
+#[test]
+fn a_png_is_the_array_it_was_made_of() {
+    let source = Folder::new();
+    let imported = |file: &Path| {
+        let data = Folder::new();
+        succeed("import labels", &[("", file), ("--out", data.path())]);
+        let positions: Array3<f64> = read(&data.file("positions.npy"));
+        let numbers: Array2<i64> = read(&data.file("cell_numbers.npy"));
+        (positions, numbers)
+    };
+    let high = mask(&centres(0.0), |k| 600 * (k as u16 + 1));
+    let low = mask(&centres(0.0), |k| k as u16 + 1);
+    let few = mask(&centres(0.0), |k| (k % 15) as u16 + 1);
+    let words: Vec<u8> = high.iter().flat_map(|label| label.to_be_bytes()).collect();
+    let octets: Vec<u8> = low.iter().map(|&label| label as u8).collect();
+    let halves: Vec<u8> = few
+        .iter()
+        .copied()
+        .collect::<Vec<u16>>()
+        .chunks(2)
+        .map(|pair| (pair[0] << 4 | pair[1]) as u8)
+        .collect();
+    use png::{BitDepth, ColorType};
+    for (labels, colour, depth, samples) in [
+        (&high, ColorType::Grayscale, BitDepth::Sixteen, &words),
+        (&low, ColorType::Grayscale, BitDepth::Eight, &octets),
+        (&low, ColorType::Indexed, BitDepth::Eight, &octets),
+        (&few, ColorType::Grayscale, BitDepth::Four, &halves),
+    ] {
+        source.write_array("labels.npy", labels);
+        let array = imported(&source.file("labels.npy"));
+        let picture = imported(&source.write("labels.png", png_bytes(colour, depth, SIZE, samples)));
+        assert!(array.1.iter().all(|&number| number > 0) && array == picture, "{colour:?}, {depth:?}");
+    }
+}
+
+#[test]
+fn a_png_that_is_damaged_or_no_labels_is_refused() {
+    use png::{BitDepth, ColorType};
+    let pixels: Vec<u8> = mask(&centres(0.0), |k| k as u16 + 1).iter().map(|&label| label as u8).collect();
+    let whole = png_bytes(ColorType::Grayscale, BitDepth::Eight, SIZE, &pixels);
+    for length in [8, 20, 40, whole.len() / 2, whole.len() - 14, whole.len() - 3] {
+        assert_labels_refused("a.png", &whole[..length], &["a.png", "not a whole PNG image"]);
+    }
+    assert_labels_refused("a.png", [], &["a.png"]);
+    // Among the pixels, and in the check sum before the last twelve bytes.
+    for (place, fact) in [(whole.len() / 2, ""), (whole.len() - 13, "CRC")] {
+        let mut damaged = whole.clone();
+        damaged[place] ^= 0x10;
+        assert_labels_refused("a.png", damaged, &["not a whole PNG image", fact]);
+    }
+    let huge = png_bytes_of_size(&whole, [2_000_000_000, 2_000_000_000]);
+    assert_labels_refused("a.png", huge, &["2000000000 × 2000000000", "the limit is"]);
+    // Fits in memory, but the pixels are not there.
+    assert_labels_refused("a.png", png_bytes_of_size(&whole, [12_000, 12_000]), &["not a whole PNG image"]);
+    for (colour, samples) in [(ColorType::Rgb, 3), (ColorType::Rgba, 4), (ColorType::GrayscaleAlpha, 2)] {
+        let picture = png_bytes(colour, BitDepth::Eight, [4, 4], &[7; 64][..16 * samples]);
+        assert_labels_refused(
+            "a.png",
+            picture,
+            &[&format!("{colour:?}(8)"), "a picture of labels, not labels"],
+        );
+    }
+    let mut animated = Vec::new();
+    let mut encoder = png::Encoder::new(&mut animated, 4, 4);
+    encoder.set_animated(2, 0).unwrap();
+    let mut writer = encoder.write_header().unwrap();
+    (0..2).for_each(|_| writer.write_image_data(&[1; 16]).unwrap());
+    writer.finish().unwrap();
+    assert_labels_refused("a.png", animated, &["animated", "2 frames"]);
+}
+
+/// The same file with another size in its header.
+fn png_bytes_of_size(whole: &[u8], size: [u32; 2]) -> Vec<u8> {
+    let mut bytes = whole.to_vec();
+    bytes[16..20].copy_from_slice(&size[0].to_be_bytes());
+    bytes[20..24].copy_from_slice(&size[1].to_be_bytes());
+    let mut sum = flate2::Crc::new();
+    sum.update(&bytes[12..29]);
+    bytes[29..33].copy_from_slice(&sum.sum().to_be_bytes());
+    bytes
+}
+
+/// A field has heights, and the index of a colour is none.
+#[test]
+fn a_field_is_read_from_a_grey_png() {
+    use png::{BitDepth, ColorType};
+    let (source, array, picture) = (Folder::new(), Folder::new(), Folder::new());
+    let height = |row: usize, column: usize| {
+        let distance = |c: &[f64; 2]| (row as f64 - c[1]).hypot(column as f64 - c[0]);
+        centres(0.0).iter().map(|c| 9000.0 * (-distance(c).powi(2) / 32.0).exp()).sum::<f64>() as u16
+    };
+    let field = Array2::from_shape_fn((ROWS, COLUMNS), |(row, column)| height(row, column));
+    source.write_array("field.npy", &field.mapv(f64::from));
+    let words: Vec<u8> = field.iter().flat_map(|value| value.to_be_bytes()).collect();
+    let file = source.write("field.png", png_bytes(ColorType::Grayscale, BitDepth::Sixteen, SIZE, &words));
+    succeed("import field", &[("", &source.file("field.npy")), ("--out", array.path())]);
+    succeed("import field", &[("", &file), ("--out", picture.path())]);
+    let heights: Array2<f64> = read(&picture.file("heights.npy"));
+    assert!(heights.len() > 60);
+    let expected: Array2<f64> = read(&array.file("heights.npy"));
+    assert_eq!(heights, expected);
+    let indexed = png_bytes(ColorType::Indexed, BitDepth::Eight, [4, 4], &[7; 16]);
+    let file = source.write("indexed.png", indexed);
+    assert_arguments_refused([OsStr::new("import"), OsStr::new("field"), file.as_os_str()], &["Indexed(8)"]);
 }
 
 #[test]

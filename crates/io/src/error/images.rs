@@ -4,8 +4,8 @@
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
 pub enum ImageFault {
-    /// Neither `.npy` nor TIFF.
-    #[error("is neither a .npy array nor a TIFF image")]
+    /// Neither `.npy` nor TIFF nor PNG.
+    #[error("is neither a .npy array nor a TIFF or PNG image")]
     UnknownFormat,
     /// A pickled Python object, such as Cellpose's `_seg.npy`.
     #[error("holds a pickled Python object, not an array of numbers")]
@@ -18,9 +18,29 @@ pub enum ImageFault {
         /// What the decoder says.
         detail: String,
     },
-    /// A page with several numbers for each pixel.
+    /// A PNG file that cannot be decoded.
+    #[error("is not a whole PNG image: {detail}")]
+    Png {
+        /// What the decoder says.
+        detail: String,
+    },
+    /// A PNG file with several frames.
+    #[error("is an animated PNG of {frames} frames")]
+    Animation {
+        /// How many it says there are.
+        frames: u32,
+    },
+    /// A page with several numbers for each pixel, or with a palette.
     #[error("page {page} is a colour image ({colour}), one number for each pixel is needed")]
     Colour {
+        /// Page, from zero.
+        page: usize,
+        /// The kind of pixels.
+        colour: String,
+    },
+    /// Labels were wanted, and a page has colours.
+    #[error("page {page} is a colour image ({colour}): a picture of labels, not labels")]
+    PictureOfLabels {
         /// Page, from zero.
         page: usize,
         /// The kind of pixels.
@@ -123,7 +143,7 @@ pub enum ImageFault {
 impl ImageFault {
     pub(super) fn hint(&self) -> Option<String> {
         let text = match self {
-            Self::UnknownFormat => "save it as TIFF, or with numpy.save",
+            Self::UnknownFormat => "save it as TIFF or PNG, or with numpy.save",
             Self::Pickled => {
                 "take the masks out of a _seg.npy of Cellpose: \
                  np.save(\"masks.npy\", np.load(\"x_seg.npy\", allow_pickle=True).item()[\"masks\"])"
@@ -131,6 +151,14 @@ impl ImageFault {
             Self::Tiff { .. } => {
                 "the file was probably cut while it was written or copied, or is compressed in a way that is not read; \
                  write it again without compression"
+            }
+            Self::Png { .. } => {
+                "the file was probably cut or damaged while it was written or copied; write or copy it again"
+            }
+            Self::Animation { .. } => "save the frames as pages of one TIFF, or as one array with numpy.save",
+            Self::PictureOfLabels { .. } => {
+                "write the numbers of the cells, not colours for them: a grey image of 8, 16 or 32 bits, as Cellpose's \
+                 --save_png and --save_tif do, or numpy.save(\"labels.npy\", masks)"
             }
             Self::Colour { .. } => "save one channel as a grey image of 8, 16 or 32 bits",
             Self::OtherSize { .. } => "all frames must be of one size; import them one by one otherwise",

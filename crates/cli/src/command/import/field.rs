@@ -32,7 +32,7 @@ const GUIDE: &[[&str; 2]] = &[
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The field (ny, nx) or (frames, ny, nx), .npy, or a grey .tif of one page or several.
+    /// The field (ny, nx) or (frames, ny, nx), .npy, a grey .tif of one page or several, or a grey .png.
     file: PathBuf,
     #[command(flatten)]
     image: ImageArguments,

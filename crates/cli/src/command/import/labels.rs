@@ -12,7 +12,7 @@ use voronudge_io::{BorderCells, LabelLinking, LabelOptions, OutputDirectory, imp
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, or a grey .tif of one page or several.
+    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, a grey .tif of one page or several, or a .png.
     file: PathBuf,
     #[command(flatten)]
     image: ImageArguments,

@@ -27,11 +27,11 @@ enum What {
     Tracks(tracks::Arguments),
     /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
     Flow(flow::Arguments),
-    /// Label images, as segmentations make them (.npy or .tif): every pixel carries the number of its cell, or 0.
+    /// Label images, as segmentations make them (.npy, .tif or .png): every pixel carries the number of its cell, or 0.
     Labels(labels::Arguments),
     /// Outlines of cells (.csv or .csv.gz), a row for each corner: cell, x, y.
     Outlines(outlines::Arguments),
-    /// A field, such as a stream function or an intensity (.npy or .tif): cells are its maxima or minima.
+    /// A field, such as a stream function or an intensity (.npy, .tif or .png): cells are its maxima or minima.
     Field(field::Arguments),
 }
 

@@ -157,6 +157,9 @@ fn caption(quantity: Quantity) -> &'static str {
             "Odd shear modulus: the shear stress at 45° to the strain. On the honeycomb it is −√3 α."
         }
         Quantity::BulkModulus => "Bulk modulus of the state at the end of the run.",
+        Quantity::OddBulkModulus => {
+            "Odd bulk modulus: the torque of a dilation, over the dilation. On the honeycomb it is zero."
+        }
     }
 }
 

@@ -157,7 +157,10 @@ fn values(
             Quantity::T1Rate => [summary.transition_rate, None],
             Quantity::ShapeIndex => measured(&averages.shape),
             Quantity::MeanSquareFrequency => measured(&averages.frequency),
-            Quantity::ShearModulus | Quantity::OddShearModulus | Quantity::BulkModulus => continue,
+            Quantity::ShearModulus
+            | Quantity::OddShearModulus
+            | Quantity::BulkModulus
+            | Quantity::OddBulkModulus => continue,
             Quantity::Lyapunov => match lyapunov(request, job, &simulation, watch)? {
                 Some(value) => value,
                 None => return Ok(None),
@@ -174,6 +177,7 @@ fn values(
                 Quantity::ShearModulus => |moduli| moduli.shear,
                 Quantity::OddShearModulus => |moduli| moduli.odd_shear,
                 Quantity::BulkModulus => |moduli| moduli.bulk,
+                Quantity::OddBulkModulus => |moduli| moduli.odd_bulk,
                 _ => continue,
             };
             values.insert(quantity, [Some(of(&elastic.moduli)), Some(of(&elastic.errors))]);

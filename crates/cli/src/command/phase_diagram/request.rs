@@ -38,6 +38,8 @@ pub(crate) enum Quantity {
     OddShearModulus,
     /// The bulk modulus B.
     BulkModulus,
+    /// The odd bulk modulus A.
+    OddBulkModulus,
 }
 
 impl Quantity {
@@ -54,6 +56,7 @@ impl Quantity {
             Self::ShearModulus => "shear_modulus",
             Self::OddShearModulus => "odd_shear_modulus",
             Self::BulkModulus => "bulk_modulus",
+            Self::OddBulkModulus => "odd_bulk_modulus",
         }
     }
 
@@ -70,12 +73,13 @@ impl Quantity {
             Self::ShearModulus => ["shear modulus", "μ (K_P)"],
             Self::OddShearModulus => ["odd shear modulus", "Kᵒ (K_P)"],
             Self::BulkModulus => ["bulk modulus", "B (K_P)"],
+            Self::OddBulkModulus => ["odd bulk modulus", "A (K_P)"],
         }
     }
 
     /// Whether it is one of the elastic moduli.
     pub fn is_modulus(self) -> bool {
-        matches!(self, Self::ShearModulus | Self::OddShearModulus | Self::BulkModulus)
+        matches!(self, Self::ShearModulus | Self::OddShearModulus | Self::BulkModulus | Self::OddBulkModulus)
     }
 
     /// How its values are spread over colours.
@@ -84,7 +88,9 @@ impl Quantity {
             Self::MeanSquareVelocity | Self::MeanSquareFrequency => {
                 (AxisScale::Logarithmic, Palette::Sequential)
             }
-            Self::Lyapunov | Self::OddShearModulus => (AxisScale::Linear, Palette::Diverging { centre: 0.0 }),
+            Self::Lyapunov | Self::OddShearModulus | Self::OddBulkModulus => {
+                (AxisScale::Linear, Palette::Diverging { centre: 0.0 })
+            }
             _ => (AxisScale::Linear, Palette::Sequential),
         }
     }

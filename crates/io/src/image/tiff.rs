@@ -1,0 +1,78 @@
+//! Pages of TIFF files.
+
+use std::io::Cursor;
+use std::path::Path;
+
+use ndarray::Array3;
+use tiff::decoder::{Decoder, DecodingResult};
+use tiff::{ColorType, TiffError};
+
+use super::{check_size, image_error};
+use crate::error::{Error, ImageFault};
+
+/// The pages of a TIFF file, each a frame.
+pub(super) fn parse_tiff<T: Clone>(
+    path: &Path,
+    bytes: &[u8],
+    numbers: fn(DecodingResult) -> Result<Vec<T>, ImageFault>,
+) -> Result<Array3<T>, Error> {
+    let failure = |fault| image_error(path, fault);
+    let mut page = 0;
+    let broken = |page: usize| {
+        move |error: TiffError| image_error(path, ImageFault::Tiff { page, detail: error.to_string() })
+    };
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(broken(0))?;
+    let (mut pixels, mut first): (Vec<T>, Option<[usize; 2]>) = (Vec::new(), None);
+    loop {
+        let (columns, rows) = decoder.dimensions().map_err(broken(page))?;
+        let size = [columns as usize, rows as usize];
+        let expected = *first.get_or_insert(size);
+        if size != expected {
+            return Err(failure(ImageFault::OtherSize { page, found: size, expected }));
+        }
+        check_size(path, page, [columns, rows])?;
+        match decoder.colortype().map_err(broken(page))? {
+            ColorType::Gray(_) => {}
+            colour => return Err(failure(ImageFault::Colour { page, colour: format!("{colour:?}") })),
+        }
+        pixels.extend(numbers(decoder.read_image().map_err(broken(page))?).map_err(failure)?);
+        page += 1;
+        if !decoder.more_images() {
+            break;
+        }
+        decoder.next_image().map_err(broken(page))?;
+    }
+    let [columns, rows] = first.unwrap_or_default();
+    let found = pixels.len();
+    Array3::from_shape_vec((page, rows, columns), pixels).map_err(|_| {
+        failure(ImageFault::Tiff { page: 0, detail: format!("{found} pixels do not fill {page} pages") })
+    })
+}
+
+pub(super) fn integers(pixels: DecodingResult) -> Result<Vec<i64>, ImageFault> {
+    let real = |found: &str| Err(ImageFault::RealLabels { found: found.to_owned() });
+    Ok(match pixels {
+        DecodingResult::U8(values) => values.into_iter().map(i64::from).collect(),
+        DecodingResult::U16(values) => values.into_iter().map(i64::from).collect(),
+        DecodingResult::U32(values) => values.into_iter().map(i64::from).collect(),
+        // Labels beyond i64 are told as negative ones, which they are when read as signed.
+        DecodingResult::U64(values) => values.into_iter().map(|value| value as i64).collect(),
+        DecodingResult::I8(values) => values.into_iter().map(i64::from).collect(),
+        DecodingResult::I16(values) => values.into_iter().map(i64::from).collect(),
+        DecodingResult::I32(values) => values.into_iter().map(i64::from).collect(),
+        DecodingResult::I64(values) => values,
+        DecodingResult::F16(_) => return real("float16"),
+        DecodingResult::F32(_) => return real("float32"),
+        DecodingResult::F64(_) => return real("float64"),
+    })
+}
+
+pub(super) fn reals(pixels: DecodingResult) -> Result<Vec<f64>, ImageFault> {
+    Ok(match pixels {
+        DecodingResult::F16(values) => values.into_iter().map(f64::from).collect(),
+        DecodingResult::F32(values) => values.into_iter().map(f64::from).collect(),
+        DecodingResult::F64(values) => values,
+        DecodingResult::U64(values) => values.into_iter().map(|value| value as f64).collect(),
+        whole => integers(whole)?.into_iter().map(|value| value as f64).collect(),
+    })
+}
