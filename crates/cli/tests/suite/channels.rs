@@ -3,7 +3,7 @@
 use crate::program::{succeed, voronudge};
 use crate::refusal::{assert_arguments_refused, assert_refused};
 use crate::scratch::{Folder, number, read, report};
-use ndarray::{Array1, Array2, Array3};
+use ndarray::{Array1, Array2, Array3, Axis};
 use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs;
@@ -113,7 +113,7 @@ fn a_channel_between_walls_says_so() {
     }
     assert_eq!(number(&walled, "/cells/births"), number(&walled, "/cells/extrusions"));
     let positions: Array3<f64> = read(&out.file("positions.npy"));
-    let x: Vec<f64> = positions.slice(ndarray::s![.., .., 0]).iter().copied().collect();
+    let x: Vec<f64> = positions.index_axis(Axis(2), 0).iter().copied().collect();
     assert!(x.iter().all(|x| x.is_nan() || (0.0..=200.0).contains(x)), "{x:?}");
     assert_eq!(x.iter().filter(|x| !x.is_nan()).count(), 3 * 48);
     assert!(fs::read_to_string(out.file("dataset.toml")).unwrap().contains("walls = \"x\""));
