@@ -111,19 +111,22 @@ impl Figures<'_> {
         let units = &self.request.units;
         let label = format!("transport to the middle ({})", unit_text(&format!("1/{}", units.time)));
         let faces = &self.folded.faces;
-        let points = [
+        let mut points = [
             series("∫ρ v_y dx", BLUE, Marker::Circle, faces, &self.folded.transport),
             series("shear stress", GREY, Marker::Square, faces, &self.folded.shear_stress),
             series("torques of the cells", VERMILLION, Marker::Diamond, faces, &self.folded.torque),
         ];
+        if self.walled() {
+            points
+                .iter_mut()
+                .for_each(|series| series.points.retain(|point| point.at[0] >= self.findings.from));
+        }
         let svg =
             self.chart("what drives the flow along the channel", [&self.distance(), &label], &points, &[]);
-        Figure::new(
-            svg,
-            "Cells that flow along the channel between a distance and the middle, per time; the difference of the shear stress between the \
-             ends of that stretch, which balances their friction in the steady state; and half the difference of the density of torques, the \
-             part of the stress that cells bring about by turning.",
-        )
+        let caption = "Cells that flow along the channel between a distance and the middle, per time; the difference of the shear stress \
+                       between the ends of that stretch, which balances their friction in the steady state; and half the difference of \
+                       the density of torques, the part of the stress that cells bring about by turning.";
+        Figure::new(svg, &self.with_note(caption, "Left out is the edge current beside the wall."))
     }
 
     /// Both velocities from edge to edge.
