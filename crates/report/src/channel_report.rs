@@ -179,7 +179,7 @@ pub struct SlopeRecord {
     pub reduced_chi_square: Option<f64>,
     /// Preferred perimeter in cell sizes P₀/ℓ₀, where known.
     pub shape_index: Option<f64>,
-    /// α = slope (3 − a P₀/ℓ₀), where P₀/ℓ₀ is known.
+    /// α = slope (3 − a P₀/ℓ₀), where P₀/ℓ₀ is known and there are no walls.
     pub alpha: Option<f64>,
     /// Its 95 % interval, the slope's alone.
     pub alpha_ci95: Option<[f64; 2]>,

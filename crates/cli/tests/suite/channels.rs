@@ -132,7 +132,7 @@ fn a_channel_between_walls_says_so() {
         y[(0, 0)]
     );
     let page = fs::read_to_string(out.file("report.html")).unwrap();
-    assert!(page.contains("torque-free walls at both edges"));
+    assert!(page.contains("torque-free walls at both edges") && page.contains("downwards at the left one"));
 }
 
 #[test]

@@ -7,6 +7,7 @@ use std::path::Path;
 use voronudge_report::channel_report::{ChannelReport, DecayRecord};
 use voronudge_report::numbers::{significant, unit_text};
 use voronudge_report::page::{Card, Section, SectionPage};
+use voronudge_simulate::measure::Estimate;
 
 const PERIODIC: [&str; 2] = [
     "Edges",
@@ -94,7 +95,7 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
     guide.insert(1, if report.walls.is_some() { WALLED } else { PERIODIC });
     let page = SectionPage {
         title: &figures.request.title,
-        headline: &headline(report),
+        headline: &headline(report, figures.folded.velocity[1].first()),
         summary: &[cells(report), setting(report)],
         cards: &cards(report),
         guide: &guide,
@@ -104,9 +105,17 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
     Ok(page.render()?)
 }
 
-fn headline(report: &ChannelReport) -> String {
+fn headline(report: &ChannelReport, at_edge: Option<&Estimate>) -> String {
     if let Some(why) = &report.ended {
         return format!("The run ended before its time: {why}.");
+    }
+    if let (Some(_), Some(edge)) = (report.walls, at_edge) {
+        return format!(
+            "Cells flow towards the middle, and along the walls at {} {}, {} at the left one.",
+            significant(edge.value.abs(), 3),
+            report.units.velocity_text(),
+            if edge.value > 0.0 { "upwards" } else { "downwards" }
+        );
     }
     match &report.chirality_from_flow {
         Some(flow) if flow.slope_ci95[0] > 0.0 || flow.slope_ci95[1] < 0.0 => format!(

@@ -78,7 +78,11 @@ pub(super) fn findings(
         area_elasticity: p.area_elasticity * request.cell_size * request.cell_size / p.perimeter_elasticity,
     };
     let points = line_points(&folded.centres, &folded.velocity);
-    let chirality_from_flow = slope(&points, [Some(from), None], Intercept::Zero, about).unwrap_or(None);
+    let mut chirality_from_flow = slope(&points, [Some(from), None], Intercept::Zero, about).unwrap_or(None);
+    // The edge current along a wall is no matter of the gradient of the density.
+    if let Some(record) = chirality_from_flow.as_mut().filter(|_| tissue.channel().is_walled()) {
+        (record.alpha, record.alpha_ci95) = (None, None);
+    }
     let turnover = &request.turnover;
     let report = ChannelReport {
         run: run.record(None),
