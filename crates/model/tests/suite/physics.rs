@@ -3,10 +3,7 @@
 use crate::samples::{difference, jittered, largest, parameters, periodic, random};
 use std::sync::Arc;
 use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector, perimeters};
-use voronudge_model::{
-    HalfEdgeForces, Model, Parameters, base_terms, cell_virial, columns, parameter_derivatives, stress,
-    velocities,
-};
+use voronudge_model::{Model, Parameters, base_terms, columns, parameter_derivatives, stress, velocities};
 
 #[test]
 fn the_preferred_area_is_a_gauge() -> Result<(), Error> {
