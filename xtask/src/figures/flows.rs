@@ -86,6 +86,11 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
             output.panel("ratio", "v_y against v_x", "v_y against v_x")?,
             widths.panel,
             output.panel(
+                "drive",
+                "What flows along the channel between a distance and the middle, and what drives it: shear stress, and the torques of the cells alone",
+                "what drives the flow along the channel",
+            )?,
+            output.panel(
                 "births",
                 "How much a birth changes velocities nearby, on a vertex and beside a mother",
                 "disturbance by a birth",

@@ -8,14 +8,16 @@ use std::process::Stdio;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-/// Runs with checkpoints, killed after one random time after another, until it ends by itself; how often it was killed.
-fn run_to_the_end(line: &str, flags: &[&str], out: &Path, mut random: u64) -> usize {
+/// Runs with checkpoints, killed after one random share after another of the time that it takes on the whole, until it ends by itself;
+/// how often it was killed.
+fn run_to_the_end(line: &str, flags: &[&str], out: &Path, whole: Duration, mut random: u64) -> usize {
     for kills in 0..200 {
         let mut command = command();
         command.args(line.split_whitespace()).args(flags).args(["--resume", "--out"]).arg(out);
         let mut run = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        let patience = Duration::from_millis(100 + (random >> 33) % 400 + 20 * kills as u64);
+        let share = 0.1 + 0.3 * (random >> 33) as f64 / (1u64 << 31) as f64;
+        let patience = whole.mul_f64(share + 0.05 * kills as f64);
         let begun = Instant::now();
         let ended = loop {
             match run.try_wait().unwrap() {
@@ -42,11 +44,13 @@ fn assert_killed_and_resumed_is_the_same(line: &str) {
     let names = crate::simulations::FILES.into_iter().filter(|name| !name.starts_with("report"));
     let names: Vec<_> = names.collect();
     let whole = Folder::new();
+    let begun = Instant::now();
     succeed(&format!("{line} --quiet"), &[("--out", whole.path())]);
+    let time = begun.elapsed();
     let mut kills = 0;
     for seed in 0..3 {
         let parts = Folder::new();
-        kills += run_to_the_end(line, &["--checkpoint", "0.02"], parts.path(), seed);
+        kills += run_to_the_end(line, &["--checkpoint", "0.02"], parts.path(), time, seed);
         for name in &names {
             assert!(
                 fs::read(parts.file(name)).unwrap() == fs::read(whole.file(name)).unwrap(),
@@ -88,11 +92,13 @@ fn a_killed_diagram_goes_on_to_the_same_bytes() {
         folder.names().into_iter().filter(|name| !name.starts_with("report")).collect()
     };
     let whole = Folder::new();
+    let begun = Instant::now();
     succeed(&format!("{line} --threads 1 --quiet"), &[("--out", whole.path())]);
+    let time = begun.elapsed() / 2;
     let mut kills = 0;
     for seed in 0..2 {
         let parts = Folder::new();
-        kills += run_to_the_end(line, &["--threads", "2"], parts.path(), seed);
+        kills += run_to_the_end(line, &["--threads", "2"], parts.path(), time, seed);
         assert_eq!(parts.names(), whole.names());
         for name in names(&whole) {
             let bytes = |folder: &Folder| fs::read(folder.file(&name)).unwrap();
