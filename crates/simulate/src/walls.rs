@@ -139,7 +139,7 @@ impl Mirrored {
 }
 
 /// The place of a coordinate between mirrors at 0 and `length`, and the sign of its direction there.
-fn fold(x: f64, length: f64) -> (f64, f64) {
+pub(crate) fn fold(x: f64, length: f64) -> (f64, f64) {
     if (0.0..=length).contains(&x) {
         return (x, 1.0);
     }

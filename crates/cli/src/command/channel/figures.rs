@@ -51,9 +51,7 @@ impl Figures<'_> {
             series("v_x, towards the middle", BLUE, Marker::Circle, &self.folded.centres, v_x),
             series("v_y, along the edge", VERMILLION, Marker::Diamond, &self.folded.centres, v_y),
         ];
-        if self.walled() {
-            points[1].points.retain(|point| point.at[0] >= self.findings.from);
-        }
+        self.leave_out_edge_current(&mut points[1..]);
         let mut curves = self.decay("velocity_x", "exponential decay", BLUE);
         curves.extend(self.decay("velocity_y", "", VERMILLION));
         if let Some(continuum) = &self.findings.continuum {
@@ -116,11 +114,7 @@ impl Figures<'_> {
             series("shear stress", GREY, Marker::Square, faces, &self.folded.shear_stress),
             series("torques of the cells", VERMILLION, Marker::Diamond, faces, &self.folded.torque),
         ];
-        if self.walled() {
-            points
-                .iter_mut()
-                .for_each(|series| series.points.retain(|point| point.at[0] >= self.findings.from));
-        }
+        self.leave_out_edge_current(&mut points);
         let svg =
             self.chart("what drives the flow along the channel", [&self.distance(), &label], &points, &[]);
         let caption = "Cells that flow along the channel between a distance and the middle, per time; the difference of the shear stress \
@@ -220,6 +214,13 @@ impl Figures<'_> {
 
     fn walled(&self) -> bool {
         self.request.walls.is_some()
+    }
+
+    /// Leaves out the points beside a wall, where the edge current outweighs all else.
+    fn leave_out_edge_current(&self, series: &mut [PointSeries<'_>]) {
+        if self.walled() {
+            series.iter_mut().for_each(|own| own.points.retain(|point| point.at[0] >= self.findings.from));
+        }
     }
 
     /// A caption, with what is to be added between walls.

@@ -1,6 +1,7 @@
 //! Counting cells, their displacements, births and deaths in bins across a channel.
 
 use super::ChannelProfile;
+use crate::walls::fold;
 use crate::{Bond, Channel, Error, LastStep};
 
 /// Sums over equal strips ("bins") of a channel and over equal pieces of time ("samples").
@@ -69,12 +70,9 @@ impl ChannelRecorder {
             bin => bin.rem_euclid(bins as i64) as usize,
         };
         // What a cell does behind a wall, its mirror image does in front of it.
-        let mirrored = |bin: f64| match bin as i64 {
-            behind if walled && behind < 0 => (number((-1 - behind) as f64), -1.0),
-            behind if walled && behind >= bins as i64 => {
-                (number((2 * bins as i64 - 1 - behind) as f64), -1.0)
-            }
-            _ => (number(bin), 1.0),
+        let mirrored = |bin: f64| {
+            let (middle, sign) = if walled { fold(bin + 0.5, bins as f64) } else { (bin, 1.0) };
+            (number(middle.floor()), sign)
         };
         let sample = &mut self.current;
         sample.duration += step.time_step;

@@ -1,7 +1,6 @@
 //! Extrusion and proliferation between torque-free walls.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
-
+use crate::{TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector, areas};
 use voronudge_model::{Model, Parameters};
@@ -14,14 +13,6 @@ use voronudge_simulate::{
 const WIDTH: f64 = 8.0;
 const LENGTH: f64 = 6.0;
 const CELLS: usize = 48;
-
-const TURNOVER: Turnover = Turnover {
-    extrusion: EdgeRate { rate: 0.77, decay_length: 1.4 },
-    proliferation: Proliferation::Replacing { decay_length: 0.25 },
-    injection: Injection::Vertex,
-    most_cells: 1000,
-    seed: 3,
-};
 
 const DIVISION: Turnover = Turnover { injection: Injection::Division { distance: 0.3 }, ..TURNOVER };
 
@@ -90,10 +81,7 @@ fn cells_stay_between_the_walls_and_keep_their_identity() {
         let lives = tissue.lives();
         let dead = lives.iter().filter(|life| life.extruded.is_some()).count();
         assert!(dead > 30 && lives.len() == CELLS + dead && exchanged == dead, "{dead} {exchanged}");
-        let mut living = tissue.identities().to_vec();
-        living.sort_unstable();
-        let expected: Vec<usize> = (0..lives.len()).filter(|&life| lives[life].extruded.is_none()).collect();
-        assert_eq!(living, expected);
+        assert_the_living_are_told(&tissue);
     }
 }
 
@@ -191,16 +179,7 @@ fn the_books_balance_up_to_the_walls() {
 
 #[test]
 fn the_same_seed_gives_the_same_lives_on_any_number_of_threads() {
-    let lives = |threads: usize, seed: u64| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let mut tissue = tissue(Turnover { seed, ..TURNOVER });
-            (0..300).for_each(|_| tissue.step(0.01).unwrap());
-            (tissue.lives().to_vec(), tissue.simulation().positions().to_vec())
-        })
-    };
-    assert_eq!(lives(1, 3), lives(2, 3));
-    assert_ne!(lives(1, 3).0, lives(1, 4).0);
+    assert_threads_do_not_matter(2, tissue);
 }
 
 fn folded(turnover: Turnover, time: f64) -> ChannelProfile {

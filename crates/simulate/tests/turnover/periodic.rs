@@ -1,21 +1,12 @@
 //! Extrusion and proliferation: laws of rates, identities, conservation, what a birth disturbs.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
-
+use crate::{TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{
     ChannelSchedule, EdgeRate, Error, Injection, LivingTissue, Origin, Proliferation, RandomPlacement,
     Simulation, Turnover, generator, run_channel,
-};
-
-const TURNOVER: Turnover = Turnover {
-    extrusion: EdgeRate { rate: 0.77, decay_length: 1.4 },
-    proliferation: Proliferation::Replacing { decay_length: 0.25 },
-    injection: Injection::Vertex,
-    most_cells: 1000,
-    seed: 3,
 };
 
 fn simulation(lengths: [f64; 2], preferred_perimeter: f64, chirality: f64) -> Simulation {
@@ -52,10 +43,7 @@ fn cells_keep_their_identity_from_birth_to_death() {
     let dead = lives.iter().filter(|life| life.extruded.is_some()).count();
     assert!(dead > 50 && lives.len() == 48 + dead);
     assert_eq!(followed.iter().sum::<usize>(), dead);
-    let mut living: Vec<usize> = tissue.identities().to_vec();
-    living.sort_unstable();
-    let expected: Vec<usize> = (0..lives.len()).filter(|&life| lives[life].extruded.is_none()).collect();
-    assert_eq!(living, expected);
+    assert_the_living_are_told(&tissue);
     assert!(lives[48..].iter().all(|life| life.origin == Origin::Vertex && life.born > 0.0));
     assert!(lives.iter().all(|life| life.extruded.is_none_or(|end| end > life.born)));
     assert!(lives[..48].windows(2).all(|pair| pair[0].born == pair[1].born));
@@ -153,16 +141,7 @@ fn the_books_balance() {
 
 #[test]
 fn the_same_seed_gives_the_same_lives_on_any_number_of_threads() {
-    let lives = |threads: usize, seed: u64| {
-        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| {
-            let mut tissue = tissue(Turnover { seed, ..TURNOVER });
-            (0..300).for_each(|_| tissue.step(0.01).unwrap());
-            (tissue.lives().to_vec(), tissue.simulation().positions().to_vec())
-        })
-    };
-    assert_eq!(lives(1, 3), lives(3, 3));
-    assert_ne!(lives(1, 3).0, lives(1, 4).0);
+    assert_threads_do_not_matter(3, tissue);
 }
 
 /// With independent rates the number of cells changes, mothers are alive at a birth, and both ends are told.
