@@ -1,4 +1,4 @@
-//! The product of a sparse matrix of blocks with its transpose.
+//! Products of sparse matrices of blocks with their transposes.
 
 use crate::Error;
 use rayon::prelude::*;
@@ -8,38 +8,42 @@ use voronudge_model::BlockMatrix;
 /// Block columns per task.
 const CHUNK: usize = 256;
 
-/// `JᵀJ` over some of the rows of J, lower triangle with the whole diagonal; J has a block column for each cell.
-pub(crate) fn gram(
-    jacobian: &BlockMatrix,
-    rows: impl Iterator<Item = usize> + Clone,
-    cells: usize,
-) -> Result<SymmetricMatrix, Error> {
-    let transposed = Transposed::new(jacobian, rows, cells);
-    type Part = (Vec<usize>, Vec<usize>, Vec<f64>);
-    let parts: Vec<Part> = (0..cells.div_ceil(CHUNK))
+/// Some of the rows of a matrix.
+pub(crate) struct Chosen<'a> {
+    pub matrix: &'a BlockMatrix,
+    pub rows: Vec<usize>,
+}
+
+/// `JᵀJ` over the chosen rows of each of two matrices J with so many block columns: lower triangles with the whole
+/// diagonal, both on the pattern of their sum.
+pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[SymmetricMatrix; 2], Error> {
+    let transposed = chosen.map(|chosen| (chosen.matrix, Transposed::new(&chosen, columns)));
+    type Part = (Vec<usize>, Vec<usize>, [Vec<f64>; 2]);
+    let parts: Vec<Part> = (0..columns.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
-            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), Vec::new());
-            let mut place = vec![usize::MAX; cells];
-            let mut entries: Vec<(usize, [f64; 4])> = Vec::new();
-            for column in chunk * CHUNK..((chunk + 1) * CHUNK).min(cells) {
-                entries.push((column, [0.0; 4]));
+            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
+            let mut place = vec![usize::MAX; columns];
+            let mut entries: Vec<(usize, [[f64; 4]; 2])> = Vec::new();
+            for column in chunk * CHUNK..((chunk + 1) * CHUNK).min(columns) {
+                entries.push((column, [[0.0; 4]; 2]));
                 place[column] = 0;
-                for &(row, at) in transposed.column(column) {
-                    let own = &jacobian.block[at];
-                    for (other, b) in jacobian.row(row).filter(|(other, _)| *other >= column) {
-                        // bᵀ · own
-                        let product = [
-                            b[0] * own[0] + b[2] * own[2],
-                            b[0] * own[1] + b[2] * own[3],
-                            b[1] * own[0] + b[3] * own[2],
-                            b[1] * own[1] + b[3] * own[3],
-                        ];
-                        if place[other] == usize::MAX {
-                            place[other] = entries.len();
-                            entries.push((other, product));
-                        } else {
-                            let sum = &mut entries[place[other]].1;
+                for (which, (matrix, transposed)) in transposed.iter().enumerate() {
+                    for &(row, at) in transposed.column(column) {
+                        let own = &matrix.block[at];
+                        for (other, b) in matrix.row(row).filter(|(other, _)| *other >= column) {
+                            // bᵀ · own
+                            let product = [
+                                b[0] * own[0] + b[2] * own[2],
+                                b[0] * own[1] + b[2] * own[3],
+                                b[1] * own[0] + b[3] * own[2],
+                                b[1] * own[1] + b[3] * own[3],
+                            ];
+                            if place[other] == usize::MAX {
+                                place[other] = entries.len();
+                                entries.push((other, [[0.0; 4]; 2]));
+                            }
+                            let sum = &mut entries[place[other]].1[which];
                             sum.iter_mut().zip(product).for_each(|(s, x)| *s += x);
                         }
                     }
@@ -48,11 +52,12 @@ pub(crate) fn gram(
                 entries.sort_unstable_by_key(|entry| entry.0);
                 for axis in 0..2 {
                     let first = rows.len();
-                    for (other, block) in &entries {
+                    for (other, blocks) in &entries {
                         for component in 0..2 {
                             if 2 * other + component >= 2 * column + axis {
                                 rows.push(2 * other + component);
-                                values.push(block[2 * component + axis]);
+                                let pairs = values.iter_mut().zip(blocks);
+                                pairs.for_each(|(values, block)| values.push(block[2 * component + axis]));
                             }
                         }
                     }
@@ -63,18 +68,21 @@ pub(crate) fn gram(
             (lengths, rows, values)
         })
         .collect();
-    let mut column_start = Vec::with_capacity(2 * cells + 1);
+    let mut column_start = Vec::with_capacity(2 * columns + 1);
     column_start.push(0);
-    let (mut rows, mut values, mut end) = (Vec::new(), Vec::new(), 0);
+    let (mut rows, mut values, mut end) = (Vec::new(), [Vec::new(), Vec::new()], 0);
     for (part_lengths, part_rows, part_values) in parts {
         column_start.extend(part_lengths.iter().map(|length| {
             end += length;
             end
         }));
         rows.extend(part_rows);
-        values.extend(part_values);
+        values.iter_mut().zip(part_values).for_each(|(all, part)| all.extend(part));
     }
-    Ok(SymmetricMatrix::new(column_start, rows, values)?)
+    let [first, second] = values;
+    let first = SymmetricMatrix::new(column_start, rows, first)?;
+    let second = first.with_values(second)?;
+    Ok([first, second])
 }
 
 /// Where each block column has entries: row and index of the block.
@@ -84,9 +92,10 @@ struct Transposed {
 }
 
 impl Transposed {
-    fn new(matrix: &BlockMatrix, rows: impl Iterator<Item = usize> + Clone, columns: usize) -> Self {
+    fn new(chosen: &Chosen<'_>, columns: usize) -> Self {
+        let Chosen { matrix, rows } = chosen;
         let mut start = vec![0; columns + 1];
-        for row in rows.clone() {
+        for &row in rows {
             for (column, _) in matrix.row(row) {
                 start[column + 1] += 1;
             }
@@ -95,7 +104,7 @@ impl Transposed {
             start[column + 1] += start[column];
         }
         let (mut next, mut entry) = (start.clone(), vec![(0, 0); start[columns]]);
-        for row in rows {
+        for &row in rows {
             for (at, (column, _)) in (matrix.row_start[row]..).zip(matrix.row(row)) {
                 entry[next[column]] = (row, at);
                 next[column] += 1;

@@ -32,11 +32,13 @@ mod normal_equations;
 mod objective;
 mod observation;
 pub mod phase_diffusion;
+mod position_rows;
 mod predictive;
 mod quadratic;
 mod quantity;
 mod request;
 mod result;
+mod rows;
 #[cfg(test)]
 mod sample;
 mod scale;

@@ -5,58 +5,45 @@
 //! ```text
 //! v ≈ F + X δβ + J δε       y ≈ X δβ + J (ε + δε)
 //! ```
+//!
+//! There are data of two kinds: velocities, of weight one, and positions, of weight k, whose derivative by the nudges is
+//! H. All that is quadratic in the data is a sum over both, `JᵀJ + k HᵀH` for one. Where a position is measured as it is,
+//! H is the identity, and weight and nudge make a spring.
+//!
+//! Coordinates without a measured position (of cells that were not seen) have no row in H. They are unknowns of no
+//! distribution, as coefficients are, but for a stiffness that keeps them near where they were put.
 
 use crate::Error;
-use crate::gram::gram;
+use crate::gram::{Chosen, grams};
 use crate::least_squares::invert;
+use crate::rows::{Group, Rows};
 use nalgebra::{DMatrix, DVector};
-use voronudge_geometry::Vector;
 use voronudge_linalg::{Cholesky, CholeskyPattern, SymmetricMatrix};
-use voronudge_model::BlockMatrix;
 
 /// The linearised problem of one frame.
 #[derive(Debug)]
 pub(crate) struct Linearisation {
-    /// JᵀJ
-    normal: SymmetricMatrix,
+    velocities: Group,
+    positions: Group,
+    /// Stiffness of each coordinate that is no datum's; empty if there is none.
+    floor: Vec<f64>,
     pattern: CholeskyPattern,
     /// The nudges ε at which it was linearised.
     nudges: Vec<f64>,
-    /// JᵀX (2N × p, by columns), then Jᵀy as the last column.
-    mixed: Vec<f64>,
-    /// XᵀX.
-    free_normal: DMatrix<f64>,
-    /// Xᵀr.
-    free_gradient: DVector<f64>,
-    /// Jᵀr.
-    gradient: Vec<f64>,
-    /// Xᵀy.
-    free_data: DVector<f64>,
-    /// yᵀy.
-    data: f64,
 }
 
 /// What enters the linearisation of one frame.
 pub(crate) struct Local<'a> {
-    /// ∂F/∂r; only the rows with a target matter.
-    pub jacobian: &'a BlockMatrix,
-    /// Data with a target: index, residual r, and the free columns (2, p).
-    pub rows: &'a [(usize, Vector<f64>, DMatrix<f64>)],
-    /// ε, x and y of one cell after the other.
+    /// Velocities, weight one.
+    pub velocities: Rows<'a>,
+    /// Measured positions, weight k.
+    pub positions: Rows<'a>,
+    /// ε, x and y of one place after the other.
     pub nudges: &'a [f64],
+    /// Stiffness of each coordinate that is no datum's; empty if there is none.
+    pub floor: Vec<f64>,
+    /// Number of free coefficients.
     pub free: usize,
-}
-
-/// `y = r + Jε` of one datum.
-pub(crate) fn linearised_back(
-    jacobian: &BlockMatrix,
-    (datum, residual): (usize, Vector<f64>),
-    nudges: &[f64],
-) -> Vector<f64> {
-    jacobian.row(datum).fold(residual, |y, (column, b)| {
-        let (ex, ey) = (nudges[2 * column], nudges[2 * column + 1]);
-        y + Vector::new(b[0] * ex + b[1] * ey, b[2] * ex + b[3] * ey)
-    })
 }
 
 /// One frame's part of a step before the coefficients' part is known.
@@ -137,97 +124,118 @@ impl Eliminated {
 
 impl Linearisation {
     pub fn new(local: &Local<'_>) -> Result<Self, Error> {
-        let normal = gram(local.jacobian, local.rows.iter().map(|row| row.0), local.nudges.len() / 2)?;
-        let pattern = CholeskyPattern::new(&normal)?;
-        let n = normal.order();
-        let p = local.free;
-        let mut mixed = vec![0.0; n * (p + 1)];
-        let mut gradient = vec![0.0; n];
-        let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
-        let (mut free_data, mut data) = (DVector::zeros(p), 0.0);
-        for (datum, residual, x) in local.rows {
-            let y = linearised_back(local.jacobian, (*datum, *residual), local.nudges);
-            data += y.norm_squared();
-            free_normal += x.transpose() * x;
-            free_gradient += x.transpose() * DVector::from_column_slice(residual.as_slice());
-            free_data += x.transpose() * DVector::from_column_slice(y.as_slice());
-            for (column, b) in local.jacobian.row(*datum) {
-                let transposed = |v: Vector<f64>| [b[0] * v.x + b[2] * v.y, b[1] * v.x + b[3] * v.y];
-                let add = |to: &mut [f64], v: Vector<f64>| {
-                    to.iter_mut().zip(transposed(v)).for_each(|(sum, part)| *sum += part);
-                };
-                for k in 0..p {
-                    let at = k * n + 2 * column;
-                    add(&mut mixed[at..at + 2], Vector::new(x[(0, k)], x[(1, k)]));
-                }
-                let at = p * n + 2 * column;
-                add(&mut mixed[at..at + 2], y);
-                add(&mut gradient[2 * column..2 * column + 2], *residual);
-            }
-        }
-        let nudges = local.nudges.to_vec();
-        Ok(Self { normal, pattern, nudges, mixed, free_normal, free_gradient, gradient, free_data, data })
+        let Local { velocities, positions, nudges, floor, free } = local;
+        let chosen = [velocities, positions].map(|group| Chosen {
+            matrix: group.jacobian,
+            rows: group.rows.iter().map(|row| row.0).collect(),
+        });
+        let [of_velocities, of_positions] = grams(chosen, nudges.len() / 2)?;
+        let pattern = CholeskyPattern::new(&of_velocities)?;
+        Ok(Self {
+            velocities: Group::new(velocities, of_velocities, nudges, *free),
+            positions: Group::new(positions, of_positions, nudges, *free),
+            floor: floor.clone(),
+            pattern,
+            nudges: nudges.to_vec(),
+        })
     }
 
     /// Number of nudge components.
     pub fn order(&self) -> usize {
-        self.normal.order()
+        self.nudges.len()
     }
 
     /// The trace of JᵀJ.
     pub fn trace(&self) -> f64 {
-        self.normal.diagonal().sum()
+        self.velocities.normal.diagonal().sum()
     }
 
-    /// XᵀX.
+    /// The trace of HᵀH: the number of coordinates if all are measured alike.
+    pub fn stiffness(&self) -> f64 {
+        self.positions.normal.diagonal().sum()
+    }
+
+    /// `Σ ‖∂v/∂r_j‖² / m_j` over measured coordinates, m_j the diagonal of HᵀH: what errors of position of unit variance make of
+    /// the squared velocities.
+    pub fn sensitivity(&self) -> f64 {
+        let pairs = self.velocities.normal.diagonal().zip(self.positions.normal.diagonal());
+        pairs.filter(|(_, m)| *m > 0.0).map(|(slope, m)| slope / m).sum()
+    }
+
+    /// XᵀX of the velocities.
     pub fn free_normal(&self) -> &DMatrix<f64> {
-        &self.free_normal
+        &self.velocities.free_normal
     }
 
-    /// The factor of JᵀJ + kI.
+    /// The factor of JᵀJ + k HᵀH and what stiffness there is beside.
     pub fn factor(&self, spring: f64) -> Result<Cholesky, Error> {
-        let mut shifted = self.normal.clone();
-        shifted.shift_diagonal(spring);
-        Ok(self.pattern.factor(&shifted)?)
+        self.damped(spring, 0.0)
+    }
+
+    fn damped(&self, spring: f64, damping: f64) -> Result<Cholesky, Error> {
+        let mut sum: SymmetricMatrix = self.velocities.normal.plus(spring, &self.positions.normal)?;
+        sum.add_to_diagonal(self.floor.iter().copied());
+        if damping > 0.0 {
+            sum.shift_diagonal(damping);
+        }
+        Ok(self.pattern.factor(&sum)?)
+    }
+
+    /// A vector of products, summed over both kinds of data.
+    fn sum(&self, spring: f64, of: impl Fn(&Group) -> &[f64]) -> Vec<f64> {
+        let pairs = of(&self.velocities).iter().zip(of(&self.positions));
+        pairs.map(|(velocities, positions)| velocities + spring * positions).collect()
     }
 
     /// Eliminates the nudges from a damped Gauss–Newton step
     ///
     /// ```text
-    /// [ JᵀJ + (k+λ)I   JᵀX ] [δε]   [ Jᵀr − kε ]
-    /// [ XᵀJ            XᵀX ] [δβ] = [ Xᵀr      ]
+    /// [ JᵀJ + kHᵀH + λI   JᵀX + kHᵀZ ] [δε]   [ Jᵀr + kHᵀs ]
+    /// [ XᵀJ + kZᵀH        XᵀX + kZᵀZ ] [δβ] = [ Xᵀr + kZᵀs ]
     /// ```
+    ///
+    /// with the residuals s of the positions and their derivative Z by β.
     pub fn eliminate(&self, spring: f64, damping: f64) -> Result<Eliminated, Error> {
-        let factor = self.factor(spring + damping)?;
-        let (n, p) = (self.order(), self.free_gradient.len());
-        let mut right = self.mixed[..n * p].to_vec();
-        right.extend(self.gradient.iter().zip(&self.nudges).map(|(g, e)| g - spring * e));
+        let factor = self.damped(spring, damping)?;
+        let (n, p) = (self.order(), self.velocities.free_gradient.len());
+        let mut right = self.sum(spring, |group| &group.mixed[..n * p]);
+        right.extend(self.sum(spring, |group| &group.gradient));
+        for ((g, stiffness), e) in right[n * p..].iter_mut().zip(&self.floor).zip(&self.nudges) {
+            *g -= stiffness * e;
+        }
         let mut solved = right.clone();
         factor.solve(&mut solved);
         let dot = |a: usize, b: usize| product(&right, &solved, n, a, b);
-        let schur = DMatrix::from_fn(p, p, |a, b| self.free_normal[(a, b)] - dot(a, b));
-        let gradient = DVector::from_fn(p, |a, _| self.free_gradient[a] - dot(a, p));
+        let free_normal = &self.velocities.free_normal + &self.positions.free_normal * spring;
+        let free_gradient = &self.velocities.free_gradient + &self.positions.free_gradient * spring;
+        let schur = DMatrix::from_fn(p, p, |a, b| free_normal[(a, b)] - dot(a, b));
+        let gradient = DVector::from_fn(p, |a, _| free_gradient[a] - dot(a, p));
         Ok(Eliminated { order: n, gain: dot(p, p), schur, gradient, solved })
     }
 
-    /// Generalised least squares about the measured positions, by `W⁻¹ = I − J (JᵀJ + kI)⁻¹ Jᵀ` and
-    /// `det W = det(JᵀJ + kI) / kⁿ`.
+    /// Generalised least squares about the measured positions, by `W⁻¹ = I − J (JᵀJ + kHᵀH)⁻¹ Jᵀ` and
+    /// `det W = det(JᵀJ + kHᵀH) / kⁿ`, n the number of measured coordinates. Those that are not measured make W infinite along
+    /// what they can do to the velocities: data are used up for them as for coefficients.
     pub fn whiten(&self, spring: f64) -> Result<Whitened, Error> {
         let factor = self.factor(spring)?;
-        let (n, p) = (self.order(), self.free_gradient.len());
-        let mut solved = self.mixed.clone();
+        let (n, p) = (self.order(), self.velocities.free_gradient.len());
+        let mixed = self.sum(spring, |group| &group.mixed);
+        let mut solved = mixed.clone();
         factor.solve(&mut solved);
-        let dot = |a: usize, b: usize| product(&self.mixed, &solved, n, a, b);
+        let dot = |a: usize, b: usize| product(&mixed, &solved, n, a, b);
+        let (velocities, positions) = (&self.velocities, &self.positions);
+        let free = &velocities.free_normal + &positions.free_normal * spring;
+        let data = &velocities.free_data + &positions.free_data * spring;
         Ok(Whitened {
-            free: DMatrix::from_fn(p, p, |a, b| self.free_normal[(a, b)] - dot(a, b)),
-            mixed: DVector::from_fn(p, |a, _| self.free_data[a] - dot(a, p)),
-            data: self.data - dot(p, p),
-            log_determinant: factor.log_determinant() - n as f64 * spring.ln(),
+            free: DMatrix::from_fn(p, p, |a, b| free[(a, b)] - dot(a, b)),
+            mixed: DVector::from_fn(p, |a, _| data[a] - dot(a, p)),
+            data: velocities.data + spring * positions.data - dot(p, p),
+            log_determinant: factor.log_determinant() - positions.components as f64 * spring.ln(),
         })
     }
 
-    /// Directions of the nudges that the data determine, `df = n − k tr (JᵀJ + kI)⁻¹`, which is n less the derivative of
-    /// `log det(JᵀJ + kI)` with respect to log k.
+    /// Directions of the nudges that the data determine, `df = n − k tr (JᵀJ + kHᵀH)⁻¹HᵀH`, which is n less the derivative of
+    /// `log det(JᵀJ + kHᵀH)` with respect to log k.
     pub fn degrees_of_freedom(&self, spring: f64) -> Result<f64, Error> {
         let above = self.factor(spring * STEP.exp())?.log_determinant();
         let below = self.factor(spring * (-STEP).exp())?.log_determinant();
@@ -247,10 +255,11 @@ fn product(left: &[f64], right: &[f64], n: usize, a: usize, b: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use voronudge_geometry::{Domain, PeriodicBox, Tessellation};
+    use crate::position_rows::PositionRows;
+    use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
     use voronudge_model::{Model, Parameters, jacobian};
 
-    /// The eliminated step solves the full dense system.
+    /// The eliminated step solves the full dense system. One position is measured better than the others, one not at all.
     #[test]
     fn the_step_agrees_with_the_dense_normal_equations() {
         let positions: Vec<Vector<f64>> = (0..25)
@@ -277,7 +286,21 @@ mod tests {
             })
             .collect();
         let nudges: Vec<f64> = (0..cells).flat_map(|i| [0.01 * i as f64, -0.02]).collect();
-        let local = Local { jacobian: &jacobian, rows: &rows, nudges: &nudges, free };
+        let (unseen, floor) = (7, 0.04);
+        let stiffness =
+            |cell: usize| [1.0, 4.0, 0.0][usize::from(cell == 3) + 2 * usize::from(cell == unseen)];
+        let positions = PositionRows::of_sites((0..cells).map(stiffness), &nudges, free);
+        let local = Local {
+            velocities: Rows { jacobian: &jacobian, rows: &rows },
+            positions: positions.rows(),
+            nudges: &nudges,
+            floor: (0..2 * cells).map(|i| if i / 2 == unseen { floor } else { 0.0 }).collect(),
+            free,
+        };
+        let springs = |spring: f64| {
+            let of = |i: usize| if i / 2 == unseen { floor } else { spring * stiffness(i / 2) };
+            DVector::from_fn(2 * cells, |i, _| of(i))
+        };
         let linearised = Linearisation::new(&local).unwrap();
         let dense = DMatrix::from_row_slice(2 * cells, 2 * cells, &jacobian.to_dense());
         let n = 2 * cells;
@@ -290,9 +313,9 @@ mod tests {
             full += wide.transpose() * &wide;
             right += wide.transpose() * residual;
         }
-        for i in 0..n {
-            full[(i, i)] += spring + damping;
-            right[i] -= spring * nudges[i];
+        for (i, stiffness) in springs(spring).iter().enumerate() {
+            full[(i, i)] += stiffness + damping;
+            right[i] -= stiffness * nudges[i];
         }
         let expected = full.lu().solve(&right).unwrap();
         let eliminated = linearised.eliminate(spring, damping).unwrap();
@@ -301,19 +324,21 @@ mod tests {
         let scale = expected.amax();
         assert!((0..free).all(|i| (free_step[i] - expected[n + i]).abs() < 1e-10 * scale));
         assert!((0..n).all(|i| (step[i] - expected[i]).abs() < 1e-10 * scale));
-        // tr J (JᵀJ + kI)⁻¹ Jᵀ, dense.
+        // What is left of n by the springs: n − k tr (JᵀJ + kHᵀH + floor)⁻¹ HᵀH, dense.
         let mut seen = DMatrix::zeros(2 * rows.len(), n);
         for (k, (cell, ..)) in rows.iter().enumerate() {
             seen.view_mut((2 * k, 0), (2, n)).copy_from(&dense.rows(2 * cell, 2));
         }
-        let hat = &seen
-            * (seen.transpose() * &seen + DMatrix::identity(n, n) * spring).try_inverse().unwrap()
-            * seen.transpose();
+        let inverse =
+            (seen.transpose() * &seen + DMatrix::from_diagonal(&springs(spring))).try_inverse().unwrap();
+        let held: f64 =
+            (0..n).filter(|i| i / 2 != unseen).map(|i| spring * stiffness(i / 2) * inverse[(i, i)]).sum();
         let df = linearised.degrees_of_freedom(spring).unwrap();
-        assert!((df - hat.trace()).abs() < 1e-6, "{df} {}", hat.trace());
-        // W = I + JJᵀ/k, dense.
+        assert!((df - (n as f64 - held)).abs() < 1e-6, "{df} {}", n as f64 - held);
+        // W = I + J D⁻¹ Jᵀ, dense, with the stiffness D of the springs.
         let m = 2 * rows.len();
-        let w = DMatrix::identity(m, m) + &seen * seen.transpose() / spring;
+        let compliance = DMatrix::from_diagonal(&springs(spring).map(|stiffness| 1.0 / stiffness));
+        let w = DMatrix::identity(m, m) + &seen * compliance * seen.transpose();
         let inverse = w.clone().try_inverse().unwrap();
         let x = DMatrix::from_fn(m, free, |i, j| rows[i / 2].2[(i % 2, j)]);
         let residual = DVector::from_fn(m, |i, _| rows[i / 2].1[i % 2]);
@@ -323,6 +348,9 @@ mod tests {
         assert!((whitened.mixed - x.transpose() * &inverse * &y).amax() < 1e-9);
         assert!((whitened.data - (y.transpose() * &inverse * &y)[0]).abs() < 1e-9);
         let determinant = w.cholesky().unwrap().l().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>();
-        assert!((whitened.log_determinant - determinant).abs() < 1e-9);
+        // det (JᵀJ + D) = det W det D, of which the likelihood needs what depends on k.
+        let constant = springs(1.0).map(f64::ln).sum();
+        assert!((whitened.log_determinant - determinant - constant).abs() < 1e-9);
+        assert!((linearised.stiffness() - (46.0 + 8.0)).abs() < 1e-12);
     }
 }

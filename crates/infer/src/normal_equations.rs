@@ -2,9 +2,8 @@
 
 use crate::least_squares::{invert, within_bounds};
 use crate::linearisation::Linearisation;
-use crate::objective::Objective;
 use crate::quadratic::HalfSpace;
-use crate::{CoefficientSpace, Error};
+use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
@@ -48,17 +47,17 @@ struct Priors {
 }
 
 impl Priors {
-    fn new(objective: &Objective<'_>, free: &[f64]) -> Self {
-        let p = objective.space.dimension();
+    fn new(space: &CoefficientSpace, velocity: f64, free: &[f64]) -> Self {
+        let p = space.dimension();
         let mut sum = Self { normal: DMatrix::zeros(p, p), gradient: DVector::zeros(p) };
-        if objective.space.priors().is_empty() {
+        if space.priors().is_empty() {
             return sum;
         }
-        let c = objective.space.coefficients(free);
-        for (quantity, prior) in objective.space.priors() {
-            let scale = objective.levels.velocity / prior.standard_deviation;
+        let c = space.coefficients(free);
+        for (quantity, prior) in space.priors() {
+            let scale = velocity / prior.standard_deviation;
             let rest = (prior.mean - quantity.of(c.as_slice())) * scale;
-            let gradient = objective.space.in_free(&quantity.gradient(c.as_slice())) * scale;
+            let gradient = space.in_free(&quantity.gradient(c.as_slice())) * scale;
             sum.normal += &gradient * gradient.transpose();
             sum.gradient += gradient * rest;
         }
@@ -67,14 +66,20 @@ impl Priors {
 }
 
 impl NormalEquations {
-    pub fn new(objective: &Objective<'_>, free: &[f64], frames: Vec<Linearisation>) -> Self {
+    /// The problem about the coefficients `free` at some noise levels, from its independent parts.
+    pub fn new(
+        space: &CoefficientSpace,
+        levels: NoiseLevels,
+        free: &[f64],
+        frames: Vec<Linearisation>,
+    ) -> Self {
         Self {
             frames,
-            priors: Priors::new(objective, free),
-            spring: objective.spring(),
-            velocity: objective.levels.velocity,
+            priors: Priors::new(space, levels.velocity, free),
+            spring: levels.spring(),
+            velocity: levels.velocity,
             free: DVector::from_column_slice(free),
-            space: objective.space.clone(),
+            space: space.clone(),
         }
     }
 
@@ -83,11 +88,12 @@ impl NormalEquations {
         self.free.len()
     }
 
-    /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kI for nudges and
+    /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kHᵀH for nudges and
     /// of the diagonal of XᵀX for coefficients.
     pub fn step(&self, damping: f64) -> Result<Step, Error> {
         let count: usize = self.frames.iter().map(Linearisation::order).sum();
-        let unit = self.sensitivity() / count as f64 + self.spring;
+        let diagonal = |frame: &Linearisation| frame.trace() + self.spring * frame.stiffness();
+        let unit = self.frames.iter().map(diagonal).sum::<f64>() / count as f64;
         let shift = damping * unit;
         let eliminated: Vec<_> = self
             .frames
@@ -157,9 +163,9 @@ impl NormalEquations {
         Ok(&self.free + inverse * pull)
     }
 
-    /// `‖∂v/∂r‖²` over the velocities used: the trace of JᵀJ.
+    /// `‖∂v/∂r‖²` over the velocities used and the positions measured, each in units of its error.
     pub fn sensitivity(&self) -> f64 {
-        self.frames.iter().map(Linearisation::trace).sum()
+        self.frames.iter().map(Linearisation::sensitivity).sum()
     }
 
     /// Directions of the nudges that the data determine.

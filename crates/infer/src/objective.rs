@@ -4,6 +4,8 @@ use crate::flow::Sampling;
 use crate::least_squares::{Columns, free_rows, residuals};
 use crate::linearisation::{Linearisation, Local};
 use crate::normal_equations::NormalEquations;
+use crate::position_rows::PositionRows;
+use crate::rows::Rows;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Prior, Quantity};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use nalgebra::{DMatrix, DVector};
@@ -12,8 +14,9 @@ use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::{BlockMatrix, Environment, Structure, jacobian};
 
-/// `Φ(β, ε) = Σ ‖v − F_β(r + ε)‖² + k Σ ‖ε‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors. The parameter vector
-/// is β, then ε frame by frame as x₀, y₀, x₁, …
+/// `Φ(β, ε) = Σ w ‖v − F_β(r + ε)‖² + k Σ m ‖ε‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors, with weights w of
+/// velocities and the stiffness m of a cell. Cells that were not seen are held with the spread of [`WHEREABOUTS`]. The
+/// parameter vector is β, then ε frame by frame as x₀, y₀, x₁, …
 ///
 /// Φ / σ_v² is twice the negative log likelihood, up to a constant.
 #[derive(Debug, Clone, Copy)]
@@ -23,6 +26,10 @@ pub(crate) struct Objective<'a> {
     pub space: &'a CoefficientSpace,
     pub levels: NoiseLevels,
 }
+
+/// Standard deviation of a coordinate of a cell that was not seen about where it is put, in units of ℓ₀: enough to find its
+/// place, too little to wander off.
+pub(crate) const WHEREABOUTS: f64 = 0.5;
 
 /// One frame at some positions.
 pub(crate) struct Nudged<'a> {
@@ -128,7 +135,7 @@ impl<'a> Objective<'a> {
         self.frames.iter().map(|frame| 2 * frame.positions.len()).sum()
     }
 
-    /// Number of measured components that no background takes up.
+    /// Number of measured components that neither backgrounds nor cells that were not seen take up.
     pub fn components(&self) -> usize {
         self.frames.iter().map(Observation::components).sum()
     }
@@ -164,13 +171,25 @@ impl<'a> Objective<'a> {
                     return (f64::INFINITY, 0.0);
                 };
                 let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
-                let residual = residuals(frame, &predicted).iter().map(|(_, rest)| rest.norm_squared()).sum();
-                (residual, nudges.iter().map(|e| e * e).sum())
+                let squares = residuals(frame, &predicted)
+                    .into_iter()
+                    .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
+                let free = self.floor() / self.spring();
+                let springs = nudges.chunks_exact(2).enumerate().map(|(cell, e)| {
+                    let stiffness = if frame.is_seen(cell) { frame.stiffness(cell) } else { free };
+                    stiffness * (e[0] * e[0] + e[1] * e[1])
+                });
+                (squares.sum(), springs.sum())
             })
             .collect();
         let (residual, nudges) =
             parts.into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
         Parts { residual, nudges, priors: self.prior_penalty(&coefficients) }
+    }
+
+    /// Stiffness that keeps cells that were not seen where they were put.
+    fn floor(&self) -> f64 {
+        (self.levels.velocity / WHEREABOUTS).powi(2)
     }
 
     /// The penalty of the priors for given coefficients.
@@ -201,33 +220,42 @@ impl<'a> Objective<'a> {
             .map(|(index, (frame, nudges))| {
                 let nudged = self.place(index, nudges)?;
                 let evaluated = nudged.evaluate(coefficients.as_slice());
-                let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> = residuals(frame, &evaluated.predicted)
-                    .into_iter()
-                    .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
-                    .map(|((datum, rest), x)| (datum, rest, x))
-                    .collect();
+                let mut rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> =
+                    residuals(frame, &evaluated.predicted)
+                        .into_iter()
+                        .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
+                        .map(|((datum, rest), x)| (datum, rest, x))
+                        .collect();
                 let mut jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
                 if !frame.is_free() {
                     jacobian = jacobian.only(|cell| !frame.is_held(cell));
                 }
+                frame.weigh(&mut rows, &mut jacobian);
+                let p = self.space.dimension();
+                let floor = self.floor();
+                let of_cell = |cell| if frame.is_seen(cell) { 0.0 } else { floor };
                 Linearisation::new(&Local {
-                    jacobian: &jacobian,
-                    rows: &rows,
+                    velocities: Rows { jacobian: &jacobian, rows: &rows },
+                    positions: PositionRows::new(frame, nudges, p).rows(),
                     nudges,
-                    free: self.space.dimension(),
+                    floor: match frame.unseen() {
+                        0 => Vec::new(),
+                        _ => (0..nudges.len()).map(|i| of_cell(i / 2)).collect(),
+                    },
+                    free: p,
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
-        Ok(NormalEquations::new(self, free, frames))
+        Ok(NormalEquations::new(self.space, self.levels, free, frames))
     }
 }
 
 /// The parts of Φ, without their factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Parts {
-    /// Σ ‖v − F‖²
+    /// Σ w ‖v − F‖²
     pub residual: f64,
-    /// Σ ‖ε‖²
+    /// Σ m ‖ε‖²
     pub nudges: f64,
     /// σ_v² Σ (q − m)² / s²
     pub priors: f64,

@@ -3,9 +3,10 @@
 use crate::Error;
 use crate::background::Background;
 use crate::flow::{Flow, Sampling};
+use nalgebra::DMatrix;
 use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, Visibility};
-use voronudge_model::Environment;
+use voronudge_model::{BlockMatrix, Environment};
 
 /// Cells of one frame with their tessellation as measured. Cells are those present in the frame, in any order.
 #[derive(Debug, Clone)]
@@ -24,6 +25,10 @@ pub struct Observation {
     used: Vec<bool>,
     /// Cells without a nudge; empty if all have one.
     held: Vec<bool>,
+    /// `(σ_r / σ_i)²` of each cell, zero for cells that were not seen; empty if all are measured alike.
+    stiffness: Vec<f64>,
+    /// Weight of each velocity; empty if all are one.
+    weights: Vec<f64>,
     /// Degree of the polynomials that are no concern of the model, and what they are here.
     background: Option<(u32, Background)>,
     environment: Arc<Environment>,
@@ -100,6 +105,8 @@ impl Observation {
             largest_area,
             used,
             held: Vec::new(),
+            stiffness: Vec::new(),
+            weights: Vec::new(),
             background: None,
             environment: Arc::default(),
         })
@@ -144,9 +151,55 @@ impl Observation {
         }
     }
 
-    /// Number of measured components that no background takes up.
+    /// Number of measured components that neither the background nor cells that were not seen take up.
     pub(crate) fn components(&self) -> usize {
-        (2 * self.targets().count()).saturating_sub(self.background_dimension())
+        (2 * self.targets().count()).saturating_sub(self.background_dimension() + 2 * self.unseen())
+    }
+
+    /// Lets positions have errors of their own: standard deviations (N) in units of that of the noise levels; infinite for
+    /// cells that were not seen, whose positions are where they are looked for.
+    #[must_use]
+    pub fn with_position_errors(self, relative: &[f64]) -> Self {
+        Self { stiffness: relative.iter().map(|error| error.powi(-2)).collect(), ..self }
+    }
+
+    /// Gives velocities weights, one for each datum.
+    #[must_use]
+    pub fn with_weights(self, weights: Vec<f64>) -> Self {
+        Self { weights, ..self }
+    }
+
+    /// `(σ_r / σ_i)²` of a cell; zero if it was not seen.
+    pub(crate) fn stiffness(&self, cell: usize) -> f64 {
+        self.stiffness.get(cell).copied().unwrap_or(1.0)
+    }
+
+    /// Whether a cell has a measured position.
+    pub fn is_seen(&self, cell: usize) -> bool {
+        self.stiffness(cell) > 0.0
+    }
+
+    /// Number of cells without a measured position.
+    pub fn unseen(&self) -> usize {
+        self.stiffness.iter().filter(|m| **m == 0.0).count()
+    }
+
+    /// Weight of a velocity.
+    pub fn weight(&self, datum: usize) -> f64 {
+        self.weights.get(datum).copied().unwrap_or(1.0)
+    }
+
+    /// Multiplies rows of the velocities by the roots of their weights.
+    pub(crate) fn weigh(&self, rows: &mut [(usize, Vector<f64>, DMatrix<f64>)], jacobian: &mut BlockMatrix) {
+        if self.weights.is_empty() {
+            return;
+        }
+        for (datum, rest, x) in rows {
+            let root = self.weight(*datum).sqrt();
+            *rest *= root;
+            *x *= root;
+            jacobian.scale_row(*datum, root);
+        }
     }
 
     /// The targets without their background.
@@ -156,15 +209,27 @@ impl Observation {
         targets
     }
 
-    /// Some cells of a tissue, cut out, with the velocities that are to be explained.
+    /// Some cells of this one, by their index, with positions of their own, the velocities that are to be explained, and those
+    /// that are held.
     pub(crate) fn cut(
+        &self,
+        cells: &[usize],
         positions: Vec<Vector<f64>>,
         targets: Vec<Option<Vector<f64>>>,
         held: Vec<bool>,
     ) -> Result<Self, Error> {
-        let cells = positions.len();
         let whole = Self::new(0, positions, targets, Domain::Open, f64::INFINITY)?;
-        Ok(Self { used: vec![true; cells], held, ..whole })
+        let own = |of_cells: &[f64]| match of_cells.is_empty() {
+            true => Vec::new(),
+            false => cells.iter().map(|cell| of_cells[*cell]).collect(),
+        };
+        Ok(Self {
+            used: vec![true; cells.len()],
+            held,
+            stiffness: own(&self.stiffness),
+            weights: own(&self.weights),
+            ..whole
+        })
     }
 
     /// Whether a cell has no nudge.

@@ -16,12 +16,19 @@ use std::sync::Arc;
 /// Results must not depend on the number of threads.
 const SEQUENTIAL: Par = Par::Seq;
 
-/// The lower triangle of a sparse symmetric matrix, in compressed columns.
+/// The lower triangle of a sparse symmetric matrix, in compressed columns. Matrices made from one another share their
+/// pattern.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SymmetricMatrix {
+    places: Arc<Places>,
+    value: Vec<f64>,
+}
+
+/// Where entries are.
+#[derive(Debug, PartialEq)]
+struct Places {
     column_start: Vec<usize>,
     row: Vec<usize>,
-    value: Vec<f64>,
 }
 
 impl SymmetricMatrix {
@@ -44,28 +51,62 @@ impl SymmetricMatrix {
                 return Err(Error::Malformed("a column does not start at its diagonal and ascend"));
             }
         }
-        Ok(Self { column_start, row, value })
+        Ok(Self { places: Arc::new(Places { column_start, row }), value })
+    }
+
+    /// A matrix with the same pattern and other values, in the same order.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if there are not as many.
+    pub fn with_values(&self, value: Vec<f64>) -> Result<Self, Error> {
+        if value.len() != self.value.len() {
+            return Err(Error::Malformed("array lengths differ"));
+        }
+        Ok(Self { places: Arc::clone(&self.places), value })
+    }
+
+    /// Whether entries are at the same places as those of another matrix.
+    pub fn has_pattern_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.places, &other.places) || self.places == other.places
+    }
+
+    /// This matrix plus `factor` times another one of the same pattern.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if the patterns differ.
+    pub fn plus(&self, factor: f64, other: &Self) -> Result<Self, Error> {
+        if !self.has_pattern_of(other) {
+            return Err(Error::Malformed("the patterns of two matrices differ"));
+        }
+        let value = self.value.iter().zip(&other.value).map(|(a, b)| a + factor * b).collect();
+        Ok(Self { places: Arc::clone(&self.places), value })
     }
 
     /// Number of rows.
     pub fn order(&self) -> usize {
-        self.column_start.len() - 1
+        self.places.column_start.len() - 1
     }
 
     /// The diagonal.
     pub fn diagonal(&self) -> impl Iterator<Item = f64> {
-        self.column_start[..self.order()].iter().map(|&start| self.value[start])
+        self.places.column_start[..self.order()].iter().map(|&start| self.value[start])
     }
 
     /// Adds `shift` to every diagonal entry.
     pub fn shift_diagonal(&mut self, shift: f64) {
-        for column in 0..self.order() {
-            self.value[self.column_start[column]] += shift;
+        self.add_to_diagonal(std::iter::repeat(shift));
+    }
+
+    /// Adds one value after another to the diagonal.
+    pub fn add_to_diagonal(&mut self, shifts: impl IntoIterator<Item = f64>) {
+        for (start, shift) in self.places.column_start[..self.order()].iter().zip(shifts) {
+            self.value[*start] += shift;
         }
     }
 
     fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
-        SymbolicSparseColMatRef::new_checked(self.order(), self.order(), &self.column_start, None, &self.row)
+        let Places { column_start, row } = &*self.places;
+        SymbolicSparseColMatRef::new_checked(self.order(), self.order(), column_start, None, row)
     }
 }
 
@@ -197,6 +238,19 @@ mod tests {
         assert!(SymmetricMatrix::new(vec![], vec![], vec![]).is_err());
     }
 
+    #[test]
+    fn sums_need_one_pattern() {
+        let one = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![4.0, 1.0, 3.0]).unwrap();
+        let sum = one.plus(2.0, &one.with_values(vec![1.0, 0.5, 0.25]).unwrap()).unwrap();
+        assert_eq!(sum.value, [6.0, 2.0, 3.5]);
+        let mut shifted = sum.clone();
+        shifted.add_to_diagonal([1.0, -0.5]);
+        assert_eq!(shifted.diagonal().collect::<Vec<_>>(), [7.0, 3.0]);
+        assert!(one.with_values(vec![1.0; 2]).is_err());
+        let other = SymmetricMatrix::new(vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
+        assert!(one.plus(1.0, &other).is_err());
+    }
+
     const FORMS: [SupernodalThreshold; 3] = [
         SupernodalThreshold::AUTO,
         SupernodalThreshold::FORCE_SIMPLICIAL,
@@ -227,10 +281,10 @@ mod tests {
     fn times(matrix: &SymmetricMatrix, x: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; x.len()];
         for column in 0..x.len() {
-            for k in matrix.column_start[column]..matrix.column_start[column + 1] {
-                product[matrix.row[k]] += matrix.value[k] * x[column];
-                if matrix.row[k] != column {
-                    product[column] += matrix.value[k] * x[matrix.row[k]];
+            for k in matrix.places.column_start[column]..matrix.places.column_start[column + 1] {
+                product[matrix.places.row[k]] += matrix.value[k] * x[column];
+                if matrix.places.row[k] != column {
+                    product[column] += matrix.value[k] * x[matrix.places.row[k]];
                 }
             }
         }
@@ -288,8 +342,8 @@ mod tests {
             for _ in 0..2 {
                 let mut dense = DMatrix::zeros(order, order);
                 for column in 0..order {
-                    for k in matrix.column_start[column]..matrix.column_start[column + 1] {
-                        dense[(matrix.row[k], column)] = matrix.value[k];
+                    for k in matrix.places.column_start[column]..matrix.places.column_start[column + 1] {
+                        dense[(matrix.places.row[k], column)] = matrix.value[k];
                     }
                 }
                 let lower = dense.cholesky().unwrap().unpack();

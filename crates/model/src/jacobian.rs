@@ -43,6 +43,12 @@ impl BlockMatrix {
             .collect()
     }
 
+    /// Multiplies one row by a factor.
+    pub fn scale_row(&mut self, row: usize, factor: f64) {
+        let range = self.row_start[row]..self.row_start[row + 1];
+        self.block[range].iter_mut().flatten().for_each(|entry| *entry *= factor);
+    }
+
     /// The matrix with some of its block columns only.
     pub fn only(&self, kept: impl Fn(usize) -> bool) -> Self {
         let mut matrix = Self { row_start: vec![0], ..Self::default() };

@@ -6,7 +6,7 @@ use super::whitening::whitened;
 use crate::cross_validation::Folds;
 use crate::diagnostics::{CellData, ResidualField, diagnose};
 use crate::least_squares::residuals;
-use crate::linearisation::linearised_back;
+use crate::rows::linearised_back;
 use crate::uncertainty::nudges;
 use crate::{Error, Inference, Observation, Velocities};
 use voronudge_geometry::{Vector, areas};
