@@ -7,7 +7,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
 use std::error::Error;
-use voronudge_geometry::{Domain, Grid, PeriodicBox, Side, Tessellation, Vector};
+use voronudge_geometry::{Domain, FieldOfView, Grid, PeriodicBox, Side, Tessellation, Vector};
 use voronudge_infer::{
     Constraints, CrossValidation, Flow, KnownNoise, Observation, Quantity, Request, Velocities, Window,
 };
@@ -118,7 +118,7 @@ impl Tissue {
         let mut noisy = noisy(seed);
         let positions = noisy(&self.positions, noise.position)?;
         let velocities: Vec<_> = noisy(&self.velocities, noise.velocity)?.into_iter().map(Some).collect();
-        Ok(Observation::new(0, positions, velocities, self.tessellation.domain(), 3.0)?)
+        Ok(Observation::new(0, positions, velocities, self.tessellation.domain(), FieldOfView::default())?)
     }
 
     /// What optical flow would measure on a grid: averages over squares in which every point moves with the cell whose
@@ -150,7 +150,7 @@ impl Tissue {
         let positions = noisy(&self.positions, noise.position)?;
         let velocities = noisy(&averages, noise.velocity)?.into_iter().map(Some).collect();
         let flow = Flow { grid, velocities, window: Window::Square };
-        Ok(Observation::new(0, positions, Velocities::OnGrid(flow), domain, 3.0)?)
+        Ok(Observation::new(0, positions, Velocities::OnGrid(flow), domain, FieldOfView::default())?)
     }
 
     /// A fit with K_A held at its true value, without cross-validation.

@@ -2,7 +2,7 @@
 
 use claims::{Noise, Tissue};
 use std::ops::ControlFlow;
-use voronudge_geometry::Vector;
+use voronudge_geometry::{FieldOfView, Vector};
 use voronudge_infer::{
     Constraints, Error, Inference, KnownNoise, NoiseSource, Observation, Quantity, Request, infer,
 };
@@ -115,7 +115,7 @@ fn a_mirror_turns_the_chirality() {
         observation.positions.iter().map(flip).collect(),
         observation.velocities.values().iter().map(|v| v.as_ref().map(flip)).collect::<Vec<_>>(),
         tissue.tessellation.domain(),
-        3.0,
+        FieldOfView::default(),
     )
     .unwrap();
     let request = tissue.request(LOW.known());

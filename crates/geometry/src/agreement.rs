@@ -1,6 +1,6 @@
 //! How well the Voronoi polygons of the centroids stand for the true outlines.
 
-use crate::{FieldOfView, Tessellation, Vector, areas, perimeters};
+use crate::{Certificate, Tessellation, Vector, areas, perimeters};
 use std::collections::BTreeSet;
 
 /// The true shape of a cell.
@@ -52,7 +52,7 @@ impl Agreement {
 pub fn agreement(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
-    view: &FieldOfView,
+    view: &Certificate,
     shapes: &[Option<MeasuredShape>],
     contacts: &BTreeSet<[usize; 2]>,
 ) -> Agreement {
@@ -92,7 +92,7 @@ pub fn agreement(
 /// The centroid of a cell that is cut off is not where it should be, which its neighbours feel.
 pub fn comparable(
     tessellation: &Tessellation,
-    view: &FieldOfView,
+    view: &Certificate,
     shapes: &[Option<MeasuredShape>],
 ) -> Vec<bool> {
     let is_whole = |cell: usize| shapes[cell].is_some();
@@ -126,7 +126,7 @@ mod tests {
         }
         let tessellation =
             Tessellation::new(&positions, Domain::Periodic(PeriodicBox::new(lengths).unwrap())).unwrap();
-        let view = FieldOfView::new(&tessellation, &positions, 3.0);
+        let view = FieldOfView::default().judge(&tessellation, &positions);
         let (a, p) = (areas(&tessellation, &positions), perimeters(&tessellation, &positions));
         let shapes: Vec<Option<MeasuredShape>> =
             a.iter().zip(&p).map(|(&area, &perimeter)| Some(MeasuredShape { area, perimeter })).collect();

@@ -79,6 +79,33 @@ pub enum Error {
         /// A cell where two images disagree.
         cell: usize,
     },
+    /// A region with fewer than three corners.
+    #[error("a region has {found} corners, but it needs at least 3")]
+    RegionCorners {
+        /// Number of corners given.
+        found: usize,
+    },
+    /// A corner of a region that is NaN or infinite.
+    #[error("corner {corner} of the region is at ({x}, {y})")]
+    RegionCorner {
+        /// Index of the corner.
+        corner: usize,
+        /// Its x coordinate.
+        x: f64,
+        /// Its y coordinate.
+        y: f64,
+    },
+    /// A region whose corners lie on one line.
+    #[error("the region has no area")]
+    RegionArea,
+    /// A region whose border crosses or touches itself.
+    #[error("sides {first} and {second} of the region cross or touch each other")]
+    RegionCrossing {
+        /// The first of the two sides; side k begins at corner k, counted from 0.
+        first: usize,
+        /// The second.
+        second: usize,
+    },
     /// Values that do not fill the rows of an image.
     #[error("{values} values do not fill an image of {columns} columns and {rows} rows")]
     Raster {
@@ -120,6 +147,13 @@ impl Error {
             }
             Self::Inconsistent { .. } => {
                 "several cells lie on one circle to rounding precision; move them by a tiny random amount"
+            }
+            Self::RegionCorners { .. } | Self::RegionArea => {
+                "give the rectangle [x0, y0, x1, y1] or the corners [[x, y], …] of a polygon"
+            }
+            Self::RegionCorner { .. } => "corners must be finite numbers",
+            Self::RegionCrossing { .. } => {
+                "give the corners in the order in which they follow each other around the region"
             }
             Self::Raster { .. } => "give one value for each pixel, row after row",
             Self::TooManyCells { .. } => "split the data",

@@ -162,8 +162,3 @@ pub fn areas(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64>
 pub fn perimeters(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
     per_cell(tessellation, positions, |polygon| polygon.shape().perimeter)
 }
-
-/// Distance of every cell's farthest vertex from its centre; NaN for cells on the hull of an open field.
-pub(crate) fn reaches(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
-    per_cell(tessellation, positions, |polygon| polygon.vertices().map(|c| c.norm()).fold(0.0, f64::max))
-}

@@ -174,6 +174,13 @@ impl Tessellation {
         self.twin(h)
     }
 
+    /// From the side of a triangle that half-edge `h` is, the triangle to its left, to the next one counter-clockwise.
+    /// Outside a convex hull, the same of what is outside.
+    pub(crate) fn next_around_triangle(&self, h: usize) -> usize {
+        let (back, ring) = (self.twin(h), self.ring(self.neighbour(h)));
+        if back == ring.start { ring.end - 1 } else { back - 1 }
+    }
+
     fn next_in_ring(&self, cell: usize, h: usize) -> usize {
         let ring = self.ring(cell);
         if h + 1 == ring.end { ring.start } else { h + 1 }

@@ -222,6 +222,7 @@ impl Sampling {
 mod tests {
     use super::*;
     use crate::sample::{COEFFICIENTS, cells};
+    use voronudge_geometry::FieldOfView;
     use voronudge_model::{Model, base_terms, jacobian, velocities};
 
     fn windows() -> [Window; 2] {
@@ -300,7 +301,7 @@ mod tests {
                 positions.clone(),
                 crate::Velocities::OnGrid(flow),
                 Domain::Open,
-                3.0,
+                FieldOfView::default(),
             );
             let targets = frame.unwrap().targets().count();
             assert!(targets < 20, "{window:?} {targets}");

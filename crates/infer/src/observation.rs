@@ -5,7 +5,7 @@ use crate::background::Background;
 use crate::flow::{Flow, Sampling};
 use nalgebra::DMatrix;
 use std::sync::Arc;
-use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, Visibility};
+use voronudge_geometry::{Domain, FieldOfView, Region, Tessellation, Vector, Visibility};
 use voronudge_model::{BlockMatrix, Environment};
 
 /// Cells of one frame with their tessellation as measured. Cells are those present in the frame, in any order.
@@ -19,8 +19,10 @@ pub struct Observation {
     pub tessellation: Tessellation,
     /// Whether a cell can be trusted (open fields of view).
     pub visibility: Vec<Visibility>,
-    /// Multiple of the median area above which an open field's polygon is taken for a rim or a hole.
-    pub largest_area: f64,
+    /// Where every cell would have been seen; `None` if that is everywhere.
+    pub region: Option<Region>,
+    /// What the cells were judged by.
+    pub field_of_view: FieldOfView,
     /// Whether the model can say what a velocity should be.
     used: Vec<bool>,
     /// Cells without a nudge; empty if all have one.
@@ -68,7 +70,7 @@ impl Velocities {
 }
 
 impl Observation {
-    /// Tessellates a snapshot. For `largest_area` see the field of that name; `frame` is used in messages.
+    /// Tessellates a snapshot and judges its cells. `frame` is used in messages.
     ///
     /// # Errors
     /// [`Error::Lengths`], [`Error::Geometry`].
@@ -77,7 +79,7 @@ impl Observation {
         positions: Vec<Vector<f64>>,
         velocities: impl Into<Velocities>,
         domain: Domain,
-        largest_area: f64,
+        field_of_view: FieldOfView,
     ) -> Result<Self, Error> {
         let velocities = velocities.into();
         let expected = match &velocities {
@@ -90,7 +92,7 @@ impl Observation {
         }
         let tessellation =
             Tessellation::new(&positions, domain).map_err(|source| Error::Geometry { frame, source })?;
-        let visibility = FieldOfView::new(&tessellation, &positions, largest_area).visibility().to_vec();
+        let (visibility, region) = field_of_view.judge(&tessellation, &positions).into_parts();
         let used = match &velocities {
             Velocities::OfCells(_) => visibility.iter().map(|v| *v == Visibility::Counted).collect(),
             Velocities::OnGrid(flow) => {
@@ -102,7 +104,8 @@ impl Observation {
             velocities,
             tessellation,
             visibility,
-            largest_area,
+            region,
+            field_of_view,
             used,
             held: Vec::new(),
             stiffness: Vec::new(),
@@ -218,7 +221,7 @@ impl Observation {
         targets: Vec<Option<Vector<f64>>>,
         held: Vec<bool>,
     ) -> Result<Self, Error> {
-        let whole = Self::new(0, positions, targets, Domain::Open, f64::INFINITY)?;
+        let whole = Self::new(0, positions, targets, Domain::Open, FieldOfView::everywhere())?;
         let own = |of_cells: &[f64]| match of_cells.is_empty() {
             true => Vec::new(),
             false => cells.iter().map(|cell| of_cells[*cell]).collect(),

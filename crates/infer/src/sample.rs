@@ -4,7 +4,7 @@ use crate::{Flow, Observation, Velocities, Window};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
-use voronudge_geometry::{Domain, Grid, PeriodicBox, Tessellation, Vector, Visibility};
+use voronudge_geometry::{Domain, FieldOfView, Grid, PeriodicBox, Tessellation, Vector, Visibility};
 use voronudge_model::{Model, velocities};
 
 /// Coefficients of the tissue, `(K_A, K_P P_0, K_P, K_P α)`.
@@ -24,7 +24,7 @@ pub fn observation(position_noise: f64, velocity_noise: f64, seed: u64) -> Obser
     };
     let measured = positions.iter().map(|r| noisy(r, position_noise)).collect();
     let velocities: Vec<_> = v.iter().map(|v| Some(noisy(v, velocity_noise))).collect();
-    Observation::new(0, measured, velocities, domain, 3.0).unwrap()
+    Observation::new(0, measured, velocities, domain, FieldOfView::default()).unwrap()
 }
 
 /// Positions of the tissue, without noise.
@@ -50,5 +50,12 @@ pub fn flow(window: Window) -> Observation {
     let visibility = vec![Visibility::Counted; 36];
     let sampling = crate::flow::Sampling::new(&empty, &tessellation, &positions, &visibility);
     let velocities = sampling.average(&v).into_iter().map(Some).collect();
-    Observation::new(0, positions, Velocities::OnGrid(Flow { velocities, ..empty }), domain, 3.0).unwrap()
+    Observation::new(
+        0,
+        positions,
+        Velocities::OnGrid(Flow { velocities, ..empty }),
+        domain,
+        FieldOfView::default(),
+    )
+    .unwrap()
 }

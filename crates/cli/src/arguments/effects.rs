@@ -5,7 +5,7 @@ use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use voronudge_geometry::{Domain, FieldOfView, Tessellation, Vector, areas};
+use voronudge_geometry::{Certificate, Domain, Tessellation, Vector, areas};
 use voronudge_model::{Effect, Environment, Model};
 
 #[derive(Debug, Args)]
@@ -93,7 +93,7 @@ impl ChosenEffects {
 pub(crate) fn environment(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
-    view: &FieldOfView,
+    view: &Certificate,
 ) -> Result<Environment, Failure> {
     let (origin, area) = match tessellation.domain() {
         Domain::Periodic(cell_box) => {

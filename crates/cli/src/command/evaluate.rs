@@ -45,9 +45,6 @@ pub(crate) struct Arguments {
 /// Coordinates up to which the Jacobian is written dense.
 const DENSE_LIMIT: usize = 4000;
 
-/// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
-const LARGEST_AREA: f64 = 3.0;
-
 #[derive(Serialize)]
 struct Report {
     #[serde(flatten)]
@@ -129,7 +126,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         let snapshot = Snapshot::new(&data, frame);
         let tessellation = Tessellation::new(&snapshot.positions, domain)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
-        let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
+        let view = FieldOfView::default().judge(&tessellation, &snapshot.positions);
         let mut surroundings = environment(&tessellation, &snapshot.positions, &view)?;
         if let Some(labels) = labels(&data, &snapshot, frame) {
             surroundings = surroundings

@@ -1,7 +1,7 @@
 //! Topology: twins, triangles, the Delaunay property.
 
 use crate::samples::{honeycomb, periodic, random, sheared, squares};
-use voronudge_geometry::{Domain, Error, FieldOfView, Tessellation, Vector, Visibility, areas, circumcentre};
+use voronudge_geometry::{Domain, Error, Tessellation, Vector, circumcentre};
 
 type Tissue = (Vec<Vector<f64>>, Domain);
 
@@ -127,58 +127,5 @@ fn a_failed_renewal_can_be_followed_by_a_good_one() -> Result<(), Error> {
     assert!(tessellation.renew(&broken).is_err());
     tessellation.renew(&positions)?;
     assert_eq!(tessellation, Tessellation::new(&positions, periodic([9.0, 9.0])?)?);
-    Ok(())
-}
-
-#[test]
-fn a_field_of_view_leaves_out_the_rim_and_what_is_next_to_it() -> Result<(), Error> {
-    let positions = random(200, [14.0, 14.0], 41);
-    let open = Tessellation::new(&positions, Domain::Open)?;
-    let view = FieldOfView::new(&open, &positions, 3.0);
-    for cell in 0..open.len() {
-        assert_eq!(view.visibility()[cell] == Visibility::OnHull, !open.is_closed(cell));
-        if view.counts(cell) {
-            assert!(open.neighbours(cell).iter().all(|&k| open.is_closed(k as usize)));
-        }
-    }
-    let counted = (0..open.len()).filter(|&cell| view.counts(cell)).count();
-    // Points without any repulsion leave voids, which a field of view takes for holes in the data.
-    assert!(counted > 20 && counted < 60, "{counted}");
-    let boxed = Tessellation::new(&positions, periodic([14.0, 14.0])?)?;
-    assert!((0..200).all(|cell| FieldOfView::new(&boxed, &positions, 3.0).counts(cell)));
-    Ok(())
-}
-
-/// What counts in a window is what it is in the whole tissue: all but a percent of the polygons around a cell that counts
-/// are unchanged by the cells that were not seen.
-#[test]
-fn cells_that_count_have_their_true_polygons() -> Result<(), Error> {
-    let (mut all, mut wrong) = (0, 0);
-    for seed in 0..5 {
-        let side = 20usize;
-        let offsets = random(side * side, [0.7, 0.7], 50 + seed);
-        let tissue: Vec<Vector<f64>> = offsets
-            .iter()
-            .enumerate()
-            .map(|(i, d)| Vector::new((i % side) as f64 + d.x, (i / side) as f64 + d.y))
-            .collect();
-        let whole = Tessellation::new(&tissue, periodic([side as f64; 2])?)?;
-        let true_areas = areas(&whole, &tissue);
-        let middle = Vector::new(10.0, 10.0);
-        let seen: Vec<usize> = (0..tissue.len()).filter(|&i| (tissue[i] - middle).norm() < 8.0).collect();
-        let positions: Vec<Vector<f64>> = seen.iter().map(|&i| tissue[i]).collect();
-        let window = Tessellation::new(&positions, Domain::Open)?;
-        let window_areas = areas(&window, &positions);
-        let view = FieldOfView::new(&window, &positions, 3.0);
-        for cell in (0..seen.len()).filter(|&cell| view.counts(cell)) {
-            let ring = window.neighbours(cell).iter().map(|&k| k as usize);
-            for k in std::iter::once(cell).chain(ring) {
-                all += 1;
-                wrong += usize::from((window_areas[k] - true_areas[seen[k]]).abs() > 1e-9);
-            }
-        }
-    }
-    assert!(all > 2000, "{all}");
-    assert!(wrong * 100 < all, "{wrong} of {all} polygons are not those of the whole tissue");
     Ok(())
 }

@@ -107,7 +107,8 @@ pub(crate) fn synthetic(
             Velocities::OnGrid(flow) => Velocities::OnGrid(Flow { velocities: values, ..flow.clone() }),
         };
         let domain = frame.tessellation.domain();
-        let refitted = Observation::new(index, positions, velocities, domain, frame.largest_area)?;
+        let field_of_view = frame.field_of_view.clone();
+        let refitted = Observation::new(index, positions, velocities, domain, field_of_view)?;
         synthetic
             .push(refitted.with_background(frame.background_degree()).within(frame.environment().clone()));
     }

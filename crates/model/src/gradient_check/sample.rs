@@ -51,7 +51,7 @@ impl Sample {
         };
         let spacing = (area / cells as f64).sqrt();
         let acting = acting(&tessellation);
-        let view = FieldOfView::new(&tessellation, positions, 3.0);
+        let view = FieldOfView::default().judge(&tessellation, positions);
         let trusted: Vec<bool> = (0..cells).map(|cell| view.counts(cell)).collect();
         let count = cells.min((CELL_LIMIT * CELL_LIMIT / cells).max(1));
         Ok(Self {

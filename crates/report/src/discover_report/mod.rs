@@ -20,7 +20,7 @@ use serde::Serialize;
 
 use crate::before_after::BeforeAfter;
 use crate::error::ReportError;
-use crate::infer_report::{CellCounts, FlowGrid, GivenConstraints, Quantity, RunRecord};
+use crate::infer_report::{CellCounts, FlowGrid, GivenConstraints, Measurement, Quantity, RunRecord};
 use crate::view::Units;
 
 /// JSON Schema (draft 2020-12) of [`DiscoverReport`].
@@ -38,6 +38,8 @@ pub struct DiscoverReport {
     pub length_scale: Quantity,
     /// Which cells were used.
     pub cells: CellCounts,
+    /// How they were measured.
+    pub measurement: Measurement,
     /// The grid, where velocities were measured on one.
     pub flow: Option<FlowGrid>,
     /// What was said of the parameters before the fits.

@@ -5,10 +5,12 @@
 
 mod constraints;
 mod implied;
+mod measurement;
 mod uncertainty;
 
 pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
+pub use measurement::{Measurement, RegionSource, SeenRegion};
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
 
 use std::collections::BTreeMap;
@@ -63,6 +65,8 @@ pub struct InferReport {
     pub length_scale: Quantity,
     /// Which cells were used.
     pub cells: CellCounts,
+    /// How they were measured.
+    pub measurement: Measurement,
     /// The grid, where velocities were measured on one.
     pub flow: Option<FlowGrid>,
     /// What was said of the parameters before the fit.

@@ -4,8 +4,9 @@ use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
     BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid, FlowWindow,
-    GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, MeanRemoved, NaiveParameters,
-    Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult, Quantity, RunRecord, Transitions,
+    GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, MeanRemoved, Measurement,
+    NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult, Quantity,
+    RegionSource, RunRecord, SeenRegion, Transitions,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -147,6 +148,12 @@ pub fn report() -> InferReport {
             frames: vec![6, 7],
             used: 636,
             left_out: BTreeMap::from([("open_polygon".into(), 152), ("no_velocity".into(), 12)]),
+        },
+        measurement: Measurement {
+            field_of_view: Some(SeenRegion { source: RegionSource::Hull, corners: None, margin: 0.5 }),
+            certain: 648,
+            uncertain: 141,
+            outside: 11,
         },
         flow: None,
         constraints: GivenConstraints {

@@ -5,6 +5,7 @@ use crate::arguments::DataSetArguments;
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
 use std::path::Path;
+use voronudge_geometry::FieldOfView;
 use voronudge_io::FrameSelection;
 
 #[derive(Debug, Clone, Args)]
@@ -20,8 +21,7 @@ pub(crate) struct SnapshotArguments {
     /// Let a smooth flow be no concern of the model: polynomials of the position up to this degree, in each frame.
     #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u32).range(0..=6), allow_negative_numbers = true)]
     pub background: Option<u32>,
-    /// In an open field of view, polygons larger than this multiple of the median area, or reaching farther than a
-    /// regular hexagon of that size, are taken for the rim.
+    /// In an open field of view, polygons larger than this multiple of the median area are taken for holes in the data.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     pub largest_area: f64,
     #[command(flatten)]
@@ -46,6 +46,11 @@ impl SnapshotArguments {
         }
         let text = format!("--largest-area is {}, but it must be finite and above zero", self.largest_area);
         Err(Failure::new(text).with_hint("leave it out for 3 times the median area"))
+    }
+
+    /// Where cells would have been seen.
+    pub fn field_of_view(&self) -> FieldOfView {
+        FieldOfView { largest_area: self.largest_area, ..FieldOfView::default() }
     }
 
     /// The same of the folder of another data set, all frames.

@@ -4,7 +4,7 @@ use super::prepare::Prepared;
 use super::scaling::{factor, unit};
 use super::words;
 use std::collections::BTreeMap;
-use voronudge_geometry::Visibility;
+use voronudge_geometry::{Certainty, Visibility};
 use voronudge_infer::{
     Constraints, Inference, Method, NoiseSource as Source, Observation, Prior, Profile, Quantity as What,
     Status, Velocities,
@@ -12,8 +12,8 @@ use voronudge_infer::{
 use voronudge_io::DataSet;
 use voronudge_report::Units;
 use voronudge_report::infer_report::{
-    CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, Noise, NoiseSource,
-    Nudge, Parameter, Parameters, Transitions,
+    CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, Measurement, Noise,
+    NoiseSource, Nudge, Parameter, Parameters, RegionSource, SeenRegion, Transitions,
 };
 
 /// Names of the coefficients along which directions are given.
@@ -157,14 +157,34 @@ pub(crate) fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts
     CellCounts { frames: prepared.frames.clone(), used: result.used, left_out }
 }
 
+/// What was seen of the tissue.
+pub(crate) fn measurement(prepared: &Prepared) -> Measurement {
+    let judged = prepared.observations.iter().flat_map(|observation| &observation.visibility);
+    let count = |class: Certainty| judged.clone().filter(|own| own.certainty() == class).count();
+    Measurement {
+        field_of_view: prepared.observations.first().and_then(|observation| {
+            observation.region.as_ref().map(|_| SeenRegion {
+                source: RegionSource::Hull,
+                corners: None,
+                margin: observation.field_of_view.margin * prepared.scale.length,
+            })
+        }),
+        certain: count(Certainty::Certain),
+        uncertain: count(Certainty::Uncertain),
+        outside: count(Certainty::Outside),
+    }
+}
+
 /// Why the velocity of a cell or at a grid point was not used, if it was not.
 fn reason_to_leave_out(observation: &Observation, datum: usize) -> Option<&'static str> {
     let missing = observation.velocities.values()[datum].is_none();
     match &observation.velocities {
         Velocities::OfCells(_) => match observation.visibility[datum] {
-            Visibility::OnHull => Some("polygon_not_closed"),
+            Visibility::Outside => Some("outside_field_of_view"),
+            Visibility::NotClosed => Some("polygon_not_closed"),
+            Visibility::Unseen => Some("polygon_uncertain"),
             Visibility::TooLarge => Some("polygon_too_large"),
-            Visibility::NextToRim => Some("next_to_rim"),
+            Visibility::NextToUncertain => Some("next_to_uncertain"),
             Visibility::Counted => missing.then_some("no_velocity"),
         },
         Velocities::OnGrid(_) if missing => Some("missing"),

@@ -206,7 +206,7 @@ pub(crate) fn observe(
     let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
     let domain = domain(data)?;
     let observation =
-        Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.largest_area)
+        Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.field_of_view())
             .map_err(|error| match error {
                 Error::Geometry { source, .. } => Failure::from(snapshot.in_file_numbers(source)).at(place()),
                 other => Failure::from(other).at(place()),
@@ -271,5 +271,6 @@ fn scaled(index: usize, observation: &Observation, scale: &Scale) -> Result<Obse
         }
         Velocities::OnGrid(flow) => Velocities::OnGrid(flow::scaled(flow, scale)?),
     };
-    Ok(Observation::new(index, positions, velocities, domain, observation.largest_area)?)
+    let field_of_view = observation.field_of_view.scaled(scale.length.recip());
+    Ok(Observation::new(index, positions, velocities, domain, field_of_view)?)
 }

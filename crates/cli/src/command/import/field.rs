@@ -16,9 +16,6 @@ use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
 use voronudge_report::{FieldReport, Units};
 
-/// Polygons larger than this multiple of the median area are taken for the rim of the field of view.
-const LARGEST_AREA: f64 = 3.0;
-
 const GUIDE: &[[&str; 2]] = &[
     [
         "Cells",
@@ -146,7 +143,7 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
     let snapshot = Snapshot::new(data, 0);
     let tessellation = Tessellation::new(&snapshot.positions, domain(data)?)
         .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(file.display()))?;
-    let view = FieldOfView::new(&tessellation, &snapshot.positions, LARGEST_AREA);
+    let view = FieldOfView::default().judge(&tessellation, &snapshot.positions);
     let mut frame =
         cells_view("frame 0".into(), &tessellation, &snapshot.positions, |cell| view.counts(cell));
     let up = y_sign(data);

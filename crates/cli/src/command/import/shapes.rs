@@ -17,9 +17,6 @@ use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
 use voronudge_report::shape_report::{AgreementRecord, FrameAgreement, ShapeReport};
 use voronudge_report::{FrameView, Units};
 
-/// Polygons larger than this multiple of the median area are taken for the rim of the field of view.
-const LARGEST_AREA: f64 = 3.0;
-
 const GUIDE: &[[&str; 2]] = &[
     [
         "Precision and recall",
@@ -118,7 +115,7 @@ fn compare(import: &ShapeImport, frame: usize, file: &Path) -> Result<Compared, 
     let tessellation = Tessellation::new(positions, Domain::Open).map_err(|error| {
         Failure::from(snapshot.in_file_numbers(error)).at(format!("{}, frame {frame}", file.display()))
     })?;
-    let view = FieldOfView::new(&tessellation, positions, LARGEST_AREA);
+    let view = FieldOfView::default().judge(&tessellation, positions);
     let known = &import.frames[frame];
     let shapes: Vec<Option<MeasuredShape>> = snapshot
         .cells

@@ -23,6 +23,7 @@ pub(super) fn report(
         run: run.record(Some(data)),
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, result),
+        measurement: outcome::measurement(prepared),
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         parameters: outcome::parameters(prepared, result, &units),

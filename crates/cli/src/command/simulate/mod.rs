@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;
-    let view = FieldOfView::new(&tessellation, &start.positions, f64::INFINITY);
+    let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
     let surroundings = environment(&tessellation, &start.positions, &view)?;
     let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
     let request = Request {

@@ -7,13 +7,11 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::snapshot::{Snapshot, domain_at, labels};
 use std::sync::Arc;
-use voronudge_geometry::{FieldOfView, Tessellation};
+use voronudge_geometry::{Certificate, FieldOfView, Tessellation};
 use voronudge_io::DataSet;
 use voronudge_model::{Model, Parameters, velocities};
 use voronudge_spectrum::{LinearProblem, Modes, Scope, TransitionDistance};
 
-/// Polygons larger than this multiple of the median area are taken for the rim of an open field of view.
-const LARGEST_AREA: f64 = 3.0;
 /// Sides shorter than this share of the cell size are near a T1 transition.
 pub(super) const SHORT_SIDE: f64 = 0.01;
 
@@ -22,7 +20,7 @@ pub(super) struct Solved {
     pub frame: usize,
     pub snapshot: Snapshot,
     pub tessellation: Tessellation,
-    pub view: FieldOfView,
+    pub view: Certificate,
     pub problem: Arc<LinearProblem>,
     pub modes: Modes,
     /// The cell size ℓ₀.
@@ -45,7 +43,7 @@ impl Solved {
         let positions = &snapshot.positions;
         let tessellation =
             Tessellation::new(positions, domain).map_err(|error| snapshot.in_file_numbers(error))?;
-        let view = FieldOfView::new(&tessellation, positions, LARGEST_AREA);
+        let view = FieldOfView::default().judge(&tessellation, positions);
         if (0..positions.len()).all(|cell| !view.counts(cell)) {
             return Err(voronudge_spectrum::Error::NoCells.into());
         }

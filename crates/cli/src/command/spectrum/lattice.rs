@@ -70,7 +70,7 @@ impl Lattice {
     /// The waves of the model; beside them those of the theory unless effects are added.
     pub fn waves(&self, parameters: &Parameters<f64>, effects: &ChosenEffects) -> Result<Waves, Failure> {
         let (tessellation, positions) = (self.honeycomb.tessellation(), self.honeycomb.positions());
-        let view = FieldOfView::new(tessellation, positions, f64::INFINITY);
+        let view = FieldOfView::everywhere().judge(tessellation, positions);
         let surroundings = environment(tessellation, positions, &view)?;
         let base = Model::chiral_voronoi(parameters);
         let model = effects.add_to(base, surroundings, tessellation.domain())?;
