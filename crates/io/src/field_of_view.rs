@@ -65,11 +65,7 @@ impl SeenArea {
                 rows.outer_iter().map(|row| Vector::new(row[0], row[1])).collect();
             places.into_iter().enumerate().map(move |(cell, r)| ([frame, cell], r))
         });
-        cells
-            .find(|(_, r)| {
-                r.x.is_finite() && !region.contains(*r) && region.distance_from_border(*r) > 1e-9 * r.norm()
-            })
-            .map(|(place, _)| place)
+        cells.find(|(_, r)| r.x.is_finite() && !region.holds(*r)).map(|(place, _)| place)
     }
 
     /// As in `dataset.toml`.
