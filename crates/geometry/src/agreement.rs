@@ -126,7 +126,7 @@ mod tests {
         }
         let tessellation =
             Tessellation::new(&positions, Domain::Periodic(PeriodicBox::new(lengths).unwrap())).unwrap();
-        let view = FieldOfView::default().judge(&tessellation, &positions);
+        let view = crate::FieldOfView::default().judge(&tessellation, &positions);
         let (a, p) = (areas(&tessellation, &positions), perimeters(&tessellation, &positions));
         let shapes: Vec<Option<MeasuredShape>> =
             a.iter().zip(&p).map(|(&area, &perimeter)| Some(MeasuredShape { area, perimeter })).collect();

@@ -104,6 +104,7 @@ pub fn attributed() -> DiscoverReport {
         units: infer.units,
         length_scale: infer.length_scale,
         cells: infer.cells,
+        measurement: infer.measurement,
         flow: None,
         constraints: infer.constraints,
         verdict: Verdict::Attributed,
