@@ -5,6 +5,7 @@ use crate::objective::Objective;
 use crate::search::{Watch, follow, refine};
 use crate::{Error, Observation, Progress};
 use std::ops::ControlFlow;
+use voronudge_geometry::Vector;
 use voronudge_model::Structure;
 
 /// Blocks along each axis into which a frame is cut at least.
@@ -21,17 +22,38 @@ pub(crate) struct Folds {
     pub of_frames: bool,
     /// Squared error and sum of squares of each.
     folds: Vec<(f64, f64)>,
+    /// For each frame and datum what was predicted of its velocity; `None` where it has no target or was in no fold.
+    pub velocities: Vec<Vec<Option<Vector<f64>>>>,
+}
+
+/// What the fit without one fold says of it.
+struct Tested {
+    /// Squared error and sum of squares.
+    squares: (f64, f64),
+    /// Frame, datum and predicted velocity.
+    velocities: Vec<(usize, usize, Vector<f64>)>,
 }
 
 impl Folds {
     /// Errors of a model with given coefficients on whole frames.
     pub fn predicted(frames: &[Observation], structure: &Structure, coefficients: &[f64]) -> Self {
-        let of = |frame: &Observation| {
-            let rests = residuals_as_measured(frame, structure, coefficients);
-            let squared: f64 = rests.iter().map(|(_, rest)| rest.norm_squared()).sum();
-            (squared, frame.explainable().iter().map(|v| v.norm_squared()).sum())
+        let held_out = |index: usize| -> Vec<Vec<bool>> {
+            let out = |(k, frame): (usize, &Observation)| vec![k == index; frame.velocities.values().len()];
+            frames.iter().enumerate().map(out).collect()
         };
-        Self { of_frames: true, folds: frames.iter().map(of).collect() }
+        let tested = (0..frames.len()).map(|k| predict(frames, structure, coefficients, &held_out(k)));
+        Self::new(true, frames, tested.collect())
+    }
+
+    /// Folds without anything that moves say nothing.
+    fn new(of_frames: bool, frames: &[Observation], tested: Vec<Tested>) -> Self {
+        let mut velocities: Vec<Vec<_>> =
+            frames.iter().map(|frame| vec![None; frame.velocities.values().len()]).collect();
+        for (frame, datum, v) in tested.iter().flat_map(|fold| &fold.velocities) {
+            velocities[*frame][*datum] = Some(*v);
+        }
+        let folds = tested.iter().map(|fold| fold.squares).filter(|(_, total)| *total > 0.0).collect();
+        Self { of_frames, folds, velocities }
     }
 
     pub fn count(&self) -> usize {
@@ -104,20 +126,18 @@ pub(crate) fn cross_validate(
 ) -> Result<Option<Folds>, Error> {
     let tested = watch
         .each("cross-validation", &split.folds, 1.0, |held_out| test(whole, at, split.of_frames, held_out))?;
-    let Some(folds) = tested.into_iter().collect::<Option<Vec<(f64, f64)>>>() else {
-        return Ok(None);
-    };
-    let folds: Vec<(f64, f64)> = folds.into_iter().filter(|(_, total)| *total > 0.0).collect();
-    Ok((folds.len() >= 2).then_some(Folds { of_frames: split.of_frames, folds }))
+    let tested: Option<Vec<Tested>> = tested.into_iter().collect();
+    let folds = tested.map(|tested| Folds::new(split.of_frames, whole.frames, tested));
+    Ok(folds.filter(|folds| folds.count() >= 2))
 }
 
-/// Fits without some velocities: the squared error on them and their sum of squares. `None` if too few are left.
+/// Fits without some velocities and predicts them. `None` if too few are left.
 fn test(
     whole: &Objective<'_>,
     at: &[f64],
     of_frames: bool,
     held_out: &[Vec<bool>],
-) -> Result<Option<(f64, f64)>, Error> {
+) -> Result<Option<Tested>, Error> {
     let Objective { frames, structure, space, .. } = *whole;
     let (kept, training): (Vec<usize>, Vec<Observation>) = training(frames, held_out).into_iter().unzip();
     let used: usize = training.iter().map(|frame| frame.targets().count()).sum();
@@ -133,15 +153,32 @@ fn test(
         follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?.parameters
     };
     let coefficients = space.coefficients(objective.split(&parameters).0);
-    let (mut error, mut total) = (0.0, 0.0);
-    for (frame, out) in frames.iter().zip(held_out) {
-        let rests = residuals_as_measured(frame, structure, coefficients.as_slice());
-        for (v, (_, rest)) in frame.explainable().iter().zip(rests).filter(|(_, (datum, _))| out[*datum]) {
+    Ok(Some(predict(frames, structure, coefficients.as_slice(), held_out)))
+}
+
+/// What given coefficients make of some velocities at the measured positions.
+fn predict(
+    frames: &[Observation],
+    structure: &Structure,
+    coefficients: &[f64],
+    held_out: &[Vec<bool>],
+) -> Tested {
+    let (mut error, mut total, mut velocities) = (0.0, 0.0, Vec::new());
+    for (index, (frame, out)) in frames.iter().zip(held_out).enumerate() {
+        if !out.iter().any(|out| *out) {
+            continue;
+        }
+        let rests = residuals_as_measured(frame, structure, coefficients);
+        let targets = frame.targets().zip(frame.explainable());
+        for (((datum, measured), v), (_, rest)) in
+            targets.zip(rests).filter(|(((datum, _), _), _)| out[*datum])
+        {
             error += rest.norm_squared();
             total += v.norm_squared();
+            velocities.push((index, datum, measured - rest));
         }
     }
-    Ok(Some((error, total)))
+    Tested { squares: (error, total), velocities }
 }
 
 /// Whether a cell is in one of the blocks between the quantiles of the coordinates of cells with a target.

@@ -1,18 +1,20 @@
 //! The fit: naive, then nudged, with noise levels, intervals and errors.
 
 use crate::coefficients::parameters;
-use crate::cross_validation::{BLOCKS, Split, cross_validate};
+use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
+use crate::doubts::examine;
 use crate::estimates::Fitted;
 use crate::least_squares::{self, residuals_as_measured};
 use crate::noisy_fit::{at_limit, fit};
 use crate::objective::{Nudged, Objective};
 use crate::search::Watch;
 use crate::{
-    CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource, Observation,
-    Progress, Request, Status,
+    CrossValidation, Doubt, Error, Examination, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource,
+    Observation, Progress, Request, Status,
 };
 use nalgebra::DVector;
 use std::ops::ControlFlow;
+use voronudge_geometry::Vector;
 
 /// Standard deviations by which an objective may exceed its expected value.
 const ACCEPTED_EXCESS: f64 = 3.0;
@@ -48,10 +50,9 @@ pub fn infer(
     let found = fit(&mut objective, &naive, request, &mut watch)?;
     let objective = objective;
     let levels = objective.levels;
-    let cross_validated = match request.cross_validation {
+    let folds = match request.cross_validation {
         CrossValidation::Done => {
             cross_validate(&objective, &found.parameters, &Split::new(frames, BLOCKS), &mut watch)?
-                .map(|folds| folds.error())
         }
         CrossValidation::Skipped => None,
     };
@@ -75,7 +76,11 @@ pub fn infer(
     };
     let mut results = Vec::with_capacity(frames.len());
     for (index, (frame, nudges)) in frames.iter().zip(&nudges).enumerate() {
-        results.push(frame_result(frame, objective.place(index, nudges)?, &coefficients));
+        let held_out = match &folds {
+            Some(folds) => folds.velocities[index].clone(),
+            None => vec![None; frame.velocities.values().len()],
+        };
+        results.push(frame_result(frame, objective.place(index, nudges)?, &coefficients, held_out));
     }
     let cells: usize = frames.iter().map(|frame| frame.positions.len()).sum();
     let estimated = request.noise.position.is_none() || request.noise.velocity.is_none();
@@ -85,7 +90,7 @@ pub fn infer(
         at_limit(&levels, &request.noise).then_some(Doubt::PositionNoise),
         (found.status == Status::StepLimit).then_some(Doubt::Steps),
     ];
-    Ok(Inference {
+    let mut inference = Inference {
         parameters: fitted.estimates()?,
         effects: fitted.effects()?,
         model_parameters: parameters(&coefficients),
@@ -102,7 +107,7 @@ pub fn infer(
                     (objective.components() as f64 * variance + positions) / total
                 }
             },
-            cross_validated,
+            cross_validated: folds.as_ref().map(Folds::error),
         },
         coefficients,
         noise: levels,
@@ -122,11 +127,21 @@ pub fn infer(
         doubts: doubts.into_iter().flatten().collect(),
         used,
         total,
-    })
+    };
+    if request.examination == Examination::Done {
+        let further = examine(frames, request, &inference)?;
+        inference.doubts.extend(further);
+    }
+    Ok(inference)
 }
 
 /// One frame at its nudged positions.
-fn frame_result(frame: &Observation, nudged: Nudged<'_>, coefficients: &DVector<f64>) -> FrameResult {
+fn frame_result(
+    frame: &Observation,
+    nudged: Nudged<'_>,
+    coefficients: &DVector<f64>,
+    held_out: Vec<Option<Vector<f64>>>,
+) -> FrameResult {
     let evaluated = nudged.evaluate(coefficients.as_slice());
     let (before, after) = (frame.tessellation.edges(), nudged.tessellation.edges());
     let missing_from = |edges: &[(u32, u32, [i16; 2])], others: &[(u32, u32, [i16; 2])]| {
@@ -141,6 +156,7 @@ fn frame_result(frame: &Observation, nudged: Nudged<'_>, coefficients: &DVector<
         edges_gained: missing_from(&after, &before),
         predicted: evaluated.of_cells,
         predicted_data: evaluated.predicted,
+        held_out,
         nudged_positions: nudged.positions,
         tessellation: nudged.tessellation,
     }

@@ -17,6 +17,10 @@ pub struct Request {
     pub method: Method,
     /// Whether to predict velocities left out of the fit.
     pub cross_validation: CrossValidation,
+    /// Whether to look for reasons not to trust the measurement.
+    pub examination: Examination,
+    /// Time between frames where velocities are differences of positions.
+    pub frame_interval: Option<f64>,
     /// Seed of further starts.
     pub seed: u64,
 }
@@ -58,6 +62,15 @@ pub enum CrossValidation {
     Skipped,
 }
 
+/// Whether to look for reasons not to trust the measurement.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Examination {
+    /// Voids, residuals, errors of measurement that the catalogue knows.
+    Done,
+    /// Not done: the fit is one of many.
+    Skipped,
+}
+
 impl Request {
     /// A fit of all parameters of the base model with estimated noise. Lengths in units of ℓ₀.
     pub fn new(constraints: Constraints) -> Self {
@@ -67,6 +80,8 @@ impl Request {
             noise: KnownNoise::default(),
             method: Method::default(),
             cross_validation: CrossValidation::Done,
+            examination: Examination::Done,
+            frame_interval: None,
             seed: 0,
         }
     }

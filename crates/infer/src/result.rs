@@ -1,6 +1,6 @@
 //! What a fit answers.
 
-use crate::{NoiseLevels, NoiseSource, Quantity};
+use crate::{Doubt, NoiseLevels, NoiseSource, Quantity};
 use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Parameters;
@@ -99,6 +99,9 @@ pub struct FrameResult {
     pub predicted: Vec<Vector<f64>>,
     /// The same as they are measured: of the cells, or at the grid points.
     pub predicted_data: Vec<Vector<f64>>,
+    /// What fits that did not see a velocity predict of it, at the measured positions and with the background as measured;
+    /// one for each datum, `None` where it was not held out.
+    pub held_out: Vec<Option<Vector<f64>>>,
     /// Delaunay edges of the measured positions that the nudges removed, and those they made, as pairs of cells.
     pub edges_lost: Vec<(u32, u32)>,
     /// See `edges_lost`.
@@ -163,16 +166,4 @@ impl Inference {
     pub fn excess(&self) -> f64 {
         (self.objective / self.expected_objective).max(1.0)
     }
-}
-
-/// A reason not to trust a fit.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Doubt {
-    /// The objective is above its expected value by this many standard deviations: a wrong minimum, noise levels that are
-    /// too small, or a model that lacks something.
-    Objective(f64),
-    /// The estimate of the position noise is at its largest value.
-    PositionNoise,
-    /// The optimiser used up its steps.
-    Steps,
 }

@@ -41,6 +41,7 @@ pub mod phase_report;
 pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;
+pub mod units;
 mod view;
 
 /// JSON Schema (draft 2020-12) of the report of `simulate`, which the command line writes by itself.
@@ -60,4 +61,5 @@ pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};
 pub use shape_report::{FIELD_SCHEMA, FieldReport, SHAPE_SCHEMA, ShapeReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
-pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment, Units};
+pub use units::Units;
+pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment};

@@ -2,7 +2,8 @@
 
 use crate::numbers::{nice_below, significant};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
-use crate::view::{CellView, FrameView, Units, is_finite};
+use crate::units::Units;
+use crate::view::{CellView, FrameView, is_finite};
 
 /// Nominal width of every map in pixels.
 pub const MAP_WIDTH: f64 = 380.0;

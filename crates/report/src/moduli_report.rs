@@ -9,7 +9,7 @@ use serde::Serialize;
 
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
-use crate::view::Units;
+use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`ModuliReport`].
 pub const MODULI_SCHEMA: &str = include_str!("../schema/moduli.schema.json");

@@ -33,23 +33,21 @@ pub fn significant(value: f64, digits: usize) -> String {
     }
 }
 
-/// `value` and the ends of its interval, all with the decimals that the interval deserves (two
-/// digits of its half width).
+/// `value` and the ends of its interval, with the decimals that the interval deserves: two digits of its half width.
+///
+/// An end is never rounded to the estimate or past it, nor to zero: one that lies within five units of the last digit of
+/// the estimate gets two digits of its own distance, and a small one a digit other than zero.
 ///
 /// ```
 /// use voronudge_report::numbers::with_interval;
 /// assert_eq!(with_interval(3.40213, [3.281, 3.522]), ["3.40", "3.28", "3.52"]);
+/// assert_eq!(with_interval(1.0, [0.558, 41.6]), ["1.00", "0.56", "42"]);
+/// assert_eq!(with_interval(0.31, [0.0004, 0.62]), ["0.31", "0.0004", "0.62"]);
 /// ```
 #[must_use]
 pub fn with_interval(value: f64, interval: [f64; 2]) -> [String; 3] {
-    let half = (interval[1] - interval[0]).abs() / 2.0;
-    let largest = interval.map(f64::abs).into_iter().fold(value.abs(), f64::max);
-    if !half.is_finite() || half == 0.0 || !(1e-4..1e6).contains(&largest) {
-        return [value, interval[0], interval[1]].map(|number| significant(number, 4));
-    }
-    let decimals = (1 - exponent_of(half)).clamp(0, 8);
-    [value, interval[0], interval[1]]
-        .map(|number| if number.is_finite() { fixed(number, decimals) } else { NO_VALUE.to_owned() })
+    let (value, [low, high]) = printed(value, interval.map(Some));
+    [value, low.unwrap_or_default(), high.unwrap_or_default()]
 }
 
 /// `value` and its interval as text; an end that is `None` is not bounded.
@@ -63,36 +61,14 @@ pub fn with_interval(value: f64, interval: [f64; 2]) -> [String; 3] {
 /// ```
 #[must_use]
 pub fn interval_text(value: f64, interval: [Option<f64>; 2]) -> [String; 2] {
-    let one_sided = |end: f64| {
-        let distance = (value - end).abs();
-        if distance > 0.0 {
-            with_interval(end, [end - 2.0 * distance, end])
-        } else {
-            with_interval(end, [end; 2])
-        }
+    let (value, [low, high]) = printed(value, interval);
+    let text = match (low, high) {
+        (Some(low), Some(high)) => format!("{low} to {high}"),
+        (None, Some(high)) => format!("below {high}"),
+        (Some(low), None) => format!("above {low}"),
+        (None, None) => "not bounded".to_owned(),
     };
-    let (value_text, text) = match interval {
-        [Some(low), Some(high)] => {
-            let [value, low, high] = with_interval(value, [low, high]);
-            (value, format!("{low} to {high}"))
-        }
-        [None, Some(high)] => (significant(value, 3), format!("below {}", one_sided(high)[0])),
-        [Some(low), None] => (significant(value, 3), format!("above {}", one_sided(low)[0])),
-        [None, None] => (significant(value, 3), "not bounded".to_owned()),
-    };
-    [value_text, text]
-}
-
-/// A label with its unit (as typed) in brackets, if it has one.
-///
-/// ```
-/// use voronudge_report::numbers::label_with_unit;
-/// assert_eq!(label_with_unit("P_0", "um"), "P_0 (µm)");
-/// assert_eq!(label_with_unit("α", ""), "α");
-/// ```
-#[must_use]
-pub fn label_with_unit(label: &str, unit: &str) -> String {
-    if unit.is_empty() { label.to_owned() } else { format!("{label} ({})", unit_text(unit)) }
+    [value, text]
 }
 
 /// `value` with at most six significant digits and no trailing zeros, for numbers that were given
@@ -110,38 +86,6 @@ pub fn as_given(value: f64) -> String {
         Some((mantissa, power)) => format!("{}×{power}", without_trailing_zeros(mantissa)),
         None => without_trailing_zeros(&text).to_owned(),
     }
-}
-
-/// A unit as it is printed: `um` becomes µm, `^2` becomes ², `*` becomes a dot, and a mere
-/// denominator gets negative powers.
-///
-/// ```
-/// use voronudge_report::numbers::unit_text;
-/// assert_eq!(unit_text("um/min"), "µm/min");
-/// assert_eq!(unit_text("1/(um^2*h)"), "µm⁻² h⁻¹");
-/// ```
-#[must_use]
-pub fn unit_text(unit: &str) -> String {
-    if let Some(powers) = unit.strip_prefix("1/").and_then(negative_powers) {
-        return powers;
-    }
-    let mut text = String::with_capacity(unit.len());
-    let mut word = String::new();
-    for letter in unit.chars() {
-        if letter.is_alphabetic() {
-            word.push(letter);
-        } else {
-            text.push_str(unit_word(&word));
-            word.clear();
-            text.push(letter);
-        }
-    }
-    text.push_str(unit_word(&word));
-    for (typed, printed) in [("^-1", "⁻¹"), ("^-2", "⁻²"), ("^2", "²"), ("^3", "³"), ("^4", "⁴"), ("*", "·")]
-    {
-        text = text.replace(typed, printed);
-    }
-    text
 }
 
 /// The largest of 1, 2, 5 times a power of ten that is not above `bound`; `None` unless `bound` is
@@ -245,27 +189,51 @@ fn without_trailing_zeros(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// The factors of a denominator such as `(um^2*h)` with negative powers.
-fn negative_powers(denominator: &str) -> Option<String> {
-    let inner = match denominator.strip_prefix('(') {
-        Some(rest) => rest.strip_suffix(')')?,
-        None => denominator,
-    };
-    let factors = inner.split('*').map(|factor| {
-        let (word, power) = factor.split_once('^').unwrap_or((factor, "1"));
-        let power: i32 = power.trim().parse().ok().filter(|&power| power > 0)?;
-        let word = word.trim();
-        let is_word = !word.is_empty() && word.chars().all(char::is_alphabetic);
-        is_word.then(|| format!("{}{}", unit_word(word), superscript(-power)))
-    });
-    Some(factors.collect::<Option<Vec<_>>>()?.join(" "))
-}
+/// Ends within so many units of the last digit of the estimate get digits of their own.
+const NEAR: f64 = 5.0;
 
-fn unit_word(word: &str) -> &str {
-    match word {
-        "um" | "micron" | "microns" => "µm",
-        other => other,
+/// Numbers and distances this much smaller than an interval are zero to rounding.
+const NOTHING: f64 = 1e-9;
+
+/// A value and the ends of its interval, for [`with_interval`] and [`interval_text`].
+fn printed(value: f64, interval: [Option<f64>; 2]) -> (String, [Option<String>; 2]) {
+    let ends: Vec<f64> = interval.into_iter().flatten().collect();
+    let reach = match ends[..] {
+        [low, high] => (high - low).abs() / 2.0,
+        [end] => (value - end).abs(),
+        _ => f64::NAN,
+    };
+    let largest = ends.iter().fold(value.abs(), |most, end| most.max(end.abs()));
+    if !(reach > 0.0 && reach.is_finite() && largest.is_finite()) {
+        let digits = if ends.is_empty() { 3 } else { 4 };
+        let plain = |number: f64| significant(number, digits);
+        return (plain(value), interval.map(|end| end.map(plain)));
     }
+    // The power of ten of the value, unless that is far below the ends.
+    let sized = if value.abs() > 0.05 * largest { value.abs() } else { largest };
+    let power = if (1e-4..1e6).contains(&largest) { 0 } else { exponent_of(sized) };
+    let scale = 10f64.powi(power);
+    let with_digits = |digits: i32, size: f64| (digits - 1 - exponent_of(size / scale)).clamp(0, 12);
+    let unit = |decimals: i32| scale * 0.1f64.powi(decimals);
+    let common = with_digits(2, reach);
+    let beside_value = |end: f64| {
+        let distance = (value - end).abs();
+        let is_near = distance > NOTHING * reach && distance < NEAR * unit(common);
+        if is_near { with_digits(2, distance) } else { common }
+    };
+    let of_end = |end: f64| {
+        let decimals = beside_value(end);
+        let would_vanish = end.abs() > NOTHING * reach && end.abs() < 0.5 * unit(decimals);
+        if would_vanish { with_digits(1, end.abs()) } else { decimals }
+    };
+    // One end says little about the digits of the value.
+    let of_value = if ends.len() == 1 && value != 0.0 { with_digits(3, value.abs()) } else { 0 };
+    let of_value = ends.iter().map(|&end| beside_value(end)).fold(of_value, i32::max);
+    let text = |number: f64, decimals: i32| match power {
+        0 => fixed(number, decimals),
+        power => format!("{}×10{}", fixed(number / scale, decimals), superscript(power)),
+    };
+    (text(value, of_value), interval.map(|end| end.map(|end| text(end, of_end(end)))))
 }
 
 /// ⌊log₁₀ |x|⌋ of a positive finite number, safe at the powers of ten.
@@ -325,5 +293,38 @@ mod tests {
     fn intervals_decide_the_digits() {
         assert_eq!(with_interval(0.5, [f64::NAN, 1.0]), ["0.5000", "–", "1.000"]);
         assert_eq!(with_interval(12.0, [-8.0, 32.0]), ["12", "−8", "32"]);
+        assert_eq!(with_interval(8.596e-6, [2.883e-7, 1.690e-5]), ["8.6×10⁻⁶", "0.3×10⁻⁶", "16.9×10⁻⁶"]);
+        assert_eq!(interval_text(0.051, [Some(-3.1), None]), ["0.0510", "above −3.1"]);
+    }
+
+    /// The text of a number with a power of ten, as a number.
+    fn read(text: &str) -> f64 {
+        let text = text.replace('−', "-");
+        let Some((mantissa, power)) = text.split_once("×10") else { return text.parse().unwrap() };
+        let power: String = power
+            .chars()
+            .map(|c| "⁰¹²³⁴⁵⁶⁷⁸⁹".chars().position(|d| d == c).map_or('-', |d| char::from(b'0' + d as u8)))
+            .collect();
+        format!("{mantissa}e{power}").parse().unwrap()
+    }
+
+    #[test]
+    fn ends_stay_on_their_side_of_the_estimate_and_of_zero() {
+        let sizes = [1e-9, 3.3e-4, 0.0449, 0.442, 0.97, 1.0, 2.51, 40.6, 987.0];
+        for value in [-0.9962_f64, 0.0, 0.004_99, 1.0, 9.996, 12_345.678, 3.4e-7, 2.2e8] {
+            for (below, above) in sizes.iter().flat_map(|a| sizes.iter().map(move |b| (a, b))) {
+                let (low, high) =
+                    (value - below * value.abs().max(0.1), value + above * value.abs().max(0.1));
+                let texts = with_interval(value, [low, high]);
+                let [v, l, h] = [&texts[0], &texts[1], &texts[2]].map(|text| read(text));
+                let told = (high - low) * 1e-8;
+                assert!(value - low < told || l < v, "{low} {value} {high}: {texts:?}");
+                assert!(high - value < told || v < h, "{low} {value} {high}: {texts:?}");
+                for (exact, shown) in [(low, l), (high, h)] {
+                    let same_side = exact.abs() < told || exact.signum() == shown.signum() && shown != 0.0;
+                    assert!(same_side, "{exact} as {shown}: {texts:?}");
+                }
+            }
+        }
     }
 }

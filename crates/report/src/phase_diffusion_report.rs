@@ -5,7 +5,7 @@
 use serde::Serialize;
 
 use crate::infer_report::{Quantity, RunRecord};
-use crate::view::Units;
+use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`PhaseDiffusionReport`].
 pub const PHASE_DIFFUSION_SCHEMA: &str = include_str!("../schema/phase-diffusion.schema.json");

@@ -6,7 +6,7 @@
 use serde::Serialize;
 
 use crate::infer_report::RunRecord;
-use crate::view::Units;
+use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`ShapeReport`].
 pub const SHAPE_SCHEMA: &str = include_str!("../schema/shapes.schema.json");

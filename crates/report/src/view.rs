@@ -1,32 +1,7 @@
 //! What the figures draw: cells of a frame as plain numbers.
 //!
-//! Lengths, velocities and areas are in the units of [`Units`]; the y axis points up, as in the
+//! Lengths, velocities and areas are in the units of [`Units`](crate::Units); the y axis points up, as in the
 //! model, so a figure shows image data the way the microscope did.
-
-use crate::numbers::unit_text;
-
-/// The units that axis labels, scale bars and tables carry, as the data set states them.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
-pub struct Units {
-    /// Unit of length, for example `um`.
-    pub length: String,
-    /// Unit of time, for example `min`.
-    pub time: String,
-}
-
-impl Units {
-    /// The unit of length as printed, for example `µm`.
-    #[must_use]
-    pub fn length_text(&self) -> String {
-        unit_text(&self.length)
-    }
-
-    /// The unit of velocity as printed, for example `µm/min`.
-    #[must_use]
-    pub fn velocity_text(&self) -> String {
-        unit_text(&format!("{}/{}", self.length, self.time))
-    }
-}
 
 /// Whether a cell took part in the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -55,6 +30,8 @@ pub struct CellView {
     pub measured: Option<[f64; 2]>,
     /// Velocity that the fitted model gives.
     pub predicted: Option<[f64; 2]>,
+    /// Velocity that fits predict which did not see it.
+    pub held_out: Option<[f64; 2]>,
     /// Displacement of the centre in the fit (nudged minus measured position).
     pub nudge: [f64; 2],
 }

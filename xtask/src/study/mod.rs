@@ -2,6 +2,7 @@
 
 mod channel;
 mod discover;
+mod doubts;
 pub(crate) mod flows;
 mod nada;
 mod noise;
@@ -55,6 +56,8 @@ enum Study {
     Noise,
     /// How often intervals cover.
     Coverage,
+    /// How often fits are doubted, of data as they should be and of others.
+    Doubts,
     /// Mean square frequency of the modes of disordered solids.
     Spectrum,
     /// Missing effects: found where there are none, found where there are some.
@@ -80,6 +83,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Nada => nada::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
         Study::Noise => noise::levels(arguments.seeds),
         Study::Coverage => noise::coverage(arguments.seeds),
+        Study::Doubts => doubts::run(arguments.seeds),
         Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Velocities => phases::velocities(),
         Study::Lyapunov => phases::lyapunov(arguments.seeds),

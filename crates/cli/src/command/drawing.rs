@@ -48,6 +48,7 @@ pub(crate) fn cell_view(
         status: CellStatus::Used,
         measured: None,
         predicted: None,
+        held_out: None,
         nudge: [0.0; 2],
     };
     if tessellation.is_closed(cell) {

@@ -76,7 +76,7 @@ fn a_drift_is_found_and_taken_out() {
     for (k, truth) in [(0, 0.931), (1, -0.698)] {
         let end = |side: usize| number(&report, &format!("/selected/0/ci95/{k}/{side}"));
         assert!(end(0) < truth && truth < end(1), "coefficient {k}: {} to {}", end(0), end(1));
-        assert_eq!(report["selected"][0]["coefficients"][k]["unit"], "ℓ₀/τ");
+        assert_eq!(report["selected"][0]["coefficients"][k]["unit"], "ℓ₀ τ⁻¹");
     }
     let held_out = |side: &str| number(&report, &format!("/{side}/nmse/cross_validated/value"));
     assert!(held_out("after") < 0.5 * held_out("before"));
@@ -220,7 +220,7 @@ fn coefficients_are_in_the_units_of_the_data() {
         sides.split(',').map(|side| (length * side.trim().parse::<f64>().unwrap()).to_string()).collect();
     let units = "--length-unit um --time-unit min";
     let scaled = search(data.path(), &format!("--box {} {units}", sides.join(" ")));
-    assert_eq!(scaled["selected"][0]["coefficients"][0]["unit"], "1/(um^2*min)");
+    assert_eq!(scaled["selected"][0]["coefficients"][0]["unit"], "µm⁻² min⁻¹");
     for pointer in ["/selected/0/coefficients/0/value", "/selected/0/ci95/0/0", "/selected/0/ci95/0/1"] {
         let ratio = number(&scaled, pointer) / number(&plain, pointer) * length * length * time;
         assert!((ratio - 1.0).abs() < 1e-3, "{pointer}: {ratio}");

@@ -33,6 +33,7 @@ mod tests;
 
 pub use correlation::{Bin, Correlation, CorrelationLength, Correlations, correlations};
 pub use map::{LocalResidual, maps};
+pub(crate) use outliers::robust_variance;
 pub use outliers::{Cause, Outlier, outliers};
 pub use pool::{CellData, ResidualField};
 pub use split::{Part, Shares, Split, split};

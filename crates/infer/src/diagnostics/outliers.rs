@@ -85,7 +85,7 @@ pub fn outliers(frames: &[ResidualField<'_>]) -> Vec<Outlier> {
 }
 
 /// σ² and r of the module's text; `None` with few values, or if most are zero.
-fn robust_variance(squares: &[f64]) -> Option<(f64, f64)> {
+pub(crate) fn robust_variance(squares: &[f64]) -> Option<(f64, f64)> {
     let count = squares.len();
     if count < FEWEST {
         return None;

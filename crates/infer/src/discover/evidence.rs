@@ -2,12 +2,10 @@
 
 use super::result::{Budget, Fitted, HeldOut};
 use super::steps::Model;
-use super::whitening::whitened;
 use crate::cross_validation::Folds;
 use crate::diagnostics::{CellData, ResidualField, diagnose};
-use crate::least_squares::residuals;
-use crate::rows::linearised_back;
-use crate::uncertainty::nudges;
+use crate::doubts::examine_residuals;
+use crate::whitening::whitened_residuals;
 use crate::{Error, Inference, Observation, Velocities};
 use voronudge_geometry::{Vector, areas};
 
@@ -25,9 +23,10 @@ pub(super) struct Evidence<'a> {
 
 impl Evidence<'_> {
     pub fn of(&self, model: &Model, folds: Option<&Folds>) -> Result<Fitted, Error> {
-        let residuals = self.whitened(model)?;
-        let inference = model.inference.clone();
         let frames = self.frames;
+        let mut inference = model.inference.clone();
+        let residuals = whitened_residuals(frames, &model.request, &inference)?;
+        inference.doubts.extend(examine_residuals(frames, &model.request, &inference, &residuals)?);
         let places: Vec<Vec<Vector<f64>>> = frames
             .iter()
             .map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect())
@@ -64,26 +63,6 @@ impl Evidence<'_> {
             effects: self.base_error - inference.nmse.un_nudged,
             unexplained: inference.nmse.un_nudged - inference.nmse.noise_floor,
         }
-    }
-
-    /// The residual linearised back to the measured positions and freed from the correlations that their errors make.
-    fn whitened(&self, model: &Model) -> Result<Vec<Vec<Vector<f64>>>, Error> {
-        let (frames, inference) = (self.frames, &model.inference);
-        let objective = model.objective(frames);
-        let coefficients = inference.coefficients.as_slice();
-        let mut fields = Vec::with_capacity(frames.len());
-        for (index, nudges) in nudges(frames, inference).iter().enumerate() {
-            let placed = objective.place(index, nudges)?;
-            let evaluated = placed.evaluate(coefficients);
-            let jacobian = placed.jacobian(coefficients, &evaluated);
-            let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
-                .into_iter()
-                .map(|own| (own.0, linearised_back(&jacobian, own, nudges)))
-                .unzip();
-            let cells = frames[index].positions.len();
-            fields.push(whitened(&jacobian, cells, &rows, &y, objective.spring(), inference.noise.velocity));
-        }
-        Ok(fields)
     }
 }
 

@@ -15,6 +15,7 @@ mod classes;
 mod evidence;
 mod growth;
 mod lineup;
+mod measurement;
 mod null_data;
 mod ranking;
 mod result;
@@ -23,8 +24,8 @@ mod steps;
 mod tests;
 mod transfer;
 mod verdict;
-mod whitening;
 
+pub(crate) use measurement::measurement_scores;
 pub use result::*;
 pub use transfer::{Absent, Transfer};
 

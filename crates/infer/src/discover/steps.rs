@@ -7,7 +7,10 @@ use super::result::Search;
 use crate::objective::Objective;
 use crate::search::{Watch, refine};
 use crate::uncertainty::nudges;
-use crate::{CoefficientSpace, CrossValidation, Error, Inference, NoiseLevels, Observation, Request, infer};
+use crate::{
+    CoefficientSpace, CrossValidation, Error, Examination, Inference, NoiseLevels, Observation, Request,
+    infer,
+};
 
 /// Fall of `−2 log L` by which a candidate may be behind the first and is still refitted with it.
 const CONTENDERS: f64 = 16.0;
@@ -59,7 +62,13 @@ impl Setting<'_> {
     fn request(&self, added: &[usize]) -> Request {
         let base = &self.search.fit;
         let structure = added_places(&base.structure, self.candidates, added).structure;
-        Request { structure, cross_validation: CrossValidation::Skipped, ..base.clone() }
+        Request {
+            structure,
+            cross_validation: CrossValidation::Skipped,
+            // Models that are kept are examined with their evidence.
+            examination: Examination::Skipped,
+            ..base.clone()
+        }
     }
 
     /// Fits the base model with candidates added.

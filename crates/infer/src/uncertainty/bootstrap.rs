@@ -2,8 +2,8 @@
 
 use crate::search::Watch;
 use crate::{
-    CrossValidation, Error, Flow, Inference, Observation, Prior, Progress, Quantity, Request, Velocities,
-    infer,
+    CrossValidation, Error, Examination, Flow, Inference, Observation, Prior, Progress, Quantity, Request,
+    Velocities, infer,
 };
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -112,7 +112,12 @@ pub(crate) fn synthetic(
         synthetic
             .push(refitted.with_background(frame.background_degree()).within(frame.environment().clone()));
     }
-    let mut request = Request { cross_validation: CrossValidation::Skipped, seed: number, ..request.clone() };
+    let mut request = Request {
+        cross_validation: CrossValidation::Skipped,
+        examination: Examination::Skipped,
+        seed: number,
+        ..request.clone()
+    };
     // A prior is a measurement too.
     for (quantity, prior) in &mut request.constraints.priors {
         let normal = level(prior.standard_deviation)?;

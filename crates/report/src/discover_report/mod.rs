@@ -21,7 +21,7 @@ use serde::Serialize;
 use crate::before_after::BeforeAfter;
 use crate::error::ReportError;
 use crate::infer_report::{CellCounts, FlowGrid, GivenConstraints, Measurement, Quantity, RunRecord};
-use crate::view::Units;
+use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`DiscoverReport`].
 pub const DISCOVER_SCHEMA: &str = include_str!("../../schema/discover.schema.json");

@@ -5,8 +5,9 @@ use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, INK, VERMILLION};
 use crate::histogram::Histogram;
 use crate::key::KeyEntry;
-use crate::numbers::{label_with_unit, quantile, unit_text, with_interval};
+use crate::numbers::{quantile, with_interval};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
+use crate::units::{label_with_unit, unit_text};
 
 /// The line of the estimate.
 const ESTIMATE: &str = r#"stroke-width="1.6""#;

@@ -6,7 +6,8 @@ use crate::colour_bar::ColourBar;
 use crate::map::{HATCH_STYLE, Legend, MAP_WIDTH, Map, Swatch, hatch};
 use crate::numbers::{tick_labels, ticks};
 use crate::svg::PathData;
-use crate::view::{FrameView, Units};
+use crate::units::Units;
+use crate::view::FrameView;
 
 /// Left and right end of the colour bar in pixels.
 const BAR: [f64; 2] = [156.0, MAP_WIDTH - 16.0];

@@ -4,8 +4,9 @@ use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, INK, VERMILLION};
 use crate::key::KeyEntry;
-use crate::numbers::{label_with_unit, quantile};
+use crate::numbers::quantile;
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
+use crate::units::label_with_unit;
 
 /// Modes in which fewer than this share of the cells take part are drawn as localised.
 const LOCALISED: f64 = 0.1;

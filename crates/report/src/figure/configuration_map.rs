@@ -7,7 +7,8 @@ use crate::colour::{ColourScale, INK};
 use crate::colour_bar::ColourBar;
 use crate::map::{MAP_WIDTH, Map};
 use crate::numbers::{tick_labels, ticks};
-use crate::view::{FrameView, Units};
+use crate::units::Units;
+use crate::view::FrameView;
 
 /// Group of the colours of cells and bar.
 const PALE: &str = "<g opacity=\".62\">\n";

@@ -3,8 +3,9 @@
 use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::histogram::Histogram;
-use crate::numbers::{label_with_unit, quantile};
+use crate::numbers::quantile;
 use crate::svg::{Anchor, TextStyle};
+use crate::units::label_with_unit;
 
 /// Histogram of a quantity of the modes, as a share of all modes per unit of it. The axis leaves out the farthest percent;
 /// their number is stated.

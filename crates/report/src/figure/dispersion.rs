@@ -4,8 +4,8 @@ use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, GREY, INK, VERMILLION};
 use crate::key::KeyEntry;
-use crate::numbers::label_with_unit;
 use crate::svg::{Anchor, PathData, TextStyle};
+use crate::units::label_with_unit;
 
 /// Waves at one point of the path.
 #[derive(Debug, Clone, Copy, PartialEq)]

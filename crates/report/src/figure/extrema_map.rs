@@ -6,7 +6,8 @@ use crate::colour_bar::ColourBar;
 use crate::map::{MAP_WIDTH, Map};
 use crate::numbers::{tick_labels, ticks};
 use crate::svg::PathData;
-use crate::view::{FrameView, Units};
+use crate::units::Units;
+use crate::view::FrameView;
 
 /// The most squares along an axis that a field is drawn with.
 const MOST_SQUARES: usize = 200;

@@ -8,7 +8,8 @@ use crate::map::{Legend, Map, Viewport};
 use crate::markers::Marker;
 use crate::numbers::quantile;
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::{FrameView, Units, is_finite, length};
+use crate::units::Units;
+use crate::view::{FrameView, is_finite, length};
 
 /// Size of the crosses of missing points in pixels.
 const CROSS: f64 = 2.2;
@@ -28,6 +29,8 @@ pub struct FlowMap<'a> {
     pub measured: Vec<Option<[f64; 2]>>,
     /// Velocities that the fitted model gives at the same points.
     pub predicted: Vec<Option<[f64; 2]>>,
+    /// Velocities that fits predict which did not see them.
+    pub held_out: Vec<Option<[f64; 2]>>,
 }
 
 impl FlowMap<'_> {

@@ -5,9 +5,10 @@ use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::key::KeyEntry;
 use crate::markers::Marker;
-use crate::numbers::{label_with_unit, quantile};
+use crate::numbers::quantile;
 use crate::svg::PathData;
-use crate::view::Units;
+use crate::units::Units;
+use crate::units::label_with_unit;
 
 /// The matrix of one wave vector, fitted to it alone.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -44,11 +45,8 @@ pub fn growth_matrix(points: &[GrowthPoint], curve: &[GrowthCurve], units: &Unit
         title,
         size: [560.0, 380.0],
         left: 70.0,
-        x: Axis::linear(&label_with_unit("q²", &format!("1/{}^2", units.length)), [0.0, 1.03 * end]),
-        y: Axis::linear(
-            &label_with_unit("entry of D(q)", &format!("1/{}", units.time)),
-            [low - room, high + room],
-        ),
+        x: Axis::linear(&label_with_unit("q²", &units.powers(-2, 0)), [0.0, 1.03 * end]),
+        y: Axis::linear(&label_with_unit("entry of D(q)", &units.powers(0, -1)), [low - room, high + room]),
     };
     let Some(mut chart) = Chart::new(layout) else {
         return no_data(title);

@@ -8,8 +8,8 @@ use crate::contour::contour_lines;
 use crate::key::KeyEntry;
 use crate::map::{HATCH_STYLE, hatch};
 use crate::markers::Marker;
-use crate::numbers::label_with_unit;
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
+use crate::units::label_with_unit;
 use crate::view::is_finite;
 
 /// Room beneath the chart for the colour bar.

@@ -68,7 +68,7 @@ pub use phase_map::{LineStyle, MapLine, PhaseMap, phase_map, row_colours};
 pub use points_and_curves::{
     CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
 };
-pub use predicted_against_measured::{VelocityPair, predicted_against_measured, velocity_pairs};
+pub use predicted_against_measured::{Prediction, VelocityPair, predicted_against_measured};
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
 pub use shape_scatter::{ShapeMeasure, shape_scatter};

@@ -8,7 +8,8 @@ use crate::colour::{BLUE, INK, VERMILLION};
 use crate::map::{Legend, Map, Swatch};
 use crate::numbers::quantile;
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::{FrameView, Units};
+use crate::units::Units;
+use crate::view::FrameView;
 
 /// Cells up to which a map moves.
 const MOST_ANIMATED: usize = 1500;

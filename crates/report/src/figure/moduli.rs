@@ -6,8 +6,8 @@ use crate::colour::{BLUE, GREY, INK, VERMILLION};
 use crate::key::KeyEntry;
 use crate::markers::Marker;
 use crate::moduli_report::ModulusRecord;
-use crate::numbers::label_with_unit;
 use crate::svg::{Anchor, PathData, TextStyle};
+use crate::units::label_with_unit;
 
 /// Height of a row in pixels.
 const ROW: f64 = 44.0;

@@ -6,7 +6,8 @@ use crate::colour::{BLUE, INK, VERMILLION};
 use crate::map::{Legend, Map, Swatch};
 use crate::numbers::significant;
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::{FrameView, Segment, Units};
+use crate::units::Units;
+use crate::view::{FrameView, Segment};
 
 const LOST: &str = r#"stroke-width="2.4" stroke-linecap="round" stroke-dasharray="4 3.5""#;
 const GAINED: &str = r#"stroke-width="2.4" stroke-linecap="round""#;

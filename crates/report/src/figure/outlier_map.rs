@@ -5,7 +5,8 @@ use crate::colour::{BLUE, GREEN, INK, VERMILLION};
 use crate::map::{Legend, Map, Swatch};
 use crate::markers::Marker;
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::{FrameView, Units};
+use crate::units::Units;
+use crate::view::FrameView;
 
 /// Size of a mark in pixels.
 const MARK: f64 = 4.2;

@@ -4,7 +4,8 @@ use super::no_data;
 use crate::colour::{BLUE, INK, VERMILLION};
 use crate::map::Map;
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::{FrameView, Segment, Units};
+use crate::units::Units;
+use crate::view::{FrameView, Segment};
 
 /// Voronoi polygons (blue, those of cells that are not compared on grey), true outlines (vermillion) and centroids (dots).
 #[must_use]

@@ -2,8 +2,9 @@
 
 use super::no_data;
 use crate::colour::{BLUE, GREY, INK, VERMILLION};
-use crate::numbers::{as_given, interval_text, significant, tick_labels, ticks, unit_text};
+use crate::numbers::{as_given, interval_text, significant, tick_labels, ticks};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
+use crate::units::unit_text;
 
 /// Height of a row in pixels.
 const ROW: f64 = 50.0;

@@ -7,7 +7,8 @@ use crate::key::KeyEntry;
 use crate::markers::Marker;
 use crate::numbers::{quantile, with_interval};
 use crate::svg::PathData;
-use crate::view::{Units, is_finite};
+use crate::units::Units;
+use crate::view::is_finite;
 
 /// Number of groups of equal size whose means are drawn.
 const GROUPS: usize = 8;

@@ -1,10 +1,12 @@
 //! Scatter of predicted against measured velocity components.
 
+use super::flow_map::FlowMap;
 use super::{component_scatter, no_data};
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::numbers::{quantile, significant};
 use crate::svg::{Anchor, TextStyle};
-use crate::view::{FrameView, Units, is_finite};
+use crate::units::Units;
+use crate::view::{CellView, FrameView, is_finite};
 
 /// One cell's measured and predicted velocity.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -15,13 +17,46 @@ pub struct VelocityPair {
     pub predicted: [f64; 2],
 }
 
-/// The pairs of the used cells of some frames.
-#[must_use]
-pub fn velocity_pairs(frames: &[FrameView]) -> Vec<VelocityPair> {
-    let cells = frames.iter().flat_map(|frame| &frame.cells).filter(|cell| cell.is_used());
-    cells
-        .filter_map(|cell| Some(VelocityPair { measured: cell.measured?, predicted: cell.predicted? }))
-        .collect()
+/// Which predictions are compared with what was measured.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Prediction {
+    /// By fits that did not see the velocity, at the measured positions.
+    HeldOut,
+    /// By the fit itself, at the nudged positions.
+    Fitted,
+}
+
+impl Prediction {
+    /// The pairs of the used cells of some frames.
+    #[must_use]
+    pub fn of_cells(self, frames: &[FrameView]) -> Vec<VelocityPair> {
+        let cells = frames.iter().flat_map(|frame| &frame.cells).filter(|cell| cell.is_used());
+        let pair = |cell: &CellView| {
+            let predicted = match self {
+                Self::HeldOut => cell.held_out,
+                Self::Fitted => cell.predicted,
+            };
+            Some(VelocityPair { measured: cell.measured?, predicted: predicted? })
+        };
+        cells.filter_map(pair).collect()
+    }
+
+    /// The pairs of the grid points of some flows.
+    #[must_use]
+    pub fn on_grid(self, flows: &[FlowMap<'_>]) -> Vec<VelocityPair> {
+        let of_flow = |flow: &FlowMap<'_>| -> Vec<VelocityPair> {
+            let predicted = match self {
+                Self::HeldOut => &flow.held_out,
+                Self::Fitted => &flow.predicted,
+            };
+            let both = flow.measured.iter().zip(predicted);
+            let pair = |(measured, predicted): (&Option<_>, &Option<_>)| {
+                Some(VelocityPair { measured: (*measured)?, predicted: (*predicted)? })
+            };
+            both.filter_map(pair).collect()
+        };
+        flows.iter().flat_map(of_flow).collect()
+    }
 }
 
 /// Predicted against measured velocity components (x: blue dots, y: orange diamonds), with the line

@@ -4,8 +4,9 @@ use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, INK, VERMILLION};
 use crate::key::KeyEntry;
-use crate::numbers::{interval_text, label_with_unit, unit_text};
+use crate::numbers::interval_text;
 use crate::svg::{Anchor, PathData, TextStyle};
+use crate::units::{label_with_unit, unit_text};
 
 /// Rise of −2 log likelihood at the ends of a 95 % interval of one parameter.
 const RISE_95: f64 = 3.84;

@@ -6,7 +6,8 @@ use super::velocity_map::{VelocityField, draw_velocities};
 use crate::arrows::ArrowScale;
 use crate::before_after::BeforeAfter;
 use crate::map::{Map, Viewport};
-use crate::view::{FrameView, Units};
+use crate::units::Units;
+use crate::view::FrameView;
 
 const FIELD: VelocityField = VelocityField::Residual;
 

@@ -3,9 +3,10 @@
 use super::no_data;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, INK};
-use crate::numbers::{label_with_unit, quantile, significant};
+use crate::numbers::{quantile, significant};
 use crate::svg::{Anchor, PathData, TextStyle};
-use crate::view::Units;
+use crate::units::Units;
+use crate::units::label_with_unit;
 
 /// What is compared.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,14 +22,14 @@ pub enum ShapeMeasure {
 #[must_use]
 pub fn shape_scatter(pairs: &[[f64; 2]], measure: ShapeMeasure, correlation: f64, units: &Units) -> String {
     let (title, name, power) = match measure {
-        ShapeMeasure::Area => ("Voronoi against true areas", "area", "^2"),
-        ShapeMeasure::Perimeter => ("Voronoi against true perimeters", "perimeter", ""),
+        ShapeMeasure::Area => ("Voronoi against true areas", "area", 2),
+        ShapeMeasure::Perimeter => ("Voronoi against true perimeters", "perimeter", 1),
     };
     let Some(most) = quantile(pairs.iter().flatten().copied(), 0.995).filter(|&most| most > 0.0) else {
         return no_data(title);
     };
     let range = [0.0, 1.08 * most];
-    let unit = format!("{}{power}", units.length);
+    let unit = units.powers(power, 0);
     let layout = ChartLayout {
         title,
         size: [400.0, 370.0],

@@ -4,7 +4,8 @@ use super::no_data;
 use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
 use crate::colour::{BLUE, INK, VERMILLION};
 use crate::map::{Legend, Map, Swatch};
-use crate::view::{CellView, FrameView, Units, residual};
+use crate::units::Units;
+use crate::view::{CellView, FrameView, residual};
 
 /// Which velocities a map shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

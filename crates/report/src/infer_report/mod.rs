@@ -7,18 +7,20 @@ mod constraints;
 mod implied;
 mod measurement;
 mod uncertainty;
+mod verdict;
 
 pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
 pub use measurement::{Measurement, RegionSource, SeenRegion};
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
+pub use verdict::{Verdict, VerdictKind};
 
 use std::collections::BTreeMap;
 
 use serde::Serialize;
 
 use crate::error::ReportError;
-use crate::view::Units;
+use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`InferReport`].
 pub const INFER_SCHEMA: &str = include_str!("../../schema/infer.schema.json");
@@ -59,6 +61,8 @@ pub struct InferReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     pub run: RunRecord,
+    /// What the fit says, in a word and in a sentence.
+    pub verdict: Verdict,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
     /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
@@ -299,6 +303,8 @@ pub struct Fit {
     pub status: FitStatus,
     /// Whether there is no reason not to trust it.
     pub trustworthy: bool,
+    /// What is in doubt, one name for each of `doubts`.
+    pub doubtful: Vec<String>,
     /// Reasons not to trust it, and what to do.
     pub doubts: Vec<String>,
     /// Number of iterations.

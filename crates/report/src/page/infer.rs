@@ -9,12 +9,13 @@ use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
 use crate::error::ReportError;
 use crate::figure::{
-    CellScalar, Emphasis, ErrorBar, FlowMap, NudgeHistogram, ObjectiveTrace, ParameterRow, VelocityField,
-    VelocityPair, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
-    predicted_against_measured, velocity_map, velocity_pairs,
+    CellScalar, Emphasis, ErrorBar, FlowMap, NudgeHistogram, ObjectiveTrace, ParameterRow, Prediction,
+    VelocityField, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
+    predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
 use crate::numbers::{NO_VALUE, significant};
+use crate::units::unit_text;
 use crate::view::FrameView;
 
 const TEMPLATE: Template =
@@ -25,8 +26,6 @@ const TEMPLATE: Template =
 pub struct InferPage<'a> {
     /// Title, for example the name of the data set.
     pub title: &'a str,
-    /// The answer in one plain sentence.
-    pub headline: &'a str,
     /// Further plain sentences, one paragraph each.
     pub summary: &'a [String],
     /// What `report.json` holds.
@@ -50,7 +49,7 @@ impl InferPage<'_> {
         let rows = parameter_rows(&report.parameters, Some(&report.naive));
         let head = PageHead {
             title: self.title,
-            headline: self.headline,
+            headline: &report.verdict.sentence,
             summary: self.summary,
             doubts: &report.fit.doubts,
             warnings: warnings(&report.run, &report.fit.doubts),
@@ -64,7 +63,10 @@ impl InferPage<'_> {
             noise_source: noise_source(report.noise.source),
             fit_status: fit_status(report.fit.status),
             velocity_unit: report.units.velocity_text(),
+            spring_unit: report.units.powers(0, -2),
             data: data(report.flow.as_ref()),
+            is_finding: report.verdict.kind.is_finding(),
+            cell_size: cell_size(report),
             known: Known::new(report, &rows, self.uncertainty),
             parameters: rows.iter().map(TableRow::new).collect(),
             error_figure: self.error_figure(),
@@ -110,38 +112,56 @@ impl InferPage<'_> {
 
     fn scatter_figure(&self) -> Figure {
         let report = self.report;
-        let pairs = match report.flow {
-            None => velocity_pairs(self.frames),
-            Some(_) => self.flows.iter().flat_map(flow_pairs).collect(),
+        let (prediction, nmse, how) = match report.nmse.cross_validated {
+            Some(nmse) => (
+                Prediction::HeldOut,
+                nmse,
+                "predicted by fits that did not see its velocity, at measured positions",
+            ),
+            None => (
+                Prediction::Fitted,
+                report.nmse.nudged,
+                "after the fit, at nudged positions: too good to be true",
+            ),
         };
-        let what = if report.flow.is_some() { "grid point" } else { "cell" };
+        let (pairs, what) = match report.flow {
+            None => (prediction.of_cells(self.frames), "cell"),
+            Some(_) => (prediction.on_grid(self.flows), "grid point"),
+        };
         let caption = format!(
-            "Every {what} used in the frames drawn, after the fit (at nudged positions); on the dashed line a \
-             prediction is perfect."
+            "Every {what} used in the frames drawn, {how}. On the dashed line a prediction is perfect; the error \
+             written is that of all frames."
         );
-        Figure::new(predicted_against_measured(&pairs, report.nmse.nudged, &report.units), &caption)
+        Figure::new(predicted_against_measured(&pairs, nmse, &report.units), &caption)
     }
 
     fn panels(&self) -> Vec<Panel> {
         let units = &self.report.units;
-        let velocities = ArrowScale::velocities(self.frames);
-        let flow_scale = FlowMap::scale(self.flows);
+        let on_grid = !self.flows.is_empty();
+        let (velocities, residuals) = match on_grid {
+            true => (FlowMap::scale(self.flows), FlowMap::residual_scale(self.flows.iter())),
+            false => (ArrowScale::velocities(self.frames), ArrowScale::residuals(self.frames)),
+        };
         let nudges = ArrowScale::nudges(self.frames);
         let panel = |(index, frame): (usize, &FrameView)| {
             let area = CellScalar::area_ratio(frame);
             let shape = CellScalar::shape_index(frame);
             let velocity = |field: VelocityField| {
-                let map = match self.flows.get(index) {
-                    Some(flow) => flow_map(flow, field, flow_scale.as_ref(), units),
-                    None => velocity_map(frame, field, velocities.as_ref(), units),
+                let scale = match field {
+                    VelocityField::Residual => residuals.as_ref(),
+                    VelocityField::Measured | VelocityField::Predicted => velocities.as_ref(),
                 };
-                Figure::new(map, field.caption())
+                let map = match self.flows.get(index) {
+                    Some(flow) => flow_map(flow, field, scale, units),
+                    None => velocity_map(frame, field, scale, units),
+                };
+                Figure::new(map, &caption(field, [&velocities, &residuals]))
             };
             let mut figures: Vec<Figure> = VelocityField::ALL.map(velocity).into();
             figures.extend([
                 Figure::new(nudge_map(frame, nudges.as_ref(), units), "nudges, magnified as stated"),
                 Figure::new(cell_map(frame, &area, units), "cell areas"),
-                Figure::new(cell_map(frame, &shape, units), "cell shapes (3.72 is a regular hexagon)"),
+                Figure::new(cell_map(frame, &shape, units), "cell shapes (hexagon: 3.72)"),
             ]);
             Panel { label: frame.label.clone(), figures, columns: Columns::for_cells(frame.cells.len()) }
         };
@@ -157,7 +177,10 @@ struct Context<'a> {
     noise_source: &'static str,
     fit_status: &'static str,
     velocity_unit: String,
+    spring_unit: String,
     data: &'static str,
+    is_finding: bool,
+    cell_size: String,
     known: Known,
     parameters: Vec<TableRow>,
     error_figure: Figure,
@@ -167,13 +190,33 @@ struct Context<'a> {
     panels: Vec<Panel>,
 }
 
-/// The grid points with a measured and a predicted velocity.
-fn flow_pairs(flow: &FlowMap<'_>) -> Vec<VelocityPair> {
-    let both = flow.measured.iter().zip(&flow.predicted);
-    both.filter_map(|(measured, predicted)| {
-        Some(VelocityPair { measured: (*measured)?, predicted: (*predicted)? })
-    })
-    .collect()
+/// The caption of a map of velocities; that of residuals says how much longer their arrows are drawn than the others.
+fn caption(field: VelocityField, [velocities, residuals]: [&Option<ArrowScale>; 2]) -> String {
+    let ratio = match (field, velocities, residuals) {
+        (VelocityField::Residual, Some(velocities), Some(residuals)) => {
+            residuals.stretch / velocities.stretch
+        }
+        _ => return field.caption().to_owned(),
+    };
+    format!("residual, arrows drawn {}× longer", significant(ratio, 2))
+}
+
+/// What ℓ₀ is in the units of the data, unless that is the unit of length itself.
+fn cell_size(report: &InferReport) -> String {
+    let scale = &report.length_scale;
+    let size = significant(scale.value, 3);
+    match (scale.unit.as_str(), size.as_str()) {
+        ("ℓ₀" | "l_0", "1.00") => {
+            "Lengths are in units of the cell size ℓ_0: ℓ_0² is the mean area of the cells.".into()
+        }
+        ("ℓ₀" | "l_0", _) => format!(
+            "Lengths are in units of the ℓ_0 of the data set; the square root of the mean area of the cells used is {size} of it."
+        ),
+        (unit, _) => {
+            let unit = unit_text(unit);
+            format!("The cell size is ℓ_0 = {size} {unit} (ℓ_0² is the mean area of the cells used).")
+        }
+    }
 }
 
 fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
@@ -192,7 +235,9 @@ fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
             },
         }
     };
-    let mut cards: Vec<Card> = rows.iter().take(3).map(parameter).collect();
+    // What explains nothing has no key parameters.
+    let shown = if report.verdict.kind.is_finding() { 3 } else { 0 };
+    let mut cards: Vec<Card> = rows.iter().take(shown).map(parameter).collect();
     let (nmse, note) = match report.nmse.cross_validated {
         Some(nmse) => (nmse, "cross-validated; 1 predicts nothing"),
         None => (report.nmse.un_nudged, "at measured positions; 1 predicts nothing"),

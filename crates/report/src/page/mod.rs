@@ -29,8 +29,9 @@ use serde::Serialize;
 
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
-use crate::numbers::{significant, unit_text};
+use crate::numbers::significant;
 use crate::svg::{SubscriptMarkup, subscripts};
+use crate::units::unit_text;
 
 const BASE: &str = include_str!("../../templates/base.html");
 const MACROS: &str = include_str!("../../templates/macros.html");

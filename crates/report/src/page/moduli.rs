@@ -6,7 +6,7 @@ use super::{Card, Figure, PageHead, Template, render};
 use crate::error::ReportError;
 use crate::figure::moduli;
 use crate::moduli_report::{ModuliReport, ModulusRecord};
-use crate::numbers::{NO_VALUE, significant, unit_text};
+use crate::numbers::{NO_VALUE, significant};
 
 const TEMPLATE: Template =
     Template { name: "moduli.html", source: include_str!("../../templates/moduli.html") };
@@ -49,7 +49,7 @@ impl ModuliPage<'_> {
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
         let report = self.report;
-        let unit = format!("1/{}", report.units.time);
+        let unit = report.units.powers(0, -1);
         let cards = report.moduli.iter().chain(&report.viscosities).map(|record| Card {
             label: record.symbol.into(),
             value: significant(record.value, 3),
@@ -65,7 +65,7 @@ impl ModuliPage<'_> {
             ),
             rows: report.moduli.iter().map(row).collect(),
             viscosities: report.viscosities.iter().map(row).collect(),
-            unit: unit_text(&unit),
+            unit,
         };
         render(TEMPLATE, &context)
     }

@@ -4,7 +4,8 @@ use serde::Serialize;
 
 use crate::figure::{Estimate, ParameterRow};
 use crate::infer_report::{NaiveParameters, Parameter, Parameters};
-use crate::numbers::{NO_VALUE, as_given, interval_text, significant, unit_text};
+use crate::numbers::{NO_VALUE, as_given, interval_text, significant};
+use crate::units::unit_text;
 
 /// A parameter as the table shows it.
 #[derive(Serialize)]

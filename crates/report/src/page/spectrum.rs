@@ -8,8 +8,9 @@ use crate::figure::{
     DispersionPart, DispersionPoint, DrawnMode, SpectrumPoint, complex_spectrum, density_of_states,
     dispersion, mode_map,
 };
-use crate::numbers::{NO_VALUE, significant, unit_text};
+use crate::numbers::{NO_VALUE, significant};
 use crate::spectrum_report::{FrameSpectrum, ModeRecord, SpectrumReport};
+use crate::units::Units;
 use crate::view::FrameView;
 
 const TEMPLATE: Template =
@@ -63,11 +64,11 @@ impl SpectrumPage<'_> {
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
         let report = self.report;
-        let unit = format!("1/{}", report.units.time);
+        let unit = report.units.powers(0, -1);
         let head = PageHead::sound(
             [self.title, self.headline],
             self.summary,
-            report.frames.first().map(|frame| cards(frame, &unit)).unwrap_or_default(),
+            report.frames.first().map(|frame| cards(frame, &report.units)).unwrap_or_default(),
             &report.run,
         );
         let context = Context {
@@ -86,7 +87,7 @@ impl SpectrumPage<'_> {
                 .collect(),
             rows: report.frames.first().map(rows).unwrap_or_default(),
             dispersion: self.dispersion_figures(&unit),
-            rate_unit: unit_text(&unit),
+            rate_unit: unit,
         };
         render(TEMPLATE, &context)
     }
@@ -129,9 +130,8 @@ impl SpectrumPage<'_> {
     }
 }
 
-fn cards(frame: &FrameSpectrum, unit: &str) -> Vec<Card> {
-    let square_unit = unit_text(&format!("{unit}^2"));
-    let unit = unit_text(unit);
+fn cards(frame: &FrameSpectrum, units: &Units) -> Vec<Card> {
+    let [unit, square_unit] = [-1, -2].map(|power| units.powers(0, power));
     let mode = |record: &Option<ModeRecord>, of: fn(&ModeRecord) -> f64| {
         record.as_ref().map_or(NO_VALUE.into(), |mode| format!("{} {unit}", significant(of(mode), 3)))
     };

@@ -12,7 +12,7 @@ use voronudge_report::{BeforeAfter, FrameView};
 
 /// The reference arrow of a map with its label.
 fn reference(svg: &str) -> Option<&str> {
-    svg[..svg.find(" µm/min</text>")?].rsplit("<text ").next()
+    svg[..svg.find(" µm min⁻¹</text>")?].rsplit("<text ").next()
 }
 
 #[test]
@@ -130,7 +130,11 @@ fn a_partial_regression_states_its_slope() {
     assert_sound("regression", &svg);
     assert_has(
         &svg,
-        &["slope 0.97 (95 %: 0.83 to 1.11)", "density gradient, predicted (µm/min)", "means of equal groups"],
+        &[
+            "slope 0.97 (95 %: 0.83 to 1.11)",
+            "density gradient, predicted (µm min⁻¹)",
+            "means of equal groups",
+        ],
     );
     plot.slope_ci95 = Some([f64::NAN, 1.0]);
     plot.points.truncate(9);

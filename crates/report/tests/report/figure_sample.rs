@@ -101,7 +101,8 @@ pub fn flow(frame: &FrameView) -> FlowMap<'_> {
         let velocity = velocity.filter(|_| index % 17 != 5)?;
         Some([velocity[0] + 0.3 * noise(index, 11), velocity[1] + 0.3 * noise(index, 12)])
     };
-    FlowMap { frame, x, y, measured: predicted.iter().enumerate().map(noisy).collect(), predicted }
+    let measured = predicted.iter().enumerate().map(noisy).collect();
+    FlowMap { frame, x, y, measured, held_out: predicted.clone(), predicted }
 }
 
 /// Parameters in every state there is.

@@ -4,9 +4,9 @@ use crate::{figure_sample, sample};
 use voronudge_report::arrows::ArrowScale;
 use voronudge_report::colour::Palette;
 use voronudge_report::figure::{
-    CellScalar, Emphasis, ErrorBar, NudgeHistogram, ObjectiveTrace, VelocityField, cell_map, error_bars,
-    nudge_histogram, nudge_map, objective_trace, parameter_intervals, predicted_against_measured,
-    velocity_map, velocity_pairs,
+    CellScalar, Emphasis, ErrorBar, NudgeHistogram, ObjectiveTrace, Prediction, VelocityField, cell_map,
+    error_bars, nudge_histogram, nudge_map, objective_trace, parameter_intervals, predicted_against_measured,
+    velocity_map,
 };
 use voronudge_report::{FrameView, Units};
 
@@ -21,7 +21,7 @@ fn figures(frame: FrameView) -> Vec<(&'static str, String)> {
     let units = units();
     let velocities = ArrowScale::velocities(&frames);
     let nudges = ArrowScale::nudges(&frames);
-    let pairs = velocity_pairs(&frames);
+    let pairs = Prediction::Fitted.of_cells(&frames);
     let signed = CellScalar {
         values: frame.cells.iter().map(|cell| cell.nudge[0]).collect(),
         label: "nudge along x (µm)".into(),
@@ -68,9 +68,9 @@ fn maps_state_scale_and_unit() {
             "area" => &["area / mean area", ">50 µm<", "left out (", "#440154"],
             "shape" => &["shape index P/√A", ">50 µm<"],
             "signed" => &["nudge along x (µm)", "#001261"],
-            "measured" | "predicted" | "residual" => &[">50 µm<", ">2 µm/min<", "left out ("],
+            "measured" | "predicted" | "residual" => &[">50 µm<", ">2 µm min⁻¹<", "left out ("],
             "nudges" => &["drawn ×", ">0.2 µm, ", "contacts lost (2)", "gained (1)"],
-            "scatter" => &["measured velocity (µm/min)", "predicted velocity (µm/min)", "NMSE = 0.12"],
+            "scatter" => &["measured velocity (µm min⁻¹)", "predicted velocity (µm min⁻¹)", "NMSE = 0.12"],
             "histogram" => &["number of cells", "assumed noise"],
             _ => &[],
         };
@@ -86,7 +86,7 @@ fn the_three_velocity_maps_share_their_reference_arrow() {
     let scale = ArrowScale::velocities(&frames);
     let reference = |field| {
         let svg = velocity_map(&frames[0], field, scale.as_ref(), &units());
-        let place = svg.find(" µm/min</text>").unwrap();
+        let place = svg.find(" µm min⁻¹</text>").unwrap();
         svg[..place].rsplit("<text ").next().unwrap().to_owned()
     };
     let [measured, predicted, residual] = VelocityField::ALL.map(reference);

@@ -137,7 +137,7 @@ fn flows_share_their_arrow_and_mark_what_is_missing() {
     for (field, missing) in VelocityField::ALL.into_iter().zip([10, 4, 10]) {
         let svg = flow_map(&flows[0], field, scale.as_ref(), &units());
         assert_sound(field.caption(), &svg);
-        assert_has(&svg, &[">50 µm<", ">2 µm/min<", "left out ("]);
+        assert_has(&svg, &[">50 µm<", ">2 µm min⁻¹<", "left out ("]);
         assert_has(&svg, &[&format!("no velocity ({missing})")]);
     }
 }

@@ -93,7 +93,7 @@ fn a_configuration_states_its_scales() {
     let frame = sample::frame("end", 8);
     let arrows = ArrowScale::velocities(std::slice::from_ref(&frame));
     let svg = configuration_map(&frame, &CellScalar::shape_index(&frame), arrows.as_ref(), &units());
-    assert_has(&svg, &["µm/min", "shape index", "µm"]);
+    assert_has(&svg, &["µm min⁻¹", "shape index", "µm"]);
     let rest = configuration_map(&frame, &CellScalar::shape_index(&frame), None, &units());
-    assert!(!rest.contains("µm/min"));
+    assert!(!rest.contains("µm min⁻¹"));
 }

@@ -6,7 +6,7 @@ use voronudge_report::infer_report::{
     BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid, FlowWindow,
     GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, MeanRemoved, Measurement,
     NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult, Quantity,
-    RegionSource, RunRecord, SeenRegion, Transitions,
+    RegionSource, RunRecord, SeenRegion, Transitions, Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -52,6 +52,7 @@ pub fn frame(label: &str, side: usize) -> FrameView {
             status: if rim || index % 57 == 20 { CellStatus::LeftOut } else { CellStatus::Used },
             measured: (index % 41 != 7).then_some(measured),
             predicted: (!rim).then_some(predicted),
+            held_out: (!rim).then_some([0.9 * predicted[0], 0.9 * predicted[1]]),
             nudge: if rim { [0.0; 2] } else { [0.2 * noise(index, 7), 0.2 * noise(index, 8)] },
         }
     });
@@ -75,6 +76,7 @@ pub fn degenerate_frame() -> FrameView {
         status: CellStatus::Used,
         measured: Some([f64::NAN, 0.1]),
         predicted: Some([0.1, f64::INFINITY]),
+        held_out: Some([f64::NAN, 0.1]),
         nudge: [nudge, 0.0],
     };
     FrameView {
@@ -91,15 +93,7 @@ pub fn page<'a>(
     frames: &'a [FrameView],
     uncertainty: &'a Uncertainty,
 ) -> InferPage<'a> {
-    InferPage {
-        title: "embryo <3>",
-        headline: "The chiral Voronoi model explains 69 % of the motion; chirality is part of it.",
-        summary: &[],
-        report,
-        frames,
-        flows: &[],
-        uncertainty,
-    }
+    InferPage { title: "embryo <3>", summary: &[], report, frames, flows: &[], uncertainty }
 }
 
 /// A filled report.
@@ -141,6 +135,10 @@ pub fn report() -> InferReport {
                  --position-noise."
                     .into(),
             ],
+        },
+        verdict: Verdict {
+            kind: VerdictKind::Explained,
+            sentence: "The chiral Voronoi model explains 69 % of the motion; chirality is part of it.".into(),
         },
         units: Units { length: "um".into(), time: "min".into() },
         length_scale: Quantity { value: 11.17, unit: "um".into() },
@@ -211,6 +209,7 @@ pub fn report() -> InferReport {
             method: FitMethod::Search,
             status: FitStatus::Converged,
             trustworthy: true,
+            doubtful: Vec::new(),
             doubts: Vec::new(),
             iterations: 17,
             objective: 871.0,
@@ -242,6 +241,7 @@ pub fn degenerate_report() -> InferReport {
     ] {
         *parameter = Parameter { value, ci95: Some(ci95), fixed: false, ..parameter.clone() };
     }
+    report.verdict.kind = VerdictKind::ExplainsNothing;
     report.nmse.naive = 41.0;
     report.nmse.nudged = f64::NAN;
     report.nmse.un_nudged = 1.03;
@@ -273,6 +273,7 @@ pub fn degenerate_report() -> InferReport {
         standard_deviations: BTreeMap::from([("alpha".into(), f64::NAN)]),
     });
     report.fit.trustworthy = false;
+    report.fit.doubtful = vec!["optimiser".into()];
     report.fit.doubts = vec!["the fit <used up> its steps: raise --max-steps".into()];
     report.run.warnings.push(report.fit.doubts[0].clone());
     report.fit.status = FitStatus::Stalled;

@@ -9,7 +9,6 @@ use voronudge_report::figure::{
     CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
 };
 use voronudge_report::markers::Marker;
-use voronudge_report::numbers::unit_text;
 use voronudge_report::page::Figure;
 use voronudge_simulate::measure::{ChannelProfile, Estimate};
 
@@ -27,7 +26,7 @@ const STEPS: usize = 200;
 
 impl Figures<'_> {
     pub fn density(&self) -> Figure {
-        let label = format!("density (cells per {})", unit_text(&format!("{}^2", self.request.units.length)));
+        let label = format!("density (cells per {})", self.request.units.powers(2, 0));
         let points = [series("simulated", BLUE, Marker::Circle, &self.folded.centres, &self.folded.density)];
         let mut curves = self.decay("density", "exponential decay", BLUE);
         if let Some(continuum) = &self.findings.continuum {
@@ -72,7 +71,7 @@ impl Figures<'_> {
     }
 
     pub fn rates(&self) -> Figure {
-        let label = format!("rate ({})", unit_text(&format!("1/{}", self.request.units.time)));
+        let label = format!("rate ({})", self.request.units.powers(0, -1));
         let points = [
             series("births", GREEN, Marker::Triangle, &self.folded.centres, &self.folded.birth_rate),
             series("extrusions", VERMILLION, Marker::Square, &self.folded.centres, &self.folded.death_rate),
@@ -85,7 +84,7 @@ impl Figures<'_> {
     }
 
     pub fn conservation(&self) -> Figure {
-        let label = format!("rate ({})", unit_text(&format!("1/{}", self.request.units.time)));
+        let label = format!("rate ({})", self.request.units.powers(0, -1));
         let points = [
             series("∂_x(ρ v_x)/ρ", BLUE, Marker::Circle, &self.folded.faces, &self.folded.flux_rate),
             series(
@@ -107,7 +106,7 @@ impl Figures<'_> {
     /// What moves along the channel between a place and the middle, and what drives it.
     pub fn momentum(&self) -> Figure {
         let units = &self.request.units;
-        let label = format!("transport to the middle ({})", unit_text(&format!("1/{}", units.time)));
+        let label = format!("transport to the middle ({})", units.powers(0, -1));
         let faces = &self.folded.faces;
         let mut points = [
             series("∫ρ v_y dx", BLUE, Marker::Circle, faces, &self.folded.transport),

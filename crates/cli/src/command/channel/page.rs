@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::channel_report::{ChannelReport, DecayRecord};
-use voronudge_report::numbers::{significant, unit_text};
+use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Section, SectionPage};
 use voronudge_simulate::measure::Estimate;
 
@@ -237,7 +237,7 @@ fn decay_rows(report: &ChannelReport) -> Vec<[String; 2]> {
 }
 
 fn rate_unit(report: &ChannelReport) -> String {
-    unit_text(&format!("1/{}", report.units.time))
+    report.units.powers(0, -1)
 }
 
 pub(super) fn summary(report: &ChannelReport, out: &Path) -> String {

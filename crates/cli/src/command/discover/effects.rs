@@ -37,29 +37,6 @@ fn factor(unit: Unit, scale: &Scale) -> f64 {
     scale.length.powi(unit.length.into()) * scale.time.powi(unit.time.into())
 }
 
-/// The unit of a coefficient in the data; empty if it has none.
-fn unit_name(unit: Unit, units: &Units) -> String {
-    let power = |name: &str, exponent: i8| match exponent {
-        1 => name.to_owned(),
-        exponent => format!("{name}^{exponent}"),
-    };
-    let both = [(&units.length, unit.length), (&units.time, unit.time)];
-    let product = |sign: i8| -> Vec<String> {
-        let chosen = both.iter().filter(|(_, exponent)| exponent.signum() == sign);
-        chosen.map(|(name, exponent)| power(name, exponent.abs())).collect()
-    };
-    match (product(1).join("*"), product(-1)) {
-        (above, below) if below.is_empty() => above,
-        (above, below) => {
-            let above = if above.is_empty() { "1".into() } else { above };
-            match below.as_slice() {
-                [only] => format!("{above}/{only}"),
-                several => format!("{above}/({})", several.join("*")),
-            }
-        }
-    }
-}
-
 /// Names of the coefficients, in the order of the columns; empty for the only one.
 fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
     let count = selected.columns.len().max(selected.coefficients.len());
@@ -111,7 +88,7 @@ pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) 
             .map(|(name, estimate)| EffectCoefficient {
                 name,
                 value: estimate.value * factor,
-                unit: unit_name(effect.unit, units),
+                unit: units.powers(effect.unit.length.into(), effect.unit.time.into()),
             })
             .collect(),
         ci95: selected.coefficients.iter().map(ends).collect(),
@@ -188,23 +165,12 @@ mod tests {
 
     #[test]
     fn coefficients_are_scaled_by_their_unit() {
-        // A cell of size 20 µm and a time of 5 min: scaled velocities are multiples of 4 µm/min.
+        // A cell of size 20 µm and a time of 5 min: scaled velocities are multiples of 4 µm min⁻¹.
         let scale = Scale { length: 20.0, time: 5.0 };
         assert!((factor(Unit { length: 1, time: -1 }, &scale) - 4.0).abs() < 1e-12);
         assert!((factor(Unit { length: -2, time: -1 }, &scale) - 1.0 / 2000.0).abs() < 1e-15);
         assert!((factor(Unit { length: 0, time: 1 }, &scale) - 5.0).abs() < 1e-12);
         assert_eq!(factor(Unit { length: 0, time: 0 }, &scale), 1.0);
-    }
-
-    #[test]
-    fn units_are_written_as_fractions() {
-        let units = Units { length: "um".into(), time: "min".into() };
-        let name = |length, time| unit_name(Unit { length, time }, &units);
-        assert_eq!(name(1, -1), "um/min");
-        assert_eq!(name(-2, -1), "1/(um^2*min)");
-        assert_eq!(name(0, 1), "min");
-        assert_eq!(name(0, -1), "1/min");
-        assert_eq!(name(0, 0), "");
     }
 
     #[test]

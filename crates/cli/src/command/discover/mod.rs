@@ -12,7 +12,7 @@ mod surroundings;
 
 use super::fit::{
     ConstraintArguments, Measured, Prepared, Question, SearchArguments, SnapshotArguments, arrays, browser,
-    is_acceptable, words,
+    words,
 };
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -83,7 +83,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     progress.finish();
     let discovery = searched.map_err(|error| prepared.place(error, snapshots))?;
     let last = &discovery.after.inference;
-    words::doubts(last, &[], prepared.request.method).iter().for_each(|doubt| run.warn(doubt));
+    words::doubts(last, &[], prepared.request.method).iter().for_each(|(_, doubt)| run.warn(doubt));
     for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
         arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
     }
@@ -99,7 +99,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }
-    Ok(if is_acceptable(last) { Answer::Positive } else { Answer::Negative })
+    Ok(if last.is_acceptable() { Answer::Positive } else { Answer::Negative })
 }
 
 /// What is asked of every data set.

@@ -5,7 +5,8 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::DiscoverReport;
 use voronudge_report::discover_report::{HeldOutError, ModelFit};
-use voronudge_report::numbers::{interval_text, significant, unit_text};
+use voronudge_report::numbers::{interval_text, significant};
+use voronudge_report::units::unit_text;
 
 /// Candidates shown; the report has all.
 const SHOWN: usize = 5;

@@ -51,8 +51,8 @@ pub(crate) fn implied(prepared: &Prepared, result: &Inference, units: &Units) ->
             words: words.to_owned(),
         }
     };
-    let per_time = format!("1/{}", units.time);
-    let diffusivity = format!("{}^2/{}", units.length, units.time);
+    let per_time = units.powers(0, -1);
+    let diffusivity = units.powers(2, -1);
     Some(ImpliedByMeanField {
         B: modulus(|m| m.bulk, rate, &per_time, "resistance to compression, over the friction of a cell"),
         A: modulus(|m| m.odd_bulk, rate, &per_time, "zero for the honeycomb"),

@@ -27,13 +27,3 @@ pub(crate) use flow::{OrderedField, scaled as scaled_flow};
 pub(crate) use measured::Measured;
 pub(crate) use prepare::{Prepared, Question, observe, remove_median};
 pub(crate) use search::SearchArguments;
-
-use voronudge_infer::Inference;
-
-/// An objective this many times its expected value is no fit: the noise levels given, or the model, are wrong.
-const UNACCEPTABLE: f64 = 3.0;
-
-/// Whether a fit is one.
-pub(crate) fn is_acceptable(result: &Inference) -> bool {
-    result.objective <= UNACCEPTABLE * result.expected_objective
-}

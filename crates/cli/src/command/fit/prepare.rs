@@ -146,7 +146,8 @@ impl Question<'_> {
         // The data must have a scale of their own, even if it is not used.
         let own = scale_of(&observations).map_err(|error| faulty_data(error, &velocities, arguments))?;
         let scale = self.scale.unwrap_or(own);
-        let (request, stated_noise) = self.request(&scale);
+        let (mut request, stated_noise) = self.request(&scale);
+        request.frame_interval = velocities.derived().map(|_| data.frame_interval / scale.time);
         let observations = observations
             .iter()
             .enumerate()

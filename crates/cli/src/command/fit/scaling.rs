@@ -15,14 +15,13 @@ pub(crate) fn factor(scale: &Scale, quantity: Quantity) -> f64 {
     }
 }
 
-/// The unit of a quantity in the data.
+/// The unit of a quantity in the data, as it is printed.
 pub(crate) fn unit(quantity: Quantity, units: &Units) -> String {
-    let Units { length, time } = units;
     match quantity {
-        Quantity::AreaElasticity => format!("1/({length}^2*{time})"),
-        Quantity::PerimeterElasticity | Quantity::ChiralCoefficient => format!("1/{time}"),
-        Quantity::PreferredPerimeter => length.clone(),
-        Quantity::Chirality => String::new(),
+        Quantity::AreaElasticity => units.powers(-2, -1),
+        Quantity::PerimeterElasticity | Quantity::ChiralCoefficient => units.powers(0, -1),
+        Quantity::PreferredPerimeter => units.powers(1, 0),
+        Quantity::Chirality => units.powers(0, 0),
     }
 }
 

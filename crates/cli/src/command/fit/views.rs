@@ -38,6 +38,11 @@ pub(crate) fn flow_map<'f>(
             .into_iter()
             .map(|v| Some(velocity(v)).filter(|v| v[0].is_finite()))
             .collect(),
+        held_out: result.frames[index]
+            .held_out
+            .iter()
+            .map(|v| v.map(|v| velocity(v * prepared.scale.velocity())))
+            .collect(),
     })
 }
 
@@ -77,6 +82,7 @@ pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) 
                 status: if used { CellStatus::Used } else { CellStatus::LeftOut },
                 measured: target.map(velocity),
                 predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
+                held_out: if on_grid { None } else { frame.held_out[cell].map(velocity) },
                 nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
             }
         })

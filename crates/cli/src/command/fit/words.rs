@@ -1,6 +1,8 @@
 //! What a fit and its uncertainty mean, in plain words.
 
-use voronudge_infer::{Direction, Doubt, Estimate, Inference, Method, ParameterEstimates, Profile, Quantity};
+use voronudge_infer::{
+    Direction, Doubt, Estimate, Inference, Method, ParameterEstimates, Profile, Quantity, Voids,
+};
 use voronudge_report::numbers::significant;
 
 /// Relative standard error above which a parameter counts as not identified.
@@ -46,23 +48,61 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
                 .into()
         }
         Doubt::Steps => "the fit used up its steps before it reached a minimum; raise --max-steps".into(),
+        Doubt::Voids(Voids { found, expected }) => format!(
+            "cells were missed: {found} empty places are as large as cells leave that are not seen, {} would be chance; their \
+             neighbours' forces are wrong; look at the images there",
+            significant(expected, 1)
+        ),
+        Doubt::Tails(ratio) => format!(
+            "a few velocities are out of line with the rest (residuals scatter {} times as much as the smaller half of them \
+             implies): missed, merged or split cells, or tracks that jump; look at the largest residuals",
+            significant(ratio, 2)
+        ),
+        Doubt::Pattern => {
+            "what the fit leaves has a structure in space: the model lacks something, or the measurement does; ask discover"
+                .into()
+        }
+        Doubt::LongSteps(step) => format!(
+            "cells move by {} of their size between frames, and differences average that out: parameters are too small; give \
+             frames that are closer in time",
+            significant(step, 2)
+        ),
+        Doubt::Effect("time_lag", _) => {
+            "velocities lag behind the positions, as differences over too long a time do; give frames that are closer in time"
+                .into()
+        }
+        Doubt::Effect("flow_blur", _) => {
+            "the flow is averaged over another window than the fit takes; give --window and --window-width".into()
+        }
+        Doubt::Effect(_, share) => format!(
+            "positions look like centroids of cells rather than the sites of their polygons ({} of the way)",
+            significant(share, 2)
+        ),
     }
 }
 
-/// Every reason not to trust a fit: its own, and profiles that are lower elsewhere.
-pub(crate) fn doubts(result: &Inference, profiles: &[Profile], method: Method) -> Vec<String> {
+/// The name of what is in doubt where a profile is lower elsewhere than at the estimate.
+const PROFILE: &str = "profile";
+
+/// Every reason not to trust a fit, with the name of what is in doubt: its own, and profiles that are lower elsewhere.
+pub(crate) fn doubts(
+    result: &Inference,
+    profiles: &[Profile],
+    method: Method,
+) -> Vec<(&'static str, String)> {
     let missed = profiles.iter().filter_map(|profile| {
         let estimate = result.parameters.get(profile.quantity).value;
         let (_, rise) = profile.points.iter().find(|(value, _)| *value == estimate)?;
         (*rise > MISSED).then(|| {
-            format!(
+            let text = format!(
                 "the profile of {} is lower elsewhere than at the estimate, by {}: the fit missed a minimum; try --starts 8",
                 spoken(profile.quantity),
                 significant(*rise, 2)
-            )
+            );
+            (PROFILE, text)
         })
     });
-    result.doubts.iter().map(|own| doubt(*own, result, method)).chain(missed).collect()
+    result.doubts.iter().map(|own| (own.part().name(), doubt(*own, result, method))).chain(missed).collect()
 }
 
 /// How well a quantity is known.

@@ -6,10 +6,9 @@ mod page;
 mod questions;
 mod report;
 mod summary;
+mod verdict;
 
-use super::fit::{
-    ConstraintArguments, Measured, Question, SnapshotArguments, arrays, browser, is_acceptable, words,
-};
+use super::fit::{ConstraintArguments, Measured, Question, SnapshotArguments, arrays, browser, words};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -77,7 +76,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     progress.finish();
     let (result, answers) = answered.map_err(|error| prepared.place(error, &arguments.snapshots))?;
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
-    doubts.iter().for_each(|doubt| run.warn(doubt));
+    doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
     let report = report::report(&run, &data, &prepared, &result, &answers);
     let json = report.to_json()?;
@@ -89,5 +88,5 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }
-    Ok(if is_acceptable(&result) { Answer::Positive } else { Answer::Negative })
+    Ok(if result.is_acceptable() { Answer::Positive } else { Answer::Negative })
 }

@@ -11,7 +11,7 @@ use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
-use voronudge_report::numbers::{as_given, significant};
+use voronudge_report::numbers::as_given;
 use voronudge_report::{FrameView, InferPage};
 
 pub(super) fn page(
@@ -32,7 +32,6 @@ pub(super) fn page(
         .collect();
     let page = InferPage {
         title: &arguments.snapshots.title(),
-        headline: &headline(report),
         summary: &paragraphs(data, prepared, report),
         report,
         frames: &frames,
@@ -40,49 +39,6 @@ pub(super) fn page(
         uncertainty: &answers::figures(answers, result, &prepared.scale, &report.units),
     };
     Ok(page.render()?)
-}
-
-/// The answer in one sentence. Held-out errors decide: the error of the fit itself always looks good.
-fn headline(report: &InferReport) -> String {
-    let held_out = report.nmse.cross_validated.unwrap_or(report.nmse.un_nudged);
-    let spread = report.nmse.cross_validated_standard_error.unwrap_or(0.0);
-    let percent = |share: f64| format!("{} %", significant(100.0 * share, 2));
-    if held_out + spread >= 0.95 {
-        return format!(
-            "The model explains almost nothing of these velocities (held-out NMSE {}, where 1 is no explanation at all): the \
-             numbers below describe no mechanism of this tissue.",
-            significant(held_out, 3)
-        );
-    }
-    let alpha = &report.parameters.alpha;
-    let chirality = match (report.parameters.K_P_alpha.ci95, alpha.fixed) {
-        (Some([low, high]), false) if low > 0.0 || high < 0.0 => {
-            format!("The tissue is chiral, α = {}", significant(alpha.value, 2))
-        }
-        (_, true) => format!("With α held at {}", significant(alpha.value, 2)),
-        _ => "No chirality is seen".into(),
-    };
-    let error = match report.nmse.noise_floor {
-        floor if !floor.is_finite() => {
-            format!("The model misses {} of the square of velocities it has not seen.", percent(held_out))
-        }
-        floor if held_out < 1.2 * floor + spread => format!(
-            "The model misses {} of the square of velocities it has not seen, which is what the noise of the measurement alone \
-             gives ({}).",
-            percent(held_out),
-            percent(floor)
-        ),
-        floor => format!(
-            "The model misses {} of the square of velocities it has not seen; the noise of the measurement alone would give {}: \
-             the model lacks something.",
-            percent(held_out),
-            percent(floor)
-        ),
-    };
-    format!(
-        "{chirality}; the preferred shape index P₀/ℓ₀ is {}. {error}",
-        significant(report.parameters.shape_index.value, 3)
-    )
 }
 
 fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<String> {

@@ -2,6 +2,7 @@
 
 use super::answers;
 use super::questions::Answers;
+use super::verdict::verdict;
 use crate::command::fit::scaling::factor;
 use crate::command::fit::{OrderedField, Prepared, implied, outcome};
 use crate::run::Run;
@@ -19,14 +20,17 @@ pub(super) fn report(
     let units = outcome::units(data);
     let scale = &prepared.scale;
     let naive = &result.naive;
+    let parameters = outcome::parameters(prepared, result, &units);
+    let nmse = nmse(prepared, result);
     InferReport {
         run: run.record(Some(data)),
+        verdict: verdict(result, &nmse, &parameters),
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, result),
         measurement: outcome::measurement(prepared),
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
-        parameters: outcome::parameters(prepared, result, &units),
+        parameters,
         implied_moduli: implied::implied(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),
@@ -37,20 +41,7 @@ pub(super) fn report(
             shape_index: naive.preferred_perimeter,
         },
         units,
-        nmse: Nmse {
-            naive: result.nmse.naive,
-            nudged: result.nmse.nudged,
-            un_nudged: result.nmse.un_nudged,
-            noise_floor: match result.noise_source {
-                NoiseSource::Given => result.nmse.noise_floor,
-                // Estimated noise contains whatever the model misses: it would always explain everything.
-                NoiseSource::Estimated => f64::NAN,
-            },
-            cross_validated: result.nmse.cross_validated.map(|c| c[0]),
-            cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
-            mean_removed: prepared.mean_removed,
-            background: prepared.background,
-        },
+        nmse,
         noise: outcome::noise(prepared, result),
         nudge: outcome::nudge(prepared, result),
         identifiability: outcome::identifiability(result),
@@ -58,5 +49,22 @@ pub(super) fn report(
         landscapes: answers.landscapes.iter().map(|slice| answers::landscape(slice, scale)).collect(),
         bootstrap: answers.bootstrap.as_ref().map(|all| answers::bootstrap(all, result, scale)),
         fit: outcome::fit(prepared, result, &answers.profiles),
+    }
+}
+
+fn nmse(prepared: &Prepared, result: &Inference) -> Nmse {
+    Nmse {
+        naive: result.nmse.naive,
+        nudged: result.nmse.nudged,
+        un_nudged: result.nmse.un_nudged,
+        noise_floor: match result.noise_source {
+            NoiseSource::Given => result.nmse.noise_floor,
+            // Estimated noise contains whatever the model misses: it would always explain everything.
+            NoiseSource::Estimated => f64::NAN,
+        },
+        cross_validated: result.nmse.cross_validated.map(|c| c[0]),
+        cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
+        mean_removed: prepared.mean_removed,
+        background: prepared.background,
     }
 }

@@ -10,8 +10,13 @@ use voronudge_report::numbers::{interval_text, significant};
 /// What the terminal shows.
 pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
     let mut text = String::new();
-    let directions: Vec<String> = report.identifiability.iter().map(|d| d.words.clone()).collect();
-    let _ = writeln!(text, "{}\n", words::in_short(&directions));
+    let is_finding = report.verdict.kind.is_finding();
+    let _ = writeln!(text, "{}", report.verdict.sentence);
+    if is_finding {
+        let directions: Vec<String> = report.identifiability.iter().map(|d| d.words.clone()).collect();
+        let _ = writeln!(text, "{}", words::in_short(&directions));
+    }
+    text.push('\n');
     let left_out: usize = report.cells.left_out.values().sum();
     let frames = report.cells.frames.len();
     let _ = writeln!(
@@ -45,9 +50,16 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
             Some(ends) => interval_text(parameter.value, ends),
             None => [significant(parameter.value, 4), "fixed".into()],
         };
-        let naive = significant(naive, 4);
+        let [value, interval, naive] =
+            [value, interval, significant(naive, 4)].map(|text| match is_finding {
+                true => text,
+                false => format!("({text})"),
+            });
         let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
         let _ = writeln!(text, "{}", row.trim_end());
+    }
+    if !is_finding {
+        let _ = writeln!(text, "in brackets: a model that explains nothing has no parameters to be found");
     }
     text.push_str(&answers(report));
     let e = &report.nmse;

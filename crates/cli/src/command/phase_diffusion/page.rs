@@ -5,9 +5,10 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_infer::phase_diffusion::PhaseDiffusion;
 use voronudge_report::figure::{GrowthCurve, GrowthPoint, growth_matrix};
-use voronudge_report::numbers::{significant, unit_text, with_interval};
+use voronudge_report::numbers::{significant, with_interval};
 use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
 use voronudge_report::phase_diffusion_report::{Diffusivity, PhaseDiffusionReport};
+use voronudge_report::units::unit_text;
 
 /// Cross diffusivities beyond so many standard errors, of both together, are told from none: 95 % of χ² with two degrees of freedom.
 const SIGNIFICANT: f64 = 2.448;

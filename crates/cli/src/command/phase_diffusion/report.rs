@@ -22,7 +22,7 @@ pub(super) fn report(
     found: &PhaseDiffusion,
 ) -> PhaseDiffusionReport {
     let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
-    let unit = format!("{}^2/{}", units.length, units.time);
+    let unit = units.powers(2, -1);
     let area = tracked.pattern.domain.area() / cells_in(data, frames.first().copied().unwrap_or(0)) as f64;
     let estimate = |estimate: &DiffusivityEstimate| Diffusivity {
         value: estimate.value,
@@ -38,7 +38,7 @@ pub(super) fn report(
         perpendicular_cross: found.perpendicular_cross.value,
     }
     .moduli(1.0 / area);
-    let modulus = |value: f64| Quantity { value, unit: format!("1/{}", units.time) };
+    let modulus = |value: f64| Quantity { value, unit: units.powers(0, -1) };
     PhaseDiffusionReport {
         run: run.record(Some(data)),
         frames: frames.to_vec(),

@@ -13,8 +13,9 @@ use voronudge_report::figure::{
     distribution, points_and_curves,
 };
 use voronudge_report::markers::Marker;
-use voronudge_report::numbers::{label_with_unit, significant, unit_text};
+use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure};
+use voronudge_report::units::label_with_unit;
 use voronudge_report::{ChangedEdges, FrameView, SimulatePage, Units};
 use voronudge_simulate::Simulation;
 use voronudge_simulate::measure::{StructureFactor, shape_indices};
@@ -91,7 +92,7 @@ fn cards(report: &Report, units: &Units) -> Vec<Card> {
         .mean_square_velocity_error
         .map_or(String::new(), |error| format!("± {} over the second half", significant(error, 1)));
     let mut cards = vec![
-        card("⟨v²⟩", format!("{} ({})²", known(report.mean_square_velocity), units.velocity_text()), &error),
+        card("⟨v²⟩", format!("{} {}", known(report.mean_square_velocity), units.powers(2, -2)), &error),
         card("T1 transitions", known(report.t1_rate), "per cell and time"),
         card(
             "hexatic order Ψ_6",
@@ -105,7 +106,7 @@ fn cards(report: &Report, units: &Units) -> Vec<Card> {
         ),
     ];
     if let Some(exponent) = &report.lyapunov {
-        let unit = unit_text(&format!("1/{}", units.time));
+        let unit = units.powers(0, -1);
         let error =
             exponent.standard_error.map_or(String::new(), |error| format!("± {}", significant(error, 1)));
         cards.push(card("Lyapunov exponent", format!("{} {unit}", significant(exponent.value, 3)), &error));
@@ -145,7 +146,7 @@ fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units)
 }
 
 fn course(report: &Report, measurements: &Measurements, units: &Units) -> Vec<Figure> {
-    let velocity = label_with_unit("⟨v²⟩", &format!("({})^2", units.velocity_text()));
+    let velocity = label_with_unit("⟨v²⟩", &units.powers(2, -2));
     let squares = || measurements.velocities.iter().map(|point| point[1]).filter(|&square| square > 0.0);
     let (low, high) = (squares().fold(f64::INFINITY, f64::min), squares().fold(0.0, f64::max));
     let scale = if high > 30.0 * low { AxisScale::Logarithmic } else { AxisScale::Linear };
@@ -167,7 +168,7 @@ fn course(report: &Report, measurements: &Measurements, units: &Units) -> Vec<Fi
         moved.push(curve("in proportion to time", GREY, Stroke::Dashed, guide));
     }
     let lag = label_with_unit("lag", &units.time);
-    let square = label_with_unit("MSD", &format!("{}^2", units.length));
+    let square = label_with_unit("MSD", &units.powers(2, 0));
     let logarithmic = AxisScale::Logarithmic;
     let displacements =
         chart("mean square displacement", [(&lag, logarithmic), (&square, logarithmic)], &moved);
@@ -188,9 +189,9 @@ fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units
     let cells = simulation.positions().len();
     let shapes = &shape_indices(tessellation, positions)[..cells];
     let shape = distribution("shape index", "shape index P/√A", shapes, Some(&hexagon));
-    let area_label = label_with_unit("area", &format!("{}^2", units.length));
+    let area_label = label_with_unit("area", &units.powers(2, 0));
     let area = distribution("area", &area_label, &areas(tessellation, positions)[..cells], None);
-    let q = label_with_unit("q", &format!("1/{}", units.length));
+    let q = label_with_unit("q", &units.powers(-1, 0));
     let shells = |of: fn(&StructureFactor) -> f64| -> Vec<[f64; 2]> {
         measurements.structure.iter().map(|shell| [shell.wave_number, of(shell)]).collect()
     };
@@ -200,7 +201,7 @@ fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units
         [(&q, linear), ("S(q) of density", linear)],
         &[curve("", BLUE, Stroke::Solid, shells(|shell| shell.density))],
     );
-    let velocity_label = label_with_unit("S(q) of velocity", &format!("({})^2", units.velocity_text()));
+    let velocity_label = label_with_unit("S(q) of velocity", &units.powers(2, -2));
     let velocity = chart(
         "structure factors of velocity",
         [(&q, linear), (&velocity_label, linear)],

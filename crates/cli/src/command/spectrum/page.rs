@@ -9,8 +9,9 @@ use std::path::Path;
 use voronudge_io::{Boundary, DataSet};
 use voronudge_report::SpectrumPage;
 use voronudge_report::figure::DrawnMode;
-use voronudge_report::numbers::{significant, unit_text};
+use voronudge_report::numbers::significant;
 use voronudge_report::spectrum_report::{FrameSpectrum, ModeRecord, SpectrumReport};
+use voronudge_report::units::unit_text;
 
 /// Velocities below this share of K_P ℓ₀ are those of a tissue at rest.
 const AT_REST: f64 = 1e-4;
@@ -72,11 +73,10 @@ fn paragraphs(data: &DataSet, first: &Solved, report: &SpectrumReport) -> Vec<St
     let k_p = report.parameters.get("K_P").copied().unwrap_or(1.0).abs();
     if first.speed > AT_REST * k_p * first.length {
         paragraphs.push(format!(
-            "The model does not leave this snapshot at rest: its root mean square velocity is {} {}/{}. The modes tell what \
+            "The model does not leave this snapshot at rest: its root mean square velocity is {} {}. The modes tell what \
              becomes of small differences from the motion, for a time in which the cells hardly move.",
             significant(first.speed, 2),
-            unit_text(&report.units.length),
-            unit_text(&report.units.time)
+            report.units.velocity_text()
         ));
     }
     if data.boundary == Boundary::Open {
@@ -136,7 +136,7 @@ fn value(mode: &ModeRecord) -> String {
 /// What is printed.
 pub(super) fn summary(report: &SpectrumReport, out: &Path) -> String {
     let mut text = String::new();
-    let unit = unit_text(&format!("1/{}", report.units.time));
+    let unit = report.units.powers(0, -1);
     for frame in &report.frames {
         let _ = writeln!(
             text,

@@ -7,7 +7,8 @@ use super::super::parameter_table::{TableRow, parameter_rows};
 use super::super::words::{effect_name, noise_source, with_error};
 use crate::discover_report::{DiscoverReport, HeldOutError, ModelFit, ModelNmse, Prediction};
 use crate::figure::{Emphasis, ErrorBar, error_bars_with_floor};
-use crate::numbers::{significant, unit_text};
+use crate::numbers::significant;
+use crate::units::unit_text;
 
 /// Longest name of a model that stands beside its bar, in letters.
 const LABEL: usize = 24;
@@ -220,14 +221,12 @@ pub(super) fn noise_rows(report: &DiscoverReport) -> Vec<NoiseRow> {
         cells: models.iter().map(|model| cell(model)).collect(),
     };
     let units = &report.units;
-    let velocity = format!("{}/{}", units.length, units.time);
+    let velocity = units.velocity_text();
     let source = noise_source(report.models.before.noise.source);
     vec![
         row(&format!("position noise σ_r, {source}"), &units.length, |model| number(model.noise.sigma_r)),
         row(&format!("velocity noise σ_v, {source}"), &velocity, |model| number(model.noise.sigma_v)),
-        row("spring constant k = σ_v²/σ_r²", &format!("1/{}^2", units.time), |model| {
-            number(model.nudge.k)
-        }),
+        row("spring constant k = σ_v²/σ_r²", &units.powers(0, -2), |model| number(model.nudge.k)),
         row("root mean square nudge", &units.length, |model| number(model.nudge.rms)),
         row("degrees of freedom used by nudges", "", |model| number(model.nudge.degrees_of_freedom)),
         row("contribution of nudges over that of velocities", "", |model| {

@@ -7,7 +7,7 @@ use super::super::parameter_table::{TableRow, parameter_row};
 use super::super::words::{effect_name, listed, percent, probability};
 use crate::discover_report::{DiscoverReport, SelectedEffect};
 use crate::figure::{ParameterRow, PartialRegression, parameter_intervals, partial_regression};
-use crate::view::Units;
+use crate::units::Units;
 
 /// One selected effect.
 #[derive(Serialize)]

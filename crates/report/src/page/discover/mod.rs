@@ -22,7 +22,7 @@ use crate::figure::{
     CorrelationFunction, FlowMap, Outlier, PartialRegression, noise_budget, outlier_map, residual_flow_maps,
     residual_maps,
 };
-use crate::numbers::{significant, unit_text};
+use crate::numbers::significant;
 use crate::view::FrameView;
 
 const TEMPLATE: Template =
@@ -187,7 +187,7 @@ impl DiscoverPage<'_> {
 
     fn budget_total(&self) -> String {
         let units = &self.report.units;
-        let unit = unit_text(&format!("{}^2/{}^2", units.length, units.time));
+        let unit = units.powers(2, -2);
         format!("{} {unit}", significant(self.report.noise_budget.before.total, 3))
     }
 }

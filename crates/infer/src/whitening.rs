@@ -1,5 +1,10 @@
 //! Residuals without the correlations that errors of the positions make.
 
+use crate::least_squares::residuals;
+use crate::objective::Objective;
+use crate::rows::linearised_back;
+use crate::uncertainty::nudges;
+use crate::{Error, Inference, Observation, Request};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
@@ -7,21 +12,55 @@ use voronudge_model::BlockMatrix;
 /// Most dimensions of the Krylov space.
 const DIMENSIONS: usize = 160;
 
+/// Stiffness, relative to that of a measured position, of cells that were not seen: soft enough for their positions to explain
+/// what they can.
+const SOFTEST: f64 = 1e-6;
+
 /// Change of the result, relative to its size, that ends the iteration.
 const TOLERANCE: f64 = 1e-9;
 
-/// `W^{−1/2} y / σ_v` with `W = I + JJᵀ/k`, by the Lanczos method: of unit variance and without correlations if y has the
-/// covariance `σ_v² W`. `rows` are the rows of J that belong to y.
-pub(super) fn whitened(
+/// The residuals of a fit, one list for each frame in the order of the targets: linearised back to the measured positions and
+/// freed from the correlations that their errors make.
+///
+/// # Errors
+/// [`Error`] if a frame cannot be tessellated.
+pub(crate) fn whitened_residuals(
+    frames: &[Observation],
+    request: &Request,
+    inference: &Inference,
+) -> Result<Vec<Vec<Vector<f64>>>, Error> {
+    let space = request.space()?;
+    let levels = inference.noise;
+    let objective = Objective { frames, structure: &request.structure, space: &space, levels };
+    let coefficients = inference.coefficients.as_slice();
+    let mut fields = Vec::with_capacity(frames.len());
+    for (index, nudges) in nudges(frames, inference).iter().enumerate() {
+        let placed = objective.place(index, nudges)?;
+        let evaluated = placed.evaluate(coefficients);
+        let jacobian = placed.jacobian(coefficients, &evaluated);
+        let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
+            .into_iter()
+            .map(|own| (own.0, linearised_back(&jacobian, own, nudges)))
+            .unzip();
+        let springs: Vec<f64> = (0..frames[index].positions.len())
+            .map(|cell| objective.spring() * frames[index].stiffness(cell).max(SOFTEST))
+            .collect();
+        fields.push(whitened(&jacobian, &springs, &rows, &y, levels.velocity));
+    }
+    Ok(fields)
+}
+
+/// `W^{−1/2} y / σ_v` with `W = I + J K⁻¹ Jᵀ`, by the Lanczos method: of unit variance and without correlations if y has the
+/// covariance `σ_v² W`. K has the spring of each cell on its diagonal; `rows` are the rows of J that belong to y.
+fn whitened(
     jacobian: &BlockMatrix,
-    cells: usize,
+    springs: &[f64],
     rows: &[usize],
     y: &[Vector<f64>],
-    spring: f64,
     velocity_noise: f64,
 ) -> Vec<Vector<f64>> {
     let apply = |x: &DVector<f64>| {
-        let mut transposed = vec![0.0; 2 * cells];
+        let mut transposed = vec![0.0; 2 * springs.len()];
         for (k, row) in rows.iter().enumerate() {
             let (u, w) = (x[2 * k], x[2 * k + 1]);
             for (column, b) in jacobian.row(*row) {
@@ -33,8 +72,8 @@ pub(super) fn whitened(
         for (k, row) in rows.iter().enumerate() {
             for (column, b) in jacobian.row(*row) {
                 let (u, w) = (transposed[2 * column], transposed[2 * column + 1]);
-                result[2 * k] += (b[0] * u + b[1] * w) / spring;
-                result[2 * k + 1] += (b[2] * u + b[3] * w) / spring;
+                result[2 * k] += (b[0] * u + b[1] * w) / springs[column];
+                result[2 * k + 1] += (b[2] * u + b[3] * w) / springs[column];
             }
         }
         result
