@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
 
 mod channel;
+mod detections;
 mod doubts;
 mod mean_field;
 mod moduli;

@@ -103,6 +103,14 @@ impl Domain {
         }
     }
 
+    /// The image of a place in the box; in the open plane, the place itself.
+    pub fn wrap(&self, r: Vector<f64>) -> Vector<f64> {
+        match self {
+            Self::Periodic(cell) => cell.wrap(r),
+            Self::Open => r,
+        }
+    }
+
     /// The shortest displacement equivalent to `d`.
     pub fn shortest(&self, d: Vector<f64>) -> Vector<f64> {
         match self {

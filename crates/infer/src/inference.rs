@@ -5,8 +5,9 @@ use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
 use crate::doubts::examine;
 use crate::estimates::Fitted;
 use crate::least_squares::{self, residuals_as_measured};
-use crate::noisy_fit::{at_limit, fit};
+use crate::noisy_fit::{at_limit, fit, go_on};
 use crate::objective::{Nudged, Objective};
+use crate::robust::reweighed;
 use crate::search::Watch;
 use crate::{
     CrossValidation, Doubt, Error, Examination, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource,
@@ -15,6 +16,9 @@ use crate::{
 use nalgebra::DVector;
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
+
+/// Rounds in which velocities that nothing explains lose their weight.
+const REWEIGHTINGS: usize = 3;
 
 /// Standard deviations by which an objective may exceed its expected value.
 const ACCEPTED_EXCESS: f64 = 3.0;
@@ -47,9 +51,22 @@ pub fn infer(
     let mut watch = Watch { observe };
     let unset = NoiseLevels { position: 1.0, velocity: 1.0 };
     let mut objective = Objective { frames, structure, space: &space, levels: unset };
-    let found = fit(&mut objective, &naive, request, &mut watch)?;
-    let objective = objective;
-    let levels = objective.levels;
+    let mut found = fit(&mut objective, &naive, request, &mut watch)?;
+    let mut levels = objective.levels;
+    let mut weighted: Option<Vec<Observation>> = None;
+    for _ in 0..REWEIGHTINGS {
+        let frames = weighted.as_deref().unwrap_or(frames);
+        let Some(next) = reweighed(&Objective { frames, levels, ..objective }, &found.parameters)? else {
+            break;
+        };
+        let mut objective = Objective { frames: &next, levels, ..objective };
+        found = go_on(&mut objective, found, request, &mut watch)?;
+        levels = objective.levels;
+        weighted = Some(next);
+    }
+    let given = frames;
+    let frames = weighted.as_deref().unwrap_or(given);
+    let objective = Objective { frames, levels, ..objective };
     let folds = match request.cross_validation {
         CrossValidation::Done => {
             cross_validate(&objective, &found.parameters, &Split::new(frames, BLOCKS), &mut watch)?
@@ -129,7 +146,7 @@ pub fn infer(
         total,
     };
     if request.examination == Examination::Done {
-        let further = examine(frames, request, &inference)?;
+        let further = examine(given, request, &inference)?;
         inference.doubts.extend(further);
     }
     Ok(inference)
@@ -151,7 +168,12 @@ fn frame_result(
             .map(|edge| (edge.0, edge.1))
             .collect::<Vec<_>>()
     };
+    let weights = match frame.is_weighted() {
+        true => (0..frame.velocities.values().len()).map(|datum| frame.weight(datum)).collect(),
+        false => Vec::new(),
+    };
     FrameResult {
+        weights,
         edges_lost: missing_from(&before, &after),
         edges_gained: missing_from(&after, &before),
         predicted: evaluated.of_cells,

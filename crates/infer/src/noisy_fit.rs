@@ -72,6 +72,22 @@ struct Settled {
     criterion: f64,
 }
 
+/// Goes on from a fit to data with other weights.
+pub(crate) fn go_on(
+    objective: &mut Objective<'_>,
+    found: Found,
+    request: &Request,
+    watch: &mut Watch<'_>,
+) -> Result<Found, Error> {
+    let max_steps = match request.method {
+        Method::Search { max_steps, .. } => max_steps,
+        // Weights are no concern of the paper's optimiser.
+        Method::Descent { .. } => return Ok(found),
+    };
+    // Known levels stay as they are.
+    Ok(settle(objective, found, request, max_steps, ROUNDS[1], watch)?.found)
+}
+
 /// The levels and the fit that follow if positions are taken to be almost exact at first; `None` if their noise is known or
 /// levels of that kind are less likely than those of the criterion given.
 ///

@@ -64,9 +64,19 @@ impl<'a> Nudged<'a> {
         positions: Vec<Vector<f64>>,
         tessellation: Tessellation,
     ) -> Self {
-        let environment = frame.environment().clone();
-        let columns = structure.columns(&tessellation, &positions, &environment);
         let sampling = frame.sampling(&tessellation, &positions);
+        Self::placed(structure, frame.environment().clone(), positions, tessellation, sampling)
+    }
+
+    /// Any cells, with what is measured of them.
+    pub fn placed(
+        structure: &'a Structure,
+        environment: Arc<Environment>,
+        positions: Vec<Vector<f64>>,
+        tessellation: Tessellation,
+        sampling: Option<Sampling>,
+    ) -> Self {
+        let columns = structure.columns(&tessellation, &positions, &environment);
         Self { positions, tessellation, structure, environment, columns, sampling }
     }
 

@@ -159,6 +159,29 @@ impl Observation {
         (2 * self.targets().count()).saturating_sub(self.background_dimension() + 2 * self.unseen())
     }
 
+    /// The same frame of other cells: detections that are kept, at these positions, then cells without a measured position.
+    ///
+    /// # Errors
+    /// [`Error::Lengths`], [`Error::Geometry`].
+    pub(crate) fn with_cells(
+        &self,
+        kept: &[usize],
+        positions: Vec<Vector<f64>>,
+        velocities: Velocities,
+    ) -> Result<Self, Error> {
+        let stiffness = match kept.len() == positions.len() && self.stiffness.is_empty() {
+            true => Vec::new(),
+            false => {
+                let own = kept.iter().map(|cell| self.stiffness(*cell));
+                own.chain(std::iter::repeat(0.0)).take(positions.len()).collect()
+            }
+        };
+        let domain = self.tessellation.domain();
+        let own = Self::new(0, positions, velocities, domain, self.field_of_view.clone())?;
+        let own = Self { stiffness, environment: self.environment.clone(), ..own };
+        Ok(own.with_background(self.background_degree()))
+    }
+
     /// Lets positions have errors of their own: standard deviations (N) in units of that of the noise levels; infinite for
     /// cells that were not seen, whose positions are where they are looked for.
     #[must_use]
@@ -177,6 +200,11 @@ impl Observation {
         self.stiffness.get(cell).copied().unwrap_or(1.0)
     }
 
+    /// `σ_i / σ_r` of a cell; zero if it was not seen, so that it stays where it is put.
+    pub(crate) fn position_error(&self, cell: usize) -> f64 {
+        if self.is_seen(cell) { self.stiffness(cell).powf(-0.5) } else { 0.0 }
+    }
+
     /// Whether a cell has a measured position.
     pub fn is_seen(&self, cell: usize) -> bool {
         self.stiffness(cell) > 0.0
@@ -190,6 +218,11 @@ impl Observation {
     /// Weight of a velocity.
     pub fn weight(&self, datum: usize) -> f64 {
         self.weights.get(datum).copied().unwrap_or(1.0)
+    }
+
+    /// Whether velocities have weights of their own.
+    pub fn is_weighted(&self) -> bool {
+        !self.weights.is_empty()
     }
 
     /// Multiplies rows of the velocities by the roots of their weights.

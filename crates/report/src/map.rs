@@ -1,9 +1,17 @@
 //! Pictures of the plane: equal aspect, clipped to the cells, a scale bar and a legend beneath.
 
+use crate::colour::GREEN;
+use crate::markers::Marker;
 use crate::numbers::{nice_below, significant};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 use crate::units::Units;
-use crate::view::{CellView, FrameView, is_finite};
+use crate::view::{CellStatus, CellView, FrameView, is_finite};
+
+/// Height of a line of a legend in pixels.
+const LINE: f64 = 16.0;
+
+/// Radius of the ring at a cell that was not detected, in pixels.
+const RING: f64 = 3.4;
 
 /// Nominal width of every map in pixels.
 pub const MAP_WIDTH: f64 = 380.0;
@@ -93,6 +101,8 @@ pub struct Map {
     /// The drawing area, clipped to the viewport.
     pub layer: Svg,
     title: String,
+    /// Height of a third line of the legend.
+    third_line: f64,
 }
 
 impl Map {
@@ -106,7 +116,9 @@ impl Map {
     #[must_use]
     pub fn with_view(view: Viewport, frame: &FrameView, title: &str) -> Self {
         let title = format!("{title}, {}", frame.label);
-        Self { view, layer: Svg::new(view.size, &title), title }
+        let both = frame.left_out() > 0 && frame.not_detected().next().is_some();
+        let third_line = if both { LINE } else { 0.0 };
+        Self { view, layer: Svg::new(view.size, &title), title, third_line }
     }
 
     /// Draws faint outlines of all cells, those left out on grey, and the box.
@@ -114,13 +126,27 @@ impl Map {
         let [mut used, mut left_out] = [PathData::new(), PathData::new()];
         for cell in &frame.cells {
             if let Some(polygon) = self.view.polygon(cell) {
-                if cell.is_used() { &mut used } else { &mut left_out }.polygon(&polygon);
+                if cell.status == CellStatus::LeftOut { &mut left_out } else { &mut used }.polygon(&polygon);
             }
         }
         let stroke = r##"stroke="#c4c4c4" stroke-width=".6" stroke-linejoin="round""##;
         self.layer.path(&left_out, &format!(r##"fill="#ebebeb" {stroke}"##));
         self.layer.path(&used, &format!(r#"fill="none" {stroke}"#));
+        self.not_detected(frame);
         self.boundary(frame);
+    }
+
+    /// Draws the polygons of cells that were not detected, with a ring at their centres.
+    pub fn not_detected(&mut self, frame: &FrameView) {
+        let [mut polygons, mut rings] = [PathData::new(), PathData::new()];
+        for cell in frame.not_detected() {
+            if let Some(polygon) = self.view.polygon(cell) {
+                polygons.polygon(&polygon);
+            }
+            Marker::Circle.push(&mut rings, self.view.place(cell.centre), RING);
+        }
+        self.layer.path(&polygons, &format!(r#"fill="{GREEN}" fill-opacity=".16" stroke="none""#));
+        self.layer.path(&rings, &format!(r#"fill="none" stroke="{GREEN}" stroke-width="1.4""#));
     }
 
     /// Draws the outline of the periodic box, dashed, where the frame has one.
@@ -136,7 +162,7 @@ impl Map {
     #[must_use]
     pub fn with_legend(self, height: f64) -> Legend {
         let [width, map_height] = self.view.size;
-        let mut svg = Svg::new([MAP_WIDTH, map_height + height], &self.title);
+        let mut svg = Svg::new([MAP_WIDTH, map_height + height + self.third_line], &self.title);
         let left = (MAP_WIDTH - width) / 2.0;
         svg.nest([left, 0.0], &self.layer);
         let mut border = PathData::new();
@@ -179,8 +205,18 @@ impl Legend {
         self.svg.text([end + 7.0, y + 4.0], &label, TextStyle::label(Anchor::Start));
     }
 
-    /// Draws the entry for cells left out, on the second line at `x`, unless there are none.
+    /// Draws the entries for cells left out and for cells not detected, from the second line on at `x`, unless there are none.
     pub fn left_out(&mut self, x: f64, frame: &FrameView, swatch: Swatch) {
+        let hidden = frame.not_detected().count();
+        if hidden > 0 {
+            let y = self.top + 32.0 + if frame.left_out() > 0 { LINE } else { 0.0 };
+            let mut ring = PathData::new();
+            Marker::Circle.push(&mut ring, [x + 7.0, y + 5.5], RING);
+            let style = format!(r#"fill="{GREEN}" fill-opacity=".16" stroke="{GREEN}" stroke-width="1.4""#);
+            self.svg.path(&ring, &style);
+            let label = format!("not detected ({hidden})");
+            self.svg.text([x + 20.0, y + 9.5], &label, TextStyle::quiet(Anchor::Start));
+        }
         let count = frame.left_out();
         if count == 0 {
             return;

@@ -10,6 +10,8 @@ pub enum CellStatus {
     Used,
     /// The cell was left out (at the rim, too large, no velocity, …).
     LeftOut,
+    /// The cell was not detected: the fit put it there.
+    NotDetected,
 }
 
 /// One cell of one frame.
@@ -104,7 +106,12 @@ impl FrameView {
     /// Number of cells left out.
     #[must_use]
     pub fn left_out(&self) -> usize {
-        self.cells.iter().filter(|cell| !cell.is_used()).count()
+        self.cells.iter().filter(|cell| cell.status == CellStatus::LeftOut).count()
+    }
+
+    /// The cells that were not detected.
+    pub fn not_detected(&self) -> impl Iterator<Item = &CellView> {
+        self.cells.iter().filter(|cell| cell.status == CellStatus::NotDetected)
     }
 }
 

@@ -8,7 +8,8 @@ use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
 
-const FILES: [&str; 5] = [
+const FILES: [&str; 6] = [
+    "latent_cells.npy",
     "nudged_positions.npy",
     "predicted_velocities.npy",
     "report.html",

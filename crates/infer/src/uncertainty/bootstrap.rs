@@ -94,8 +94,13 @@ pub(crate) fn synthetic(
         Vector::new(v.x + normal.sample(&mut rng), v.y + normal.sample(&mut rng))
     };
     let mut synthetic = Vec::with_capacity(frames.len());
-    for (index, (frame, own)) in frames.iter().zip(&result.frames).enumerate() {
-        let positions = own.nudged_positions.iter().map(|r| noisy(r, &on_positions)).collect();
+    for (frame, own) in frames.iter().zip(&result.frames) {
+        let positions = own
+            .nudged_positions
+            .iter()
+            .enumerate()
+            .map(|(cell, r)| r + (noisy(r, &on_positions) - r) * frame.position_error(cell))
+            .collect();
         let values: Vec<Option<Vector<f64>>> = own
             .predicted_data
             .iter()
@@ -106,11 +111,8 @@ pub(crate) fn synthetic(
             Velocities::OfCells(_) => Velocities::OfCells(values),
             Velocities::OnGrid(flow) => Velocities::OnGrid(Flow { velocities: values, ..flow.clone() }),
         };
-        let domain = frame.tessellation.domain();
-        let field_of_view = frame.field_of_view.clone();
-        let refitted = Observation::new(index, positions, velocities, domain, field_of_view)?;
-        synthetic
-            .push(refitted.with_background(frame.background_degree()).within(frame.environment().clone()));
+        let all: Vec<usize> = (0..frame.positions.len()).collect();
+        synthetic.push(frame.with_cells(&all, positions, velocities)?);
     }
     let mut request = Request {
         cross_validation: CrossValidation::Skipped,

@@ -7,7 +7,7 @@ use crate::map::{HATCH_STYLE, Legend, MAP_WIDTH, Map, Swatch, hatch};
 use crate::numbers::{tick_labels, ticks};
 use crate::svg::PathData;
 use crate::units::Units;
-use crate::view::FrameView;
+use crate::view::{CellStatus, FrameView};
 
 /// Left and right end of the colour bar in pixels.
 const BAR: [f64; 2] = [156.0, MAP_WIDTH - 16.0];
@@ -62,6 +62,7 @@ pub fn cell_map(frame: &FrameView, scalar: &CellScalar, units: &Units) -> String
     };
     let colours = scalar.limits.map_or(colours, |limits| colours.with_limits(limits));
     draw_cells(&mut map, frame, (scalar, &colours));
+    map.not_detected(frame);
     map.boundary(frame);
     let mut legend = map.with_legend(54.0);
     legend.scale_bar(units);
@@ -81,7 +82,7 @@ pub(super) fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&
             Some(level) => classes[level].polygon(&polygon),
             None => {
                 outlines.polygon(&polygon);
-                if !cell.is_used() {
+                if cell.status == CellStatus::LeftOut {
                     hatch(&mut hatching, &polygon);
                 }
             }

@@ -135,7 +135,8 @@ pub(super) fn draw_flow(
     map.layer.path(&crosses, &cross_style());
     arrows.draw(&mut map.layer, field.colour());
     let mut legend = arrow_legend(map, flow.frame, (field, scale), units);
-    let x = if flow.frame.left_out() > 0 { 160.0 } else { 4.0 };
+    let taken = flow.frame.left_out() > 0 || flow.frame.not_detected().next().is_some();
+    let x = if taken { 160.0 } else { 4.0 };
     missing_entry(&mut legend, x, missing);
     legend.svg.finish()
 }

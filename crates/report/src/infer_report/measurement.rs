@@ -1,5 +1,6 @@
 //! How the cells were measured, as far as the results depend on it.
 
+use super::LatentCells;
 use serde::Serialize;
 
 /// What was seen of the tissue.
@@ -13,6 +14,8 @@ pub struct Measurement {
     pub uncertain: usize,
     /// Cells outside the field of view, over all frames.
     pub outside: usize,
+    /// What was wrong with detections; `null` if that was not looked for.
+    pub latent: Option<LatentCells>,
 }
 
 /// A region where every cell would have been seen.

@@ -5,12 +5,14 @@
 
 mod constraints;
 mod implied;
+mod latent;
 mod measurement;
 mod uncertainty;
 mod verdict;
 
 pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
+pub use latent::LatentCells;
 pub use measurement::{Measurement, RegionSource, SeenRegion};
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
 pub use verdict::{Verdict, VerdictKind};
@@ -309,6 +311,8 @@ pub struct Fit {
     pub doubts: Vec<String>,
     /// Number of iterations.
     pub iterations: usize,
+    /// Velocities that count less than half, because nothing explains them.
+    pub downweighted: usize,
     /// Penalised objective at the end, in units of the noise variance.
     pub objective: f64,
     /// The objective that a good fit is expected to reach (data minus parameters).

@@ -4,9 +4,9 @@ use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
     BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid, FlowWindow,
-    GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, MeanRemoved, Measurement,
-    NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult, Quantity,
-    RegionSource, RunRecord, SeenRegion, Transitions, Verdict, VerdictKind,
+    GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells, MeanRemoved,
+    Measurement, NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult,
+    Quantity, RegionSource, RunRecord, SeenRegion, Transitions, Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -152,6 +152,7 @@ pub fn report() -> InferReport {
             certain: 648,
             uncertain: 141,
             outside: 11,
+            latent: Some(LatentCells { inserted: 3, deleted: 1, split: 1, merged: 0, missed_rate: 0.02 }),
         },
         flow: None,
         constraints: GivenConstraints {
@@ -212,6 +213,7 @@ pub fn report() -> InferReport {
             doubtful: Vec::new(),
             doubts: Vec::new(),
             iterations: 17,
+            downweighted: 2,
             objective: 871.0,
             expected_objective: 856.0,
             trace: (0..18).map(|step| 870.0 + 29_000.0 * (-0.7 * f64::from(step)).exp()).collect(),

@@ -13,6 +13,7 @@ pub(crate) mod browser;
 mod constraints;
 mod flow;
 pub(crate) mod implied;
+pub(crate) mod latent;
 mod measured;
 pub(crate) mod outcome;
 mod prepare;

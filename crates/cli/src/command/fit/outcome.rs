@@ -137,6 +137,7 @@ pub(crate) fn fit(prepared: &Prepared, result: &Inference, profiles: &[Profile])
         doubtful: doubts.iter().map(|(part, _)| (*part).to_owned()).collect(),
         doubts: doubts.into_iter().map(|(_, text)| text).collect(),
         iterations: result.steps as usize,
+        downweighted: result.frames.iter().flat_map(|frame| &frame.weights).filter(|w| **w < 0.5).count(),
         objective: result.objective,
         expected_objective: result.expected_objective,
         trace: result.trace.clone(),
@@ -150,7 +151,9 @@ pub(crate) fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts
     let mut left_out = BTreeMap::new();
     for observation in &prepared.observations {
         for datum in 0..observation.velocities.values().len() {
-            if let Some(reason) = reason_to_leave_out(observation, datum) {
+            if let Some(reason) =
+                reason_to_leave_out(observation, datum).filter(|_| counts(observation, datum))
+            {
                 *left_out.entry(reason.to_owned()).or_insert(0) += 1;
             }
         }
@@ -160,7 +163,10 @@ pub(crate) fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts
 
 /// What was seen of the tissue.
 pub(crate) fn measurement(prepared: &Prepared) -> Measurement {
-    let judged = prepared.observations.iter().flat_map(|observation| &observation.visibility);
+    let judged = prepared.observations.iter().flat_map(|observation| {
+        let seen = |(cell, own): (usize, _)| observation.is_seen(cell).then_some(own);
+        observation.visibility.iter().enumerate().filter_map(seen)
+    });
     let count = |class: Certainty| judged.clone().filter(|own| own.certainty() == class).count();
     Measurement {
         field_of_view: prepared.observations.first().and_then(|observation| {
@@ -173,7 +179,13 @@ pub(crate) fn measurement(prepared: &Prepared) -> Measurement {
         certain: count(Certainty::Certain),
         uncertain: count(Certainty::Uncertain),
         outside: count(Certainty::Outside),
+        latent: prepared.latent_cells(),
     }
+}
+
+/// Whether something was detected where a velocity would be.
+fn counts(observation: &Observation, datum: usize) -> bool {
+    matches!(observation.velocities, Velocities::OnGrid(_)) || observation.is_seen(datum)
 }
 
 /// Why the velocity of a cell or at a grid point was not used, if it was not.

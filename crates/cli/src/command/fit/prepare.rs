@@ -8,7 +8,7 @@ use crate::run::Run;
 use crate::snapshot::{Snapshot, domain};
 use voronudge_geometry::{Domain, PeriodicBox, Vector, Visibility, areas};
 use voronudge_infer::{
-    Constraints, Error, Inference, KnownNoise, Method, Observation, Request, Scale, Velocities,
+    Completion, Constraints, Error, Inference, KnownNoise, Method, Observation, Request, Scale, Velocities,
 };
 use voronudge_io::{DataSet, Noise};
 use voronudge_report::infer_report::{MeanRemoved, NoiseSource};
@@ -29,7 +29,10 @@ pub(crate) struct Question<'a> {
 pub(crate) struct Prepared {
     pub frames: Vec<usize>,
     pub snapshots: Vec<Snapshot>,
+    /// The frames as they are fitted: completed, if that was asked for.
     pub observations: Vec<Observation>,
+    /// What was wrong with the detections, if that was looked for.
+    pub completion: Option<Completion>,
     pub request: Request,
     pub scale: Scale,
     pub mean_removed: MeanRemoved,
@@ -45,12 +48,14 @@ pub(crate) struct Prepared {
 impl Prepared {
     /// Nudged positions of one frame in the units of the data.
     pub fn nudged_positions(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
-        result.frames[index].nudged_positions.iter().map(|r| r * self.scale.length).collect()
+        let nudged = result.frames[index].nudged_positions.iter();
+        self.of_detections(index, nudged.map(|r| r * self.scale.length).collect())
     }
 
     /// Predicted velocities of the cells of one frame.
     pub fn predicted(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
-        result.frames[index].predicted.iter().map(|v| v * self.scale.velocity()).collect()
+        let predicted = result.frames[index].predicted.iter();
+        self.of_detections(index, predicted.map(|v| v * self.scale.velocity()).collect())
     }
 
     /// The data of one frame as the model predicts them, of cells or on the grid; NaN out of its reach.
@@ -74,7 +79,10 @@ impl Prepared {
         for ((datum, _), rest) in observation.targets().zip(rests) {
             field[datum] = rest;
         }
-        field
+        match observation.velocities {
+            Velocities::OfCells(_) => self.of_detections(index, field),
+            Velocities::OnGrid(_) => field,
+        }
     }
 
     /// Says in which file and frame a fault lies, with the cell as the file numbers it.
@@ -159,6 +167,7 @@ impl Question<'_> {
             frames,
             snapshots,
             observations,
+            completion: None,
             request,
             scale,
             mean_removed,

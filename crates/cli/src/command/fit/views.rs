@@ -50,10 +50,7 @@ pub(crate) fn flow_map<'f>(
 pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameView {
     let (observation, frame) = (&prepared.observations[index], &result.frames[index]);
     let scale = &prepared.scale;
-    let wrapped = |r: Vector<f64>| match observation.tessellation.domain() {
-        Domain::Periodic(cell_box) => cell_box.wrap(r),
-        Domain::Open => r,
-    };
+    let wrapped = |r: Vector<f64>| observation.tessellation.domain().wrap(r);
     let length = |r: Vector<f64>| [r.x * scale.length, r.y * scale.length];
     let velocity = |v: Vector<f64>| [v.x * scale.velocity(), v.y * scale.velocity()];
     let on_grid = prepared.velocities.flow().is_some();
@@ -79,7 +76,11 @@ pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) 
                 },
                 area: if closed { shape.area * scale.length * scale.length } else { f64::NAN },
                 perimeter: if closed { shape.perimeter * scale.length } else { f64::NAN },
-                status: if used { CellStatus::Used } else { CellStatus::LeftOut },
+                status: match observation.is_seen(cell) {
+                    false => CellStatus::NotDetected,
+                    true if used => CellStatus::Used,
+                    true => CellStatus::LeftOut,
+                },
                 measured: target.map(velocity),
                 predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
                 held_out: if on_grid { None } else { frame.held_out[cell].map(velocity) },

@@ -8,7 +8,9 @@ mod report;
 mod summary;
 mod verdict;
 
-use super::fit::{ConstraintArguments, Measured, Question, SnapshotArguments, arrays, browser, words};
+use super::fit::{
+    ConstraintArguments, Measured, Question, SnapshotArguments, arrays, browser, latent, words,
+};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -24,7 +26,7 @@ use voronudge_io::{Difference, OutputDirectory};
 ///
 /// Velocities are read from the data set, of cells or on a grid, or derived from its tracked positions. Writes
 /// report.json, report.html, nudged_positions.npy, predicted_velocities.npy and residual_velocities.npy (for a flow field
-/// predicted_flow.npy and residual_flow.npy).
+/// predicted_flow.npy and residual_flow.npy), and latent_cells.npy, the cells that were not detected.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -35,6 +37,8 @@ pub(crate) struct Arguments {
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
+    #[command(flatten)]
+    latent: latent::LatentArguments,
     #[command(flatten)]
     known: ConstraintArguments,
     #[command(flatten)]
@@ -48,6 +52,7 @@ pub(crate) struct Arguments {
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("infer", &arguments.common)?;
     arguments.snapshots.check()?;
+    arguments.latent.check()?;
     let constraints = arguments.known.constraints()?;
     let method = arguments.method.method()?;
     arguments.uncertainty.check(&constraints)?;
@@ -64,10 +69,13 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let seed = arguments.common.seed;
     let question =
         Question { arguments: &arguments.snapshots, data: &data, constraints, method, seed, scale: None };
-    let prepared = question.prepare(velocities, frames, &mut run)?;
+    let mut prepared = question.prepare(velocities, frames, &mut run)?;
     let mut progress = Progress::new(arguments.common.verbosity());
-    let fitted = infer(&prepared.observations, &prepared.request, &mut |state| {
-        progress.step(state.stage, state.step.0, state.step.1)
+    let completed = arguments.latent.complete(&mut prepared, &mut progress);
+    let fitted = completed.and_then(|()| {
+        infer(&prepared.observations, &prepared.request, &mut |state| {
+            progress.step(state.stage, state.step.0, state.step.1)
+        })
     });
     let answered = fitted.and_then(|result| {
         let answers = arguments.uncertainty.ask(&prepared, &result, &mut progress)?;
@@ -78,6 +86,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
+    latent::write(&mut out, &data, &prepared, &result)?;
     let report = report::report(&run, &data, &prepared, &result, &answers);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;

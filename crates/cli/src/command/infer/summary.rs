@@ -86,8 +86,27 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         significant(report.nudge.degrees_of_freedom, 3),
         report.nudge.edges_changed
     );
+    text.push_str(&detections(report));
     let _ = writeln!(text, "\nfigures in {}", folder.join("report.html").display());
     text
+}
+
+/// What was wrong with detections, if anything was.
+fn detections(report: &InferReport) -> String {
+    let Some(found) = &report.measurement.latent else {
+        return String::new();
+    };
+    let told: Vec<String> = [
+        (found.inserted, "put in where none was detected"),
+        (found.deleted, "taken away"),
+        (found.split, "split into two"),
+        (found.merged, "merged from two"),
+    ]
+    .into_iter()
+    .filter(|(count, _)| *count > 0)
+    .map(|(count, what)| format!("{count} {what}"))
+    .collect();
+    if told.is_empty() { String::new() } else { format!("cells         {}\n", told.join(", ")) }
 }
 
 /// Intervals of profiles and of the bootstrap, a line each.

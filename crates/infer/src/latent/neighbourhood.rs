@@ -1,0 +1,283 @@
+//! The cells around a place, in coordinates that do not jump: what a change there does to the velocities nearby.
+
+use super::law::{Law, deviance, weight};
+use super::polygons::size_around;
+use super::scene::{Cell, Scene};
+use crate::flow::Sampling;
+use crate::objective::Nudged;
+use crate::{Error, Flow, Velocities};
+use nalgebra::{DMatrix, DVector, Matrix2};
+use std::sync::Arc;
+use voronudge_geometry::{CellPolygon, Domain, Grid, Tessellation, Vector, Visibility, areas, circumcentre};
+
+/// Distance from the centre within which velocities are compared, in ℓ₀: two rings around a cell that moves.
+const COMPARED: f64 = 3.0;
+
+/// Distance within which cells shape those.
+const CONTEXT: f64 = 5.4;
+
+/// Gain that ends a placement, in −2 log likelihood.
+const SMALL_GAIN: f64 = 0.05;
+
+/// Longest step of a placement, in ℓ₀: what a linearisation is worth.
+const LONGEST_STEP: f64 = 0.3;
+
+/// Damping at first, and beyond which no step is short enough.
+const DAMPING: [f64; 2] = [1e-2, 1e4];
+
+/// Cells around a place.
+pub(super) struct Neighbourhood {
+    pub cells: Vec<Cell>,
+    pub positions: Vec<Vector<f64>>,
+    /// Who is whose neighbour as things are.
+    pub tessellation: Tessellation,
+    /// Data that are compared, and what is to be explained: of a cell, or of a point of the grid.
+    targets: Vec<(usize, Vector<f64>)>,
+    flow: Option<Flow>,
+}
+
+/// A velocity nearby and what the law leaves of it.
+struct Row {
+    residual: Vector<f64>,
+    variance: f64,
+    /// Derivatives by the free positions.
+    by_free: Vec<Matrix2<f64>>,
+}
+
+/// Free cells with a normal prior of their places.
+#[derive(Debug, Clone)]
+pub(super) struct Guess {
+    /// Where they are looked for first.
+    pub start: Vec<Vector<f64>>,
+    /// Where they are expected.
+    pub places: Vec<Vector<f64>>,
+    /// Standard deviation of a coordinate about those.
+    pub spread: f64,
+    /// What the velocity of the only one is to be.
+    pub target: Option<Vector<f64>>,
+}
+
+/// Free cells at the places that suit the velocities best.
+#[derive(Debug, Clone)]
+pub(super) struct Placed {
+    pub positions: Vec<Vector<f64>>,
+    /// Deviance of the velocities nearby.
+    pub deviance: f64,
+    /// `Σ ‖z − z₀‖² / s²`
+    pub prior: f64,
+    /// Information of the velocities on the coordinates.
+    pub information: DMatrix<f64>,
+}
+
+impl Neighbourhood {
+    /// Around a place, with one of the changes undone, without some further detections.
+    pub fn new(
+        scene: &Scene<'_>,
+        centre: Vector<f64>,
+        undone: Option<usize>,
+        without: &[usize],
+    ) -> Result<Self, Error> {
+        let (mut cells, mut positions, mut targets) = (Vec::new(), Vec::new(), Vec::new());
+        for cell in scene.cells(undone, without) {
+            let d = scene.from_to(centre, cell.position);
+            if d.norm_squared() < CONTEXT * CONTEXT {
+                if let Some(target) = cell.target.filter(|_| d.norm_squared() < COMPARED * COMPARED) {
+                    targets.push((cells.len(), target));
+                }
+                cells.push(cell);
+                positions.push(centre + d);
+            }
+        }
+        let tessellation = tessellate(&positions)?;
+        let flow = match &scene.measured.velocities {
+            Velocities::OfCells(_) => None,
+            Velocities::OnGrid(flow) => around(scene, flow, centre, &mut targets),
+        };
+        Ok(Self { cells, positions, tessellation, targets, flow })
+    }
+
+    /// The velocities nearby with free cells.
+    fn rows(
+        &self,
+        law: &Law<'_>,
+        free: &[Vector<f64>],
+        target: Option<Vector<f64>>,
+    ) -> Result<Vec<Row>, Error> {
+        let fixed = self.positions.len();
+        let positions: Vec<Vector<f64>> = self.positions.iter().chain(free).copied().collect();
+        let tessellation = if free.is_empty() { self.tessellation.clone() } else { tessellate(&positions)? };
+        let sampling = self.flow.as_ref().map(|flow| {
+            Sampling::new(flow, &tessellation, &positions, &vec![Visibility::Counted; positions.len()])
+        });
+        let nudged = Nudged::placed(law.structure, Arc::default(), positions, tessellation, sampling);
+        let evaluated = nudged.evaluate(law.coefficients);
+        let jacobian = nudged.jacobian(law.coefficients, &evaluated);
+        let of_cell = |cell: usize| self.cells.get(cell).and_then(|cell| cell.variance);
+        let own = target.map(|target| (fixed, target));
+        Ok((self.targets.iter().copied().chain(own))
+            .map(|(datum, target)| {
+                let mut by_free = vec![Matrix2::zeros(); free.len()];
+                for (column, b) in jacobian.row(datum).filter(|(column, _)| *column >= fixed) {
+                    by_free[column - fixed] = Matrix2::new(b[0], b[1], b[2], b[3]);
+                }
+                Row {
+                    residual: target - evaluated.predicted[datum],
+                    variance: law.variance(&jacobian, datum, of_cell),
+                    by_free,
+                }
+            })
+            .collect())
+    }
+
+    /// Deviance of the velocities nearby as things are.
+    pub fn deviance(&self, law: &Law<'_>) -> Result<f64, Error> {
+        Ok(total(&self.rows(law, &[], None)?))
+    }
+
+    /// Damped Gauss–Newton on the places of free cells, the coefficients held. Steps are counted by evaluations.
+    pub fn place(&self, law: &Law<'_>, guess: &Guess, steps: usize) -> Result<Placed, Error> {
+        let stiffness = guess.spread.powi(-2);
+        let from_prior = |z: &[Vector<f64>]| -> f64 {
+            z.iter().zip(&guess.places).map(|(z, at)| (z - at).norm_squared()).sum::<f64>() * stiffness
+        };
+        let mut z = guess.start.clone();
+        let mut rows = self.rows(law, &z, guess.target)?;
+        let mut value = total(&rows) + from_prior(&z);
+        let (mut damping, mut done) = (DAMPING[0], 1);
+        let mut normal = Normal::new(&rows, z.len());
+        while done < steps && damping < DAMPING[1] && !z.is_empty() {
+            let Some(delta) = normal.step(&z, guess, stiffness, damping) else { break };
+            let trial: Vec<Vector<f64>> = z.iter().zip(&delta).map(|(z, d)| z + d).collect();
+            done += 1;
+            let other = self.rows(law, &trial, guess.target);
+            let next = other.as_ref().map_or(f64::INFINITY, |rows| total(rows) + from_prior(&trial));
+            match other {
+                Ok(other) if next < value => {
+                    let small = value - next < SMALL_GAIN;
+                    (z, rows, value) = (trial, other, next);
+                    normal = Normal::new(&rows, z.len());
+                    damping = (0.2 * damping).max(1e-4);
+                    if small {
+                        break;
+                    }
+                }
+                _ => damping *= 6.0,
+            }
+        }
+        let prior = from_prior(&z);
+        Ok(Placed { positions: z, deviance: value - prior, prior, information: normal.information })
+    }
+
+    /// The largest empty circle that a place is in: its centre, and its radius in roots of the mean area of the cells around.
+    pub fn empty_circle(&self, place: Vector<f64>) -> Option<(Vector<f64>, f64)> {
+        let circles = self.tessellation.triangles().into_iter().map(|triangle| {
+            let [a, b, c] = triangle.cells.map(|cell| self.positions[cell as usize]);
+            let centre = circumcentre(b - a, c - a);
+            (a + centre, centre.norm(), triangle.cells.map(|cell| cell as usize))
+        });
+        let around = circles.filter(|(centre, radius, _)| (place - centre).norm() <= *radius);
+        let (centre, radius, cells) = around.max_by(|a, b| a.1.total_cmp(&b.1))?;
+        let areas = areas(&self.tessellation, &self.positions);
+        Some((centre, radius / size_around(&self.tessellation, &areas, &cells)))
+    }
+
+    /// The polygon of a cell.
+    pub fn polygon(&self, cell: usize) -> Option<CellPolygon<f64>> {
+        self.tessellation.is_closed(cell).then(|| {
+            let mut polygon = CellPolygon::default();
+            polygon.fill(&self.tessellation, &self.positions, cell);
+            polygon
+        })
+    }
+}
+
+fn tessellate(positions: &[Vector<f64>]) -> Result<Tessellation, Error> {
+    Tessellation::new(positions, Domain::Open).map_err(|source| Error::Geometry { frame: 0, source })
+}
+
+fn total(rows: &[Row]) -> f64 {
+    let sum: f64 = rows.iter().map(|row| deviance(row.residual.norm_squared(), row.variance)).sum();
+    if sum.is_nan() { f64::INFINITY } else { sum }
+}
+
+/// The normal equations of the free places.
+struct Normal {
+    information: DMatrix<f64>,
+    gradient: DVector<f64>,
+}
+
+impl Normal {
+    fn new(rows: &[Row], free: usize) -> Self {
+        let (mut information, mut gradient) = (DMatrix::zeros(2 * free, 2 * free), DVector::zeros(2 * free));
+        for row in rows {
+            let w = weight(row.residual.norm_squared(), row.variance);
+            for (i, a) in row.by_free.iter().enumerate() {
+                let mut slope = gradient.fixed_rows_mut::<2>(2 * i);
+                slope += a.transpose() * row.residual * w;
+                for (j, b) in row.by_free.iter().enumerate() {
+                    let mut block = information.fixed_view_mut::<2, 2>(2 * i, 2 * j);
+                    block += a.transpose() * b * w;
+                }
+            }
+        }
+        Self { information, gradient }
+    }
+
+    fn step(
+        &self,
+        z: &[Vector<f64>],
+        guess: &Guess,
+        stiffness: f64,
+        damping: f64,
+    ) -> Option<Vec<Vector<f64>>> {
+        let (mut hessian, mut gradient) = (self.information.clone(), self.gradient.clone());
+        for (i, (z, at)) in z.iter().zip(&guess.places).enumerate() {
+            let mut slope = gradient.fixed_rows_mut::<2>(2 * i);
+            slope -= (z - at) * stiffness;
+        }
+        for i in 0..2 * z.len() {
+            hessian[(i, i)] = (hessian[(i, i)] + stiffness) * (1.0 + damping);
+        }
+        let delta = hessian.cholesky()?.solve(&gradient);
+        let shorter = (LONGEST_STEP / delta.amax().max(f64::MIN_POSITIVE)).min(1.0);
+        Some((0..z.len()).map(|i| Vector::new(delta[2 * i], delta[2 * i + 1]) * shorter).collect())
+    }
+}
+
+/// The part of a grid around a place, in the coordinates of that place, with what is to be explained there. Where a grid does
+/// not go on evenly across a periodic box, it ends.
+fn around(
+    scene: &Scene<'_>,
+    flow: &Flow,
+    centre: Vector<f64>,
+    targets: &mut Vec<(usize, Vector<f64>)>,
+) -> Option<Flow> {
+    let (spacing, size, origin) = (flow.grid.spacing(), flow.grid.size(), flow.grid.centre(0));
+    let lengths = match scene.measured.tessellation.domain() {
+        Domain::Periodic(cell_box) if cell_box.offset() == 0.0 => Some(cell_box.lengths()),
+        _ => None,
+    };
+    let axis = |axis: usize| {
+        let (first, last) = (
+            ((centre[axis] - COMPARED - origin[axis]) / spacing[axis]).ceil() as i64,
+            ((centre[axis] + COMPARED - origin[axis]) / spacing[axis]).floor() as i64,
+        );
+        let even = lengths
+            .is_some_and(|lengths| (size[axis] as f64 * spacing[axis] / lengths[axis] - 1.0).abs() < 1e-6);
+        let on_grid =
+            |k: i64| (even || (0..size[axis] as i64).contains(&k)).then(|| k.rem_euclid(size[axis] as i64));
+        (first..=last).map(|k| (k, on_grid(k))).collect::<Vec<_>>()
+    };
+    let [columns, rows] = [axis(0), axis(1)];
+    let ((first_column, _), (first_row, _)) = (columns.first()?, rows.first()?);
+    let corner = [origin.x + *first_column as f64 * spacing[0], origin.y + *first_row as f64 * spacing[1]];
+    let grid = Grid::new(corner, spacing, [columns.len(), rows.len()]).ok()?;
+    let places = rows.iter().flat_map(|row| columns.iter().map(move |column| (column.1, row.1)));
+    for (own, place) in places.enumerate() {
+        if let (Some(column), Some(row)) = place {
+            let datum = row as usize * size[0] + column as usize;
+            targets.extend(scene.targets[datum].map(|target| (own, target)));
+        }
+    }
+    Some(Flow { grid, velocities: vec![None; grid.len()], window: flow.window })
+}

@@ -1,0 +1,181 @@
+//! A frame while it is being completed: what was detected, what is thought to be wrong with it, and what follows.
+
+use super::law::Law;
+use super::{Change, ChangeKind};
+use crate::{Error, Observation, Velocities};
+use voronudge_geometry::Vector;
+
+/// Where a cell of a completed frame comes from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Origin {
+    /// A detection, by its number in the frame.
+    Detected(usize),
+    /// Put in by a change: which, and the place among its cells.
+    Added(usize, usize),
+}
+
+/// A cell as it is thought to be.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Cell {
+    pub origin: Origin,
+    pub position: Vector<f64>,
+    /// What the model is to explain, for velocities of cells.
+    pub target: Option<Vector<f64>>,
+    /// `(σ_i / σ_r)²` of a measured position.
+    pub variance: Option<f64>,
+}
+
+/// A frame with its changes.
+#[derive(Debug, Clone)]
+pub(super) struct Scene<'a> {
+    pub measured: &'a Observation,
+    pub changes: Vec<Change>,
+    /// The frame with the changes made.
+    pub observation: Observation,
+    /// Where its cells come from.
+    pub origins: Vec<Origin>,
+    /// The measured data without their background, as the model is to explain them.
+    pub targets: Vec<Option<Vector<f64>>>,
+    /// Squared residuals in units of their variance, of the data of the completed frame that count.
+    pub squares: Vec<(Vector<f64>, f64)>,
+}
+
+impl<'a> Scene<'a> {
+    /// A frame as detected.
+    pub fn new(measured: &'a Observation) -> Self {
+        Self {
+            measured,
+            changes: Vec::new(),
+            observation: measured.clone(),
+            origins: (0..measured.positions.len()).map(Origin::Detected).collect(),
+            targets: Vec::new(),
+            squares: Vec::new(),
+        }
+    }
+
+    /// Makes other changes.
+    pub fn change(&mut self, changes: Vec<Change>) -> Result<(), Error> {
+        let taken = |cell: &usize| changes.iter().any(|change| change.removed.contains(cell));
+        let kept: Vec<usize> = (0..self.measured.positions.len()).filter(|cell| !taken(cell)).collect();
+        let added = changes.iter().enumerate().flat_map(|(index, change)| {
+            change.added.iter().enumerate().map(move |(place, position)| (index, place, *position))
+        });
+        let mut origins: Vec<Origin> = kept.iter().copied().map(Origin::Detected).collect();
+        let mut positions: Vec<Vector<f64>> =
+            kept.iter().map(|cell| self.measured.positions[*cell]).collect();
+        for (index, place, position) in added {
+            origins.push(Origin::Added(index, place));
+            positions.push(position);
+        }
+        let velocities = match &self.measured.velocities {
+            Velocities::OnGrid(flow) => Velocities::OnGrid(flow.clone()),
+            Velocities::OfCells(all) => {
+                let of = |origin: &Origin| match *origin {
+                    Origin::Detected(cell) => all[cell],
+                    Origin::Added(index, _) => mean_velocity(&changes[index], all),
+                };
+                Velocities::OfCells(origins.iter().map(of).collect())
+            }
+        };
+        self.observation = self.measured.with_cells(&kept, positions, velocities)?;
+        (self.origins, self.changes) = (origins, changes);
+        Ok(())
+    }
+
+    /// Looks at the velocities with some coefficients.
+    pub fn explain(&mut self, law: &Law<'_>) {
+        let judged = law.judge(&self.observation);
+        self.targets = vec![None; self.measured.velocities.values().len()];
+        for row in &judged {
+            let target = Some(row.predicted + row.residual);
+            match (&self.measured.velocities, self.origins.get(row.datum)) {
+                (Velocities::OnGrid(_), _) => self.targets[row.datum] = target,
+                (Velocities::OfCells(_), Some(Origin::Detected(cell))) => self.targets[*cell] = target,
+                _ => {}
+            }
+        }
+        // What a change takes away is to be explained if the change is undone.
+        if let Velocities::OfCells(all) = &self.measured.velocities {
+            for cell in self.changes.iter().flat_map(|change| &change.removed) {
+                self.targets[*cell] = all[*cell];
+            }
+        }
+        let of = |row: &super::law::Judged| {
+            (self.observation.place(row.datum), row.residual.norm_squared() / row.variance)
+        };
+        self.squares = judged.iter().map(of).collect();
+    }
+
+    /// The cells, with one of the changes undone, without some further detections.
+    pub fn cells(&self, undone: Option<usize>, without: &[usize]) -> Vec<Cell> {
+        let own = self.origins.iter().zip(&self.observation.positions).filter(|(origin, _)| match origin {
+            Origin::Detected(cell) => !without.contains(cell),
+            Origin::Added(index, _) => Some(*index) != undone,
+        });
+        let mut cells: Vec<Cell> = own.map(|(origin, position)| self.cell(*origin, *position)).collect();
+        let restored = undone.map(|index| &self.changes[index].removed).into_iter().flatten();
+        for cell in restored.filter(|cell| !without.contains(cell)) {
+            cells.push(self.cell(Origin::Detected(*cell), self.measured.positions[*cell]));
+        }
+        cells
+    }
+
+    fn cell(&self, origin: Origin, position: Vector<f64>) -> Cell {
+        match origin {
+            Origin::Detected(cell) => Cell {
+                origin,
+                position,
+                target: self.cells_target(cell),
+                variance: Some(self.measured.stiffness(cell)).filter(|m| *m > 0.0).map(f64::recip),
+            },
+            Origin::Added(index, _) => Cell {
+                origin,
+                position,
+                target: self.joint_target(&self.changes[index].removed, self.changes[index].added.len()),
+                variance: None,
+            },
+        }
+    }
+
+    /// The velocity to be explained of a detection.
+    pub fn cells_target(&self, detection: usize) -> Option<Vector<f64>> {
+        let of_cells = matches!(self.measured.velocities, Velocities::OfCells(_));
+        self.targets.get(detection).copied().flatten().filter(|_| of_cells)
+    }
+
+    /// The velocity to be explained of a cell that stands for several detections.
+    pub fn joint_target(&self, removed: &[usize], added: usize) -> Option<Vector<f64>> {
+        if removed.len() < 2 || added != 1 {
+            return None;
+        }
+        mean(removed.iter().map(|cell| self.cells_target(*cell)))
+    }
+
+    /// The shortest way from one place to another.
+    pub fn from_to(&self, from: Vector<f64>, to: Vector<f64>) -> Vector<f64> {
+        self.measured.tessellation.domain().shortest(to - from)
+    }
+
+    /// Share of squared residuals near a place, each counted by its logarithm.
+    pub fn unexplained(&self, place: Vector<f64>, radius: f64) -> f64 {
+        self.squares
+            .iter()
+            .filter(|(at, _)| self.from_to(place, *at).norm_squared() < radius * radius)
+            .map(|(_, square)| (square / super::law::FREEDOM).ln_1p())
+            .sum()
+    }
+}
+
+/// The velocity of a cell that stands for several detections: their mean.
+fn mean_velocity(change: &Change, all: &[Option<Vector<f64>>]) -> Option<Vector<f64>> {
+    match change.kind {
+        ChangeKind::Merged => mean(change.removed.iter().map(|cell| all[*cell])),
+        _ => None,
+    }
+}
+
+/// The mean of velocities that are all there.
+fn mean(velocities: impl Iterator<Item = Option<Vector<f64>>>) -> Option<Vector<f64>> {
+    let all: Vec<Vector<f64>> = velocities.collect::<Option<_>>()?;
+    Some(all.iter().sum::<Vector<f64>>() / all.len().max(1) as f64)
+}

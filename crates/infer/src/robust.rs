@@ -1,0 +1,114 @@
+//! Velocities that nothing explains: what is left of faulty data does not decide a parameter.
+//!
+//! A velocity is taken for one of a contaminated normal distribution, with a share η of errors that are κ times larger. Its
+//! residual is judged as the error of its prediction from all other data: with G = J_i (wJᵀJ + kHᵀH)⁻¹ J_iᵀ,
+//!
+//! ```text
+//! q = r̂ᵀ (1 − wG)⁻¹ (1 + G(1 − wG)⁻¹)⁻¹ (1 − wG)⁻¹ r̂ / σ_v²
+//! ```
+//!
+//! The weight is that of the posterior, `w = 1 − p (1 − κ⁻²)`, with the probability p of a large error; η follows from all
+//! velocities together. Where no velocity is more likely faulty than not, the fit stays as it is, and so do its intervals.
+
+use crate::least_squares::residuals;
+use crate::objective::Objective;
+use crate::{Error, Observation};
+use nalgebra::Matrix2;
+use rayon::prelude::*;
+use voronudge_geometry::Vector;
+
+/// κ²: variance of the errors of faulty velocities, in units of that of the others.
+const VARIANCE: f64 = 100.0;
+
+/// η lies between one half of a velocity and this share.
+const LARGEST_SHARE: f64 = 0.1;
+
+/// Steps of the estimate of η.
+const STEPS: usize = 20;
+
+/// Squared residual, in units of σ_v², below which a velocity is sound without looking at its leverage.
+const SOUND: f64 = 2.0;
+
+/// Median of χ²₂.
+const MEDIAN: f64 = 1.386_294_361_119_890_6;
+
+/// The frames with weights of their velocities about a fit; `None` if they are all sound and already count as that.
+pub(crate) fn reweighed(objective: &Objective<'_>, at: &[f64]) -> Result<Option<Vec<Observation>>, Error> {
+    let squares: Vec<Vec<(usize, f64)>> = squares(objective, at)?;
+    let mut all: Vec<f64> = squares.iter().flatten().map(|(_, square)| *square).collect();
+    if all.is_empty() {
+        return Ok(None);
+    }
+    let count = all.len() as f64;
+    let middle = all.len() / 2;
+    let median = *all.select_nth_unstable_by(middle, f64::total_cmp).1;
+    // Where the model misses more than the noise explains, the misfit counts as noise.
+    let scale = (median / MEDIAN).max(1.0);
+    let fault = |square: f64, share: f64| {
+        let ratio = share / (1.0 - share) / VARIANCE * (0.5 * square / scale * (1.0 - 1.0 / VARIANCE)).exp();
+        if ratio.is_finite() { ratio / (1.0 + ratio) } else { 1.0 }
+    };
+    let mut share = 0.01;
+    for _ in 0..STEPS {
+        let sum: f64 = all.iter().map(|square| fault(*square, share)).sum();
+        share = (sum / count).clamp(0.5 / count, LARGEST_SHARE);
+    }
+    let any = all.iter().any(|square| fault(*square, share) > 0.5);
+    let weighted = objective.frames.iter().any(Observation::is_weighted);
+    if !any && !weighted {
+        return Ok(None);
+    }
+    let frames = objective.frames.iter().zip(&squares).map(|(frame, squares)| {
+        let mut weights = vec![1.0; frame.velocities.values().len()];
+        for (datum, square) in squares {
+            weights[*datum] = 1.0 - fault(*square, share) * (1.0 - 1.0 / VARIANCE);
+        }
+        frame.clone().with_weights(weights)
+    });
+    Ok(Some(frames.collect()))
+}
+
+/// q of each velocity, by frame.
+fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)>>, Error> {
+    let (free, nudges) = objective.split(at);
+    let coefficients = objective.space.coefficients(free);
+    let equations = objective.linearise(at)?;
+    let variance = objective.levels.velocity.powi(2);
+    (objective.frames.par_iter().zip(&nudges).zip(&equations.frames).enumerate())
+        .map(|(index, ((frame, nudges), linearised))| {
+            let nudged = objective.place(index, nudges)?;
+            let evaluated = nudged.evaluate(coefficients.as_slice());
+            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
+            let factor = linearised.factor(objective.spring())?;
+            let mut right = vec![0.0; 2 * nudges.len()];
+            let mut square = |datum: usize, rest: Vector<f64>| {
+                let plain = rest.norm_squared() / variance;
+                if plain < SOUND {
+                    return plain;
+                }
+                right.iter_mut().for_each(|x| *x = 0.0);
+                let (along_x, along_y) = right.split_at_mut(nudges.len());
+                for (cell, b) in jacobian.row(datum) {
+                    along_x[2 * cell..2 * cell + 2].copy_from_slice(&b[..2]);
+                    along_y[2 * cell..2 * cell + 2].copy_from_slice(&b[2..]);
+                }
+                factor.solve(&mut right);
+                let mut g = Matrix2::zeros();
+                for (cell, b) in jacobian.row(datum) {
+                    for (column, solved) in right.chunks_exact(nudges.len()).enumerate() {
+                        let [x, y] = [solved[2 * cell], solved[2 * cell + 1]];
+                        g[(0, column)] += b[0] * x + b[1] * y;
+                        g[(1, column)] += b[2] * x + b[3] * y;
+                    }
+                }
+                let own = Matrix2::identity() - g * frame.weight(datum);
+                let Some(inverse) = own.try_inverse() else { return plain };
+                let error = inverse * rest;
+                let spread = Matrix2::identity() + g * inverse;
+                spread.try_inverse().map_or(plain, |inverse| error.dot(&(inverse * error)) / variance)
+            };
+            let rests = residuals(frame, &evaluated.predicted);
+            Ok(rests.into_iter().map(|(datum, rest)| (datum, square(datum, rest))).collect())
+        })
+        .collect()
+}

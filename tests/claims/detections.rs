@@ -1,0 +1,164 @@
+//! Cells hidden from a tissue are found, and nothing is found where nothing is hidden.
+
+use claims::{Noise, Tissue};
+use rand::SeedableRng;
+use rand::seq::SliceRandom;
+use rand_pcg::Pcg64;
+use std::ops::ControlFlow;
+use voronudge_geometry::{FieldOfView, Vector};
+use voronudge_infer::{ChangeKind, Completion, KnownNoise, Observation, Quantity, complete, infer};
+
+const NOISE: Noise = Noise { position: 0.01, velocity: 0.05 };
+const CELLS: usize = 144;
+
+/// Detections of a tissue, and the places of cells that have none.
+struct Detections {
+    tissue: Tissue,
+    observation: Observation,
+    hidden: Vec<Vector<f64>>,
+    merged: usize,
+    doubled: usize,
+}
+
+/// What a tracker makes of a tissue: some cells are not detected, some close pairs are one detection at their middle, some
+/// cells are two detections.
+fn detections(
+    seed: u64,
+    whole: &Observation,
+    tissue: Tissue,
+    [lost, merged, doubled]: [usize; 3],
+) -> Detections {
+    let domain = whole.tessellation.domain();
+    let mut order: Vec<usize> = (0..CELLS).collect();
+    order.shuffle(&mut Pcg64::seed_from_u64(seed));
+    let mut gone = order[..lost].to_vec();
+    let hidden = gone.iter().map(|cell| tissue.positions[*cell]).collect();
+    let mut positions = whole.positions.clone();
+    let mut values = whole.velocities.values().to_vec();
+    let mut merges = 0;
+    for &cell in order[lost..].iter().take(merged) {
+        let distance = |other: &u32| domain.shortest(positions[*other as usize] - positions[cell]).norm();
+        let nearest = whole.tessellation.neighbours(cell).iter();
+        let Some(&other) = nearest.min_by(|a, b| distance(a).total_cmp(&distance(b))) else { continue };
+        let other = other as usize;
+        if gone.contains(&cell) || gone.contains(&other) {
+            continue;
+        }
+        let middle = positions[cell] + domain.shortest(positions[other] - positions[cell]) * 0.5;
+        positions[cell] = middle;
+        values[cell] = values[cell].zip(values[other]).map(|(a, b)| (a + b) * 0.5);
+        gone.push(other);
+        merges += 1;
+    }
+    let mut again = Vec::new();
+    for (number, &cell) in order.iter().rev().filter(|cell| !gone.contains(cell)).take(doubled).enumerate() {
+        let angle = number as f64;
+        let aside = Vector::new(angle.cos(), angle.sin()) * 0.15;
+        again.push((positions[cell] + aside, values[cell]));
+        positions[cell] -= aside;
+    }
+    let kept: Vec<usize> = (0..CELLS).filter(|cell| !gone.contains(cell)).collect();
+    let doubled = again.len();
+    let at = kept.iter().map(|cell| positions[*cell]).chain(again.iter().map(|(r, _)| *r)).collect();
+    let velocities: Vec<_> =
+        kept.iter().map(|cell| values[*cell]).chain(again.iter().map(|(_, v)| *v)).collect();
+    let observation = Observation::new(0, at, velocities, domain, FieldOfView::default()).unwrap();
+    Detections { tissue, observation, hidden, merged: merges, doubled }
+}
+
+fn of_cells(seed: u64, faults: [usize; 3]) -> Detections {
+    let tissue = Tissue::new(CELLS, seed).unwrap();
+    let whole = tissue.measured(NOISE, seed).unwrap();
+    detections(seed, &whole, tissue, faults)
+}
+
+fn looked_over(set: &Detections) -> Completion {
+    let request = set.tissue.request(NOISE.known());
+    complete(&[set.observation.clone()], &request, None, &mut |_| ControlFlow::Continue(())).unwrap()
+}
+
+/// Hidden cells with an inserted one within half a cell, each counted once.
+fn recovered(set: &Detections, completion: &Completion) -> usize {
+    let domain = set.observation.tessellation.domain();
+    let mut inserted: Vec<Vector<f64>> = completion.frames[0]
+        .changes
+        .iter()
+        .filter(|change| change.kind == ChangeKind::Inserted)
+        .map(|change| change.added[0])
+        .collect();
+    let mut found = 0;
+    for hidden in &set.hidden {
+        if let Some(near) = inserted.iter().position(|r| domain.shortest(r - hidden).norm() < 0.5) {
+            inserted.swap_remove(near);
+            found += 1;
+        }
+    }
+    found
+}
+
+#[test]
+fn hidden_cells_are_found_and_no_others() {
+    let (mut hidden, mut found, mut inserted, mut errors, mut without) = (0, 0, 0, Vec::new(), Vec::new());
+    for seed in 1..=3 {
+        let set = of_cells(seed, [7, 0, 0]);
+        let completion = looked_over(&set);
+        hidden += set.hidden.len();
+        found += recovered(&set, &completion);
+        inserted += completion.count(ChangeKind::Inserted);
+        let request = set.tissue.request(NOISE.known());
+        let fit = |frame: &Observation| {
+            let fit = infer(&[frame.clone()], &request, &mut |_| ControlFlow::Continue(())).unwrap();
+            fit.parameters.chiral_coefficient.value / set.tissue.truth(Quantity::ChiralCoefficient)
+        };
+        errors.push((fit(&completion.frames[0].observation) - 1.0).abs());
+        without.push((fit(&set.observation) - 1.0).abs());
+    }
+    assert!(found as f64 >= 0.9 * f64::from(hidden as u32), "{found} of {hidden}");
+    assert!(found as f64 >= 0.95 * f64::from(inserted as u32), "{found} of {inserted} inserted");
+    errors.sort_unstable_by(f64::total_cmp);
+    without.sort_unstable_by(f64::total_cmp);
+    assert!(
+        errors[1] < 0.03 && errors[1] < without[1],
+        "{errors:?}, and with the detections alone {without:?}"
+    );
+}
+
+#[test]
+fn complete_detections_stay_as_they_are() {
+    for seed in 4..=6 {
+        let set = of_cells(seed, [0, 0, 0]);
+        let completion = looked_over(&set);
+        assert!(completion.frames[0].changes.is_empty(), "{:?}", completion.frames[0].changes);
+        assert_eq!(completion.frames[0].observation.positions, set.observation.positions);
+        assert!(completion.missed_rate < 0.01);
+    }
+}
+
+/// Two cells in one detection, and one cell in two.
+#[test]
+fn merged_and_split_detections_are_told_apart() {
+    let (mut merged, mut doubled, mut split, mut joined, mut other) = (0, 0, 0, 0, 0);
+    for seed in 1..=3 {
+        let set = of_cells(seed, [0, 3, 3]);
+        let completion = looked_over(&set);
+        merged += set.merged;
+        doubled += set.doubled;
+        split += completion.count(ChangeKind::Split);
+        joined += completion.count(ChangeKind::Merged) + completion.count(ChangeKind::Deleted);
+        other += completion.count(ChangeKind::Inserted);
+    }
+    assert!(merged >= 7 && split + 1 >= merged && split <= merged + 1, "{split} splits of {merged}");
+    assert!(joined + 1 >= doubled && joined <= doubled + 1, "{joined} joined of {doubled}");
+    assert!(other <= 2, "{other} inserted");
+}
+
+#[test]
+fn noise_levels_need_not_be_known() {
+    let set = of_cells(8, [7, 0, 0]);
+    let request = set.tissue.request(KnownNoise::default());
+    let completion =
+        complete(&[set.observation.clone()], &request, Some(0.05), &mut |_| ControlFlow::Continue(()))
+            .unwrap();
+    assert!(recovered(&set, &completion) >= 6);
+    assert_eq!(completion.missed_rate, 0.05);
+}
