@@ -4,6 +4,7 @@
 
 mod channel;
 mod mean_field;
+mod measured;
 mod moduli;
 mod recovery;
 mod spectrum;
