@@ -2,6 +2,7 @@
 //! project are made with.
 
 pub mod channel;
+pub mod measured;
 
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};

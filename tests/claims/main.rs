@@ -6,6 +6,7 @@ mod channel;
 mod detections;
 mod doubts;
 mod mean_field;
+mod measured;
 mod moduli;
 mod recovery;
 mod spectrum;

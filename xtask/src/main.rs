@@ -4,6 +4,7 @@ mod check;
 mod figures;
 mod fixtures;
 mod oracle;
+mod program;
 mod study;
 
 use clap::{Parser, Subcommand};

@@ -2,7 +2,7 @@
 
 use super::Panel;
 use std::error::Error;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::Command;
 
 /// What a command made.
@@ -16,7 +16,7 @@ pub(super) struct Output {
 /// Runs the tool in the root of the repository.
 pub(super) fn run(arguments: &str) -> Result<Output, Box<dyn Error>> {
     let folder = tempfile::tempdir()?;
-    let status = Command::new(program()?)
+    let status = Command::new(crate::program::path()?)
         .args(arguments.split_whitespace())
         .arg("--quiet")
         .arg("--out")
@@ -28,25 +28,6 @@ pub(super) fn run(arguments: &str) -> Result<Output, Box<dyn Error>> {
     }
     let page = std::fs::read_to_string(folder.path().join("report.html"))?;
     Ok(Output { folder, typed: format!("`voronudge {arguments}`"), page })
-}
-
-/// The tool, built with this program or by it.
-fn program() -> Result<PathBuf, Box<dyn Error>> {
-    let own = std::env::current_exe()?;
-    // target/release/xtask, or target/release/deps/xtask-… of the tests.
-    let beside = own.ancestors().skip(1).take(2).map(|folder| folder.join("voronudge"));
-    if let Some(found) = beside.into_iter().find(|path| path.is_file()) {
-        return Ok(found);
-    }
-    let root = crate::root();
-    let status = Command::new("cargo")
-        .args(["build", "--release", "--package", "voronudge"])
-        .current_dir(&root)
-        .status()?;
-    if !status.success() {
-        return Err("the tool cannot be built".into());
-    }
-    Ok(root.join("target/release/voronudge"))
 }
 
 impl Output {

@@ -4,6 +4,7 @@ mod channel;
 mod discover;
 mod doubts;
 pub(crate) mod flows;
+mod measured;
 mod nada;
 mod noise;
 mod phases;
@@ -23,7 +24,7 @@ pub struct Arguments {
     #[arg(value_enum)]
     which: Study,
     /// Number of seeds.
-    #[arg(long, default_value_t = 10)]
+    #[arg(long, visible_alias = "sets", default_value_t = 10)]
     seeds: u64,
     /// Only tissues of this many cells (nada, discover, spectrum).
     #[arg(long)]
@@ -43,6 +44,8 @@ pub struct Arguments {
     /// Synthetic data without an effect for each search (discover).
     #[arg(long, value_name = "COUNT")]
     null_sets: Option<usize>,
+    #[command(flatten)]
+    measured: measured::Arguments,
 }
 
 /// The studies there are.
@@ -74,6 +77,8 @@ enum Study {
     Pinching,
     /// What becomes of it in a liquid.
     PinchRelaxation,
+    /// The program on data as they are measured.
+    Measured,
 }
 
 /// Runs a study.
@@ -91,6 +96,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Edge => flows::edge(arguments.seeds),
         Study::Pinching => flows::pinching(arguments.seeds),
         Study::PinchRelaxation => pinch_relaxation::run(arguments.seeds),
+        Study::Measured => measured::run(&arguments.measured, arguments.seeds, arguments.cells),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

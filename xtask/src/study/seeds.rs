@@ -18,6 +18,15 @@ pub fn on_one_core_each<R: Send>(
     seeds: u64,
     task: impl Fn(u64) -> Result<R, Box<dyn std::error::Error>> + Sync,
 ) -> Result<Vec<R>, Box<dyn std::error::Error>> {
+    on_cores(std::thread::available_parallelism()?.get(), seeds, task)
+}
+
+/// The same on as many cores as are given.
+pub fn on_cores<R: Send>(
+    cores: usize,
+    seeds: u64,
+    task: impl Fn(u64) -> Result<R, Box<dyn std::error::Error>> + Sync,
+) -> Result<Vec<R>, Box<dyn std::error::Error>> {
     let next = std::sync::atomic::AtomicU64::new(0);
     let results = std::sync::Mutex::new(Vec::new());
     let work = || -> Result<(), String> {
@@ -32,9 +41,8 @@ pub fn on_one_core_each<R: Send>(
             results.lock().map_err(|_| "a thread failed")?.push((seed, result));
         }
     };
-    let threads = std::thread::available_parallelism()?.get();
     std::thread::scope(|scope| {
-        let handles: Vec<_> = (0..threads).map(|_| scope.spawn(work)).collect();
+        let handles: Vec<_> = (0..cores).map(|_| scope.spawn(work)).collect();
         handles
             .into_iter()
             .try_for_each(|handle| handle.join().unwrap_or_else(|_| Err("a thread failed".into())))

@@ -1,0 +1,89 @@
+//! A tissue in motion: what is there to be measured.
+
+use super::Motion;
+use std::error::Error;
+use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_model::{Model, Parameters};
+use voronudge_simulate::{RandomPlacement, Simulation, generator, recommended_time_step};
+
+/// Time before the first frame, in 1/K_P.
+const SETTLING: f64 = 10.0;
+/// Steps of the integration between frames are this much finer than those recommended, at least.
+const FINER: f64 = 4.0;
+/// Steps of the integration between two frames, at least.
+const STEPS: f64 = 20.0;
+
+/// Frames of a periodic tissue with a mean cell area of one.
+pub(super) struct Film {
+    /// The box.
+    pub cell_box: PeriodicBox,
+    /// Time between frames.
+    pub interval: f64,
+    /// Mean distance that a cell moves from the first frame to the second; 0 of a single frame.
+    pub mean_step: f64,
+    /// The frames.
+    pub frames: Vec<Frame>,
+}
+
+/// Sites, within the box, and their velocities.
+pub(super) struct Frame {
+    pub sites: Vec<Vector<f64>>,
+    pub velocities: Vec<Vector<f64>>,
+}
+
+impl Film {
+    /// A square tissue of this side, as many frames of it as the motion asks for.
+    pub fn new(
+        side: f64,
+        parameters: &Parameters<f64>,
+        seed: u64,
+        motion: Motion,
+    ) -> Result<Self, Box<dyn Error>> {
+        let cell_box = PeriodicBox::new([side; 2])?;
+        let cells = (side * side).round() as usize;
+        let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(1000 + seed))?;
+        let model = Model::chiral_voronoi(parameters);
+        let mut simulation = Simulation::new(start, Domain::Periodic(cell_box), model)?;
+        let recommended = recommended_time_step(parameters, 1.0);
+        for _ in 0..(SETTLING / recommended).ceil() as usize {
+            simulation.step(recommended)?;
+        }
+        let frame = |simulation: &Simulation| Frame {
+            sites: simulation.positions().iter().map(|site| cell_box.wrap(*site)).collect(),
+            velocities: simulation.velocities().to_vec(),
+        };
+        let mut film = Self { cell_box, interval: 1.0, mean_step: 0.0, frames: vec![frame(&simulation)] };
+        let Motion::Tracks { frames, step } = motion else {
+            return Ok(film);
+        };
+        let before = simulation.positions().to_vec();
+        let moved = |simulation: &Simulation| mean_norm(before.iter().zip(simulation.positions()));
+        let speed = simulation.velocities().iter().map(Vector::norm).sum::<f64>() / cells as f64;
+        let time_step = (recommended / FINER).min(step / speed / STEPS);
+        let mut steps = 0;
+        while moved(&simulation) < step {
+            simulation.step(time_step)?;
+            steps += 1;
+        }
+        film.interval = f64::from(steps) * time_step;
+        film.mean_step = moved(&simulation);
+        film.frames.push(frame(&simulation));
+        while film.frames.len() < frames {
+            for _ in 0..steps {
+                simulation.step(time_step)?;
+            }
+            film.frames.push(frame(&simulation));
+        }
+        Ok(film)
+    }
+}
+
+fn mean_norm<'a>(pairs: impl ExactSizeIterator<Item = (&'a Vector<f64>, &'a Vector<f64>)>) -> f64 {
+    let count = pairs.len() as f64;
+    pairs.map(|(a, b)| (b - a).norm()).sum::<f64>() / count
+}
+
+/// Root mean square of vectors.
+pub(super) fn root_mean_square(vectors: &[Vector<f64>]) -> f64 {
+    (vectors.iter().map(Vector::norm_squared).sum::<f64>() / vectors.len() as f64).sqrt()
+}

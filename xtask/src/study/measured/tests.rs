@@ -1,0 +1,48 @@
+//! Small sets of every class through the program.
+
+use super::record::{Fit, Record};
+use super::trial::{self, Program};
+use claims::measured::{CLASSES, Class};
+
+/// Of tissues this small.
+const CELLS: usize = 100;
+const SEED: u64 = 2;
+
+/// What the program is held to.
+enum Held {
+    /// Both parameters within this many standard errors, and K_P α within this share.
+    Right { deviation: f64, share: f64 },
+    /// A fit, whatever it says.
+    Answer,
+}
+
+const RIGHT: Held = Held::Right { deviation: 3.0, share: 0.1 };
+
+/// What each class is held to.
+fn held(class: &Class) -> Held {
+    match class.name {
+        "complete" | "open" | "flow-square" => RIGHT,
+        _ => Held::Answer,
+    }
+}
+
+fn fit(class: &Class) -> Fit {
+    let program = Program::new(None, "--fix K_A=0.1").unwrap();
+    let folder = tempfile::tempdir().unwrap();
+    let Record { fit, message, .. } =
+        trial::run(class, SEED, Some(CELLS), &program, false, folder.path()).unwrap();
+    fit.unwrap_or_else(|| panic!("{}: {message}", class.name))
+}
+
+#[test]
+fn small_sets_of_every_class() {
+    for class in CLASSES {
+        let fit = fit(&class);
+        let Held::Right { deviation, share } = held(&class) else { continue };
+        let (chiral, perimeter) = (fit.k_p_alpha, fit.p_0);
+        let told = format!("{}: {chiral:?} {perimeter:?}", class.name);
+        assert!(chiral.deviation() < deviation && perimeter.deviation() < deviation, "{told}");
+        assert!(chiral.error().abs() < share, "{told}");
+        assert!(fit.trustworthy, "{told}: {:?}", fit.doubts);
+    }
+}

@@ -1,0 +1,136 @@
+//! One set: made, given to the program as a user would, and compared with its truth.
+
+use super::latent;
+use super::record::{Discovery, Estimate, Fit, Record};
+use claims::measured::{Class, Truth, View};
+use serde_json::Value;
+use sha2::{Digest, Sha256};
+use std::error::Error;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::time::Instant;
+
+/// Digits of the hash of the program that are kept.
+const DIGITS: usize = 12;
+
+/// The program that is tried.
+pub struct Program {
+    path: PathBuf,
+    /// First digits of its SHA-256.
+    pub hash: String,
+    /// Options of its commands.
+    pub flags: String,
+}
+
+/// A run of the program.
+pub struct Run {
+    /// `report.json`; none if it wrote none.
+    pub report: Option<Value>,
+    pub seconds: f64,
+    /// What it said on stderr.
+    pub message: String,
+}
+
+impl Program {
+    pub fn new(path: Option<PathBuf>, flags: &str) -> Result<Self, Box<dyn Error>> {
+        let path = path.map_or_else(crate::program::path, Ok)?;
+        let digest = Sha256::digest(std::fs::read(&path)?);
+        let hash: String = digest.iter().map(|byte| format!("{byte:02x}")).collect();
+        Ok(Self { path, hash: hash[..DIGITS].into(), flags: flags.into() })
+    }
+
+    /// Runs a command on a data set, on one thread.
+    pub fn run(&self, command: &str, data: &Path, out: &Path) -> Result<Run, Box<dyn Error>> {
+        let report = out.join("report.json");
+        if out.exists() {
+            std::fs::remove_dir_all(out)?;
+        }
+        let begun = Instant::now();
+        let Output { stderr, status, .. } = Command::new(&self.path)
+            .arg(command)
+            .arg(data)
+            .args(self.flags.split_whitespace())
+            .args(["--threads", "1", "--quiet", "--out"])
+            .arg(out)
+            .output()?;
+        let seconds = begun.elapsed().as_secs_f64();
+        let report =
+            if report.is_file() { Some(serde_json::from_slice(&std::fs::read(report)?)?) } else { None };
+        let message = String::from_utf8_lossy(&stderr).trim().replace('\n', " ");
+        let message = if report.is_some() { message } else { format!("{status}: {message}") };
+        // Pages are large, and made again by the same command.
+        let page = out.join("report.html");
+        if page.is_file() {
+            std::fs::remove_file(page)?;
+        }
+        Ok(Run { report, seconds, message })
+    }
+}
+
+/// Makes a set in a folder and lets the program at it.
+pub fn run(
+    class: &Class,
+    seed: u64,
+    cells: Option<usize>,
+    program: &Program,
+    discover: bool,
+    folder: &Path,
+) -> Result<Record, Box<dyn Error>> {
+    let set = class.measure(seed, cells)?;
+    let present = set.positions.index_axis(ndarray::Axis(0), 0);
+    let cells = present.rows().into_iter().filter(|row| row[0].is_finite()).count();
+    let written = set.write(folder)?;
+    let out = folder.join("infer");
+    let Run { report, seconds, message } = program.run("infer", &written.data, &out)?;
+    let fit = match report {
+        Some(report) => Some(fit(&report, &written.truth, class.recipe.view, &out)?),
+        None => None,
+    };
+    let discovery = if discover {
+        Some(discovery(&program.run("discover", &written.data, &folder.join("discover"))?)?)
+    } else {
+        None
+    };
+    Ok(Record {
+        class: class.name.into(),
+        seed,
+        program: program.hash.clone(),
+        flags: program.flags.clone(),
+        cells,
+        seconds,
+        fit,
+        message,
+        discovery,
+    })
+}
+
+fn fit(report: &Value, truth: &Truth, view: View, out: &Path) -> Result<Fit, Box<dyn Error>> {
+    let estimate = |name: &str| -> Result<Estimate, Box<dyn Error>> {
+        let found = &report["parameters"][name];
+        let value = found["value"].as_f64().unwrap_or(f64::NAN);
+        let ci95 = [0, 1].map(|end| found["ci95"][end].as_f64());
+        let truth = *truth.parameters.get(name).ok_or("a parameter without a truth")?;
+        Ok(Estimate { truth, value, ci95 })
+    };
+    let doubts = report["fit"]["doubts"].as_array().into_iter().flatten();
+    Ok(Fit {
+        k_p_alpha: estimate("K_P_alpha")?,
+        p_0: estimate("P_0")?,
+        trustworthy: report["fit"]["trustworthy"].as_bool().ok_or("a report without `trustworthy`")?,
+        doubts: doubts.map(|doubt| doubt.as_str().map_or_else(|| doubt.to_string(), String::from)).collect(),
+        verdict: report["verdict"]["kind"].as_str().map(String::from),
+        recall: latent::recovery(truth, view, out)?,
+    })
+}
+
+fn discovery(run: &Run) -> Result<Discovery, Box<dyn Error>> {
+    let Some(report) = &run.report else {
+        return Ok(Discovery { verdict: run.message.clone(), effects: Vec::new(), seconds: run.seconds });
+    };
+    let selected = report["selected"].as_array().into_iter().flatten();
+    Ok(Discovery {
+        verdict: report["verdict"].as_str().map_or_else(|| report["verdict"].to_string(), String::from),
+        effects: selected.filter_map(|own| own["effect"].as_str().map(String::from)).collect(),
+        seconds: run.seconds,
+    })
+}
