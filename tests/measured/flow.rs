@@ -112,7 +112,8 @@ mod tests {
             moment.sqrt() / PIXELS
         };
         assert!((spread(Window::Gaussian(0.5)) - 0.5).abs() < 1e-3);
-        assert!((spread(Window::Square(1.5)) - 1.5 / 12f64.sqrt()).abs() < 2e-3);
+        let side = 1.5 * SPACING as f64 / PIXELS;
+        assert!((spread(Window::Square(1.5)) - side / 12f64.sqrt()).abs() < 2e-3);
     }
 
     #[test]

@@ -8,13 +8,13 @@
 use super::LEVEL;
 use crate::Observation;
 use statrs::distribution::{ContinuousCDF, DiscreteCDF, Normal, Poisson};
-use voronudge_geometry::{CellPolygon, Visibility};
+use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
 
 /// Circles are counted beyond so many widths of the distribution.
 const BEYOND: [f64; 4] = [3.2, 3.7, 4.2, 4.7];
 
 /// A void's radius is at least this many medians: in a lattice, whose radii are all alike, a defect is no void.
-const LEAST: f64 = 1.5;
+const LEAST: f64 = 1.4;
 
 /// Interquartile range of a normal distribution in units of its standard deviation.
 const QUARTILES: f64 = 1.349;
@@ -33,7 +33,7 @@ pub struct Voids {
 
 /// An empty circle through three cells.
 struct Circle {
-    cells: [u32; 3],
+    centre: Vector<f64>,
     radius: f64,
 }
 
@@ -52,7 +52,10 @@ pub(super) fn voids(frames: &[Observation]) -> Option<Voids> {
     for z in BEYOND {
         let limit = (z * width).max(LEAST.ln());
         let expected = radii.len() as f64 * normal.sf(limit / width);
-        let found = circles.iter().map(|own| separate(own, (middle + limit).exp())).sum::<usize>();
+        let of_frames = circles.iter().zip(frames);
+        let found = of_frames
+            .map(|(own, frame)| separate(own, frame.tessellation.domain(), (middle + limit).exp()))
+            .sum::<usize>();
         let p = match (found, Poisson::new(expected)) {
             (0, _) => 1.0,
             (found, Ok(chance)) => chance.sf(found as u64 - 1),
@@ -66,15 +69,14 @@ pub(super) fn voids(frames: &[Observation]) -> Option<Voids> {
     best.map(|(_, voids)| voids)
 }
 
-/// Circles larger than some radius, those of one void counted once: beside a larger one, a circle must not share two cells
-/// with it.
-fn separate(circles: &[Circle], radius: f64) -> usize {
+/// Circles larger than some radius, those of one void counted once: the centre of a circle must not lie in a larger one.
+fn separate(circles: &[Circle], domain: Domain, radius: f64) -> usize {
     let mut large: Vec<&Circle> = circles.iter().filter(|circle| circle.radius > radius).collect();
     large.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     let mut kept: Vec<&Circle> = Vec::new();
     for circle in large {
-        let shared = |other: &&Circle| circle.cells.iter().filter(|c| other.cells.contains(c)).count();
-        if kept.iter().all(|other| shared(other) < 2) {
+        let apart = |other: &&Circle| domain.shortest(circle.centre - other.centre).norm() > other.radius;
+        if kept.iter().all(apart) {
             kept.push(circle);
         }
     }
@@ -97,7 +99,7 @@ fn circles(frame: &Observation) -> Vec<Circle> {
             let others = [ring[m], ring[(m + 1) % ring.len()]];
             // Each triangle once, from the lowest of its cells.
             if others.iter().all(|other| *other as usize > cell || !is_certain(*other as usize)) {
-                circles.push(Circle { cells: [cell as u32, others[0], others[1]], radius: corner.norm() });
+                circles.push(Circle { centre: frame.positions[cell] + corner, radius: corner.norm() });
             }
         }
     }
@@ -109,7 +111,7 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
     use rand_pcg::Pcg64;
-    use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
+    use voronudge_geometry::{FieldOfView, PeriodicBox};
 
     /// A jittered lattice of 256 cells without some.
     fn tissue(missed: usize, seed: u64) -> Observation {
@@ -117,7 +119,7 @@ mod tests {
         let mut positions: Vec<Vector<f64>> = (0..256)
             .map(|i| {
                 let (row, column) = (f64::from(i / 16), f64::from(i % 16));
-                let mut jitter = || generator.random_range(-0.25..0.25);
+                let mut jitter = || generator.random_range(-0.15..0.15);
                 Vector::new(column + 0.5 * (row % 2.0) + jitter(), row + jitter())
             })
             .collect();
