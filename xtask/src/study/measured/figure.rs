@@ -106,14 +106,14 @@ fn coverage(name: &str, colour: &str, rows: &[&Errors], height: f64) -> Option<C
 fn panel(label: &str, range: [f64; 2], size: [f64; 2], rows: usize) -> Option<Chart> {
     let x = Axis { ticks: 4, ..Axis::linear(label, range) };
     let y = Axis::linear("", [0.5 - rows as f64, 0.5]).without_ticks();
-    Chart::new(ChartLayout { title: label, size, left: 10.0, x, y })
+    Chart::new(ChartLayout { title: label, size, left: 20.0, x, y })
 }
 
 /// The names of the classes beside their rows of a panel.
 fn label_rows(svg: &mut Svg, panel: &Chart, shown: &[&Summary]) {
     for (row, own) in shown.iter().enumerate() {
         let [_, y] = panel.place([0.0, -(row as f64)]);
-        svg.text([NAMES, y + 4.0], own.class.name, TextStyle::label(Anchor::End));
+        svg.text([NAMES + 12.0, y + 4.0], own.class.name, TextStyle::label(Anchor::End));
     }
 }
 

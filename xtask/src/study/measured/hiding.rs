@@ -167,10 +167,9 @@ pub fn run(program: &Program, movie: &Movie, share: f64, seeds: Range<u64>, fold
         let hidden = &order[..count];
         let Found { latent, seconds, .. } =
             found(program, &movie.without(hidden), &folder.join(format!("hidden-{seed}")))?;
-        let place =
-            |&(frame, cell): &(usize, usize)| Some(vec![Place { frame, at: movie.place(frame, cell)? }]);
-        let groups: Vec<Vec<Place>> = hidden.iter().filter_map(place).collect();
-        let matched = latent::matches(&latent, &groups, Domain::Open, near);
+        let place = |&(frame, cell): &(usize, usize)| Some(Place { frame, at: movie.place(frame, cell)? });
+        let places: Vec<Place> = hidden.iter().filter_map(place).collect();
+        let matched = latent::matches(&latent, &places, Domain::Open, near);
         let is_right = |index: usize| matched.contains(&Some(index)) || is_known(&latent[index]);
         recall.push(Count::of(matched.iter().map(Option::is_some)));
         precision.push(Count::of((0..latent.len()).map(is_right)));

@@ -1,5 +1,6 @@
 //! Latent cells against the cells that are hidden.
 
+use super::count::Count;
 use super::record::Recovery;
 use claims::measured::{Truth, View};
 use std::error::Error;
@@ -43,46 +44,43 @@ pub fn recovery(truth: &Truth, view: View, out: &Path) -> Result<Option<Recovery
         View::Whole => Domain::Periodic(PeriodicBox::new([width, height])?),
         View::Window => Domain::Open,
     };
-    let groups: Vec<Vec<Place>> = truth
-        .hidden
-        .iter()
-        .map(|hidden| {
-            let place = |site: &[f64; 2]| Place { frame: hidden.frame, at: Vector::new(site[0], site[1]) };
-            hidden.sites.iter().map(place).collect()
-        })
-        .collect();
-    let found = matches(&latent, &groups, domain, NEAR);
-    let inside = |x: f64, length: f64| (RIM..length - RIM).contains(&x);
-    let counts = |group: &[Place]| {
-        view == View::Whole
-            || group.iter().all(|place| inside(place.at.x, width) && inside(place.at.y, height))
-    };
-    let expected: Vec<usize> = (0..groups.len()).filter(|group| counts(&groups[*group])).collect();
+    let inside = |x: f64, length: f64| view == View::Whole || (RIM..length - RIM).contains(&x);
+    let (mut sites, mut groups) = (Vec::new(), Vec::new());
+    for hidden in &truth.hidden {
+        let first = sites.len();
+        sites.extend(
+            hidden.sites.iter().map(|site| Place { frame: hidden.frame, at: Vector::new(site[0], site[1]) }),
+        );
+        let is_expected = hidden.sites.iter().all(|site| inside(site[0], width) && inside(site[1], height));
+        groups.push((first..sites.len(), is_expected));
+    }
+    // A merged detection is found if one of its two cells is; a program may name both.
+    let found = matches(&latent, &sites, domain, NEAR);
+    let expected = groups.into_iter().filter(|(_, is_expected)| *is_expected);
+    let recall = Count::of(expected.map(|(group, _)| found[group].iter().any(Option::is_some)));
     Ok(Some(Recovery {
-        hidden: expected.len(),
-        found: expected.iter().filter(|group| found[**group].is_some()).count(),
+        hidden: recall.total,
+        found: recall.hits,
         latent: latent.len(),
         right: found.iter().flatten().count(),
     }))
 }
 
-/// The latent cell that is each of some groups of hidden ones, at most one of a group, the nearest first.
-pub fn matches(latent: &[Place], groups: &[Vec<Place>], domain: Domain, near: f64) -> Vec<Option<usize>> {
+/// The latent cell that is each of some hidden ones, the nearest first.
+pub fn matches(latent: &[Place], hidden: &[Place], domain: Domain, near: f64) -> Vec<Option<usize>> {
+    let distance = |a: &Place, b: &Place| (a.frame == b.frame).then(|| domain.shortest(b.at - a.at).norm());
     let mut pairs = Vec::new();
-    for (group, places) in groups.iter().enumerate() {
-        for (index, own) in latent.iter().enumerate() {
-            let same_frame = places.iter().filter(|place| place.frame == own.frame);
-            let distances = same_frame.map(|place| domain.shortest(own.at - place.at).norm());
-            if let Some(distance) = distances.min_by(f64::total_cmp).filter(|distance| *distance <= near) {
-                pairs.push((distance, group, index));
-            }
-        }
+    for (site, place) in hidden.iter().enumerate() {
+        let near = latent.iter().enumerate().filter_map(|(index, own)| {
+            distance(place, own).filter(|distance| *distance <= near).map(|distance| (distance, site, index))
+        });
+        pairs.extend(near);
     }
     pairs.sort_by(|a, b| a.0.total_cmp(&b.0));
-    let (mut found, mut taken) = (vec![None; groups.len()], vec![false; latent.len()]);
-    for (_, group, index) in pairs {
-        if found[group].is_none() && !taken[index] {
-            (found[group], taken[index]) = (Some(index), true);
+    let (mut found, mut taken) = (vec![None; hidden.len()], vec![false; latent.len()]);
+    for (_, site, index) in pairs {
+        if found[site].is_none() && !taken[index] {
+            (found[site], taken[index]) = (Some(index), true);
         }
     }
     found
@@ -95,10 +93,10 @@ mod tests {
     #[test]
     fn each_cell_is_matched_once() {
         let at = |frame, x| Place { frame, at: Vector::new(x, 0.0) };
-        let groups = [vec![at(0, 1.0)], vec![at(0, 1.2), at(0, 2.0)], vec![at(1, 1.0)]];
+        let hidden = [at(0, 1.0), at(0, 1.2), at(1, 1.0)];
         let latent = [at(0, 1.15), at(0, 0.9), at(1, 1.5)];
-        assert_eq!(matches(&latent, &groups, Domain::Open, 0.3), [Some(1), Some(0), None]);
+        assert_eq!(matches(&latent, &hidden, Domain::Open, 0.3), [Some(1), Some(0), None]);
         let cell_box = Domain::Periodic(PeriodicBox::new([4.0, 4.0]).unwrap());
-        assert_eq!(matches(&[at(0, 3.9)], &[vec![at(0, 0.1)]], cell_box, 0.3), [Some(0)]);
+        assert_eq!(matches(&[at(0, 3.9)], &[at(0, 0.1)], cell_box, 0.3), [Some(0)]);
     }
 }
