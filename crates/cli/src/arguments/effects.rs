@@ -89,7 +89,7 @@ impl ChosenEffects {
 }
 
 /// What effects may refer to at given positions: `ℓ_0` is the root of the mean area (of the box per cell, or of the cells
-/// that count), the origin the middle of the box or the mean position of these cells.
+/// that count, or if there are none of those with a closed polygon), the origin the middle of the box or the mean position of these cells.
 pub(crate) fn environment(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
@@ -101,7 +101,14 @@ pub(crate) fn environment(
             (Vector::new(0.5 * x, 0.5 * y), cell_box.area() / positions.len() as f64)
         }
         Domain::Open => {
-            let counted: Vec<usize> = (0..positions.len()).filter(|&cell| view.counts(cell)).collect();
+            let those = |chosen: &dyn Fn(usize) -> bool| -> Vec<usize> {
+                (0..positions.len()).filter(|&cell| chosen(cell)).collect()
+            };
+            let certain = those(&|cell| view.counts(cell));
+            let counted = match certain.is_empty() {
+                true => those(&|cell| tessellation.is_closed(cell)),
+                false => certain,
+            };
             let areas = areas(tessellation, positions);
             let number = counted.len().max(1) as f64;
             let middle = counted.iter().map(|&cell| positions[cell]).sum::<Vector<f64>>() / number;

@@ -73,6 +73,7 @@ fn the_chirality_is_found_from_a_flow_field() {
         assert_eq!(
             out.names(),
             [
+                "latent_cells.npy",
                 "nudged_positions.npy",
                 "predicted_flow.npy",
                 "predicted_velocities.npy",

@@ -21,7 +21,7 @@ const RIGHT: Held = Held::Right { deviation: 3.0, share: 0.1 };
 /// What each class is held to.
 fn held(class: &Class) -> Held {
     match class.name {
-        "complete" | "open" | "flow-square" => RIGHT,
+        "complete" | "open" => RIGHT,
         _ => Held::Answer,
     }
 }

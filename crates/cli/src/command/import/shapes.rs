@@ -8,7 +8,7 @@ use crate::snapshot::Snapshot;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use voronudge_geometry::{
-    Domain, FieldOfView, MeasuredShape, Tessellation, agreement, areas, comparable, perimeters,
+    Domain, FieldOfView, MeasuredShape, Seen, Tessellation, agreement, areas, comparable, perimeters,
 };
 use voronudge_io::{OutputDirectory, ShapeImport};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
@@ -115,7 +115,9 @@ fn compare(import: &ShapeImport, frame: usize, file: &Path) -> Result<Compared, 
     let tessellation = Tessellation::new(positions, Domain::Open).map_err(|error| {
         Failure::from(snapshot.in_file_numbers(error)).at(format!("{}, frame {frame}", file.display()))
     })?;
-    let view = FieldOfView::default().judge(&tessellation, positions);
+    // The outlines themselves show which cells were seen as a whole.
+    let view =
+        FieldOfView { seen: Seen::Everywhere, ..FieldOfView::default() }.judge(&tessellation, positions);
     let known = &import.frames[frame];
     let shapes: Vec<Option<MeasuredShape>> = snapshot
         .cells
