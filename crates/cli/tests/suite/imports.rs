@@ -12,7 +12,7 @@ use std::io::Write as _;
 use std::path::Path;
 
 const FRAMES: usize = 4;
-const SIDE: usize = 6;
+const SIDE: usize = 9;
 
 /// Place of a cell of a shaken, drifting grid, y down.
 fn place(frame: usize, cell: usize) -> [f64; 2] {
