@@ -174,6 +174,14 @@ impl CoefficientSpace {
         &self.priors
     }
 
+    /// The penalty of the priors for given coefficients, `σ_v² Σ (q − m)² / s²`.
+    pub(crate) fn penalty(&self, c: &DVector<f64>, velocity: f64) -> f64 {
+        let scaled = |(quantity, prior): &(Quantity, Prior)| {
+            (quantity.of(c.as_slice()) - prior.mean) * velocity / prior.standard_deviation
+        };
+        self.priors.iter().map(scaled).map(|rest| rest * rest).sum()
+    }
+
     /// Covariance of the coefficients of the base model from that of β.
     pub fn covariance(&self, free: &DMatrix<f64>) -> Matrix4<f64> {
         let base = self.basis.rows(0, BASE);

@@ -72,7 +72,7 @@ impl Folds {
 }
 
 /// A ratio of sums over folds with its standard error.
-fn ratio(folds: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 2] {
+pub(crate) fn ratio(folds: impl Iterator<Item = (f64, f64)> + Clone) -> [f64; 2] {
     let (sum, total) = folds.clone().fold((0.0, 0.0), |sum, fold| (sum.0 + fold.0, sum.1 + fold.1));
     let (pooled, n) = (sum / total, folds.clone().count() as f64);
     let spread: f64 = folds.map(|(part, weight)| (part - pooled * weight).powi(2)).sum();

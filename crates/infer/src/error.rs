@@ -35,6 +35,16 @@ pub enum Error {
     /// All velocities are zero.
     #[error("all measured velocities are zero")]
     NothingMoves,
+    /// Frames that are no movie.
+    #[error(
+        "{frames} frames at {times} times are no movie: it takes two frames or more, at times that ascend"
+    )]
+    Frames {
+        /// Number of frames.
+        frames: usize,
+        /// Number of times.
+        times: usize,
+    },
     /// Fewer frames than a course needs.
     #[error("{found} frames, but the course of a pattern needs at least {required}")]
     TooFewFrames {

@@ -6,16 +6,18 @@ use crate::doubts::examine;
 use crate::estimates::Fitted;
 use crate::least_squares::{self, residuals_as_measured};
 use crate::noisy_fit::{at_limit, fit, go_on};
+use crate::normal_equations::NormalEquations;
 use crate::objective::{Nudged, Objective};
 use crate::robust::reweighed;
 use crate::search::Watch;
 use crate::{
-    CrossValidation, Doubt, Error, Examination, FrameResult, Inference, Nmse, NoiseLevels, NoiseSource,
-    Observation, Progress, Request, Status,
+    CoefficientSpace, CrossValidation, Direction, Doubt, Error, Estimate, Examination, FrameResult,
+    Inference, KnownNoise, Nmse, NoiseLevels, NoiseSource, Observation, ParameterEstimates, Progress,
+    Request, Status,
 };
 use nalgebra::DVector;
 use std::ops::ControlFlow;
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Tessellation, Vector};
 
 /// Rounds in which velocities that nothing explains lose their weight.
 const REWEIGHTINGS: usize = 3;
@@ -81,11 +83,7 @@ pub fn infer(
     // Where the model misses more than the noise explains, the misfit counts as noise.
     let excess = (value / expected).max(1.0);
     let equations = objective.linearise(&found.parameters)?;
-    let reduced = equations.reduced()?;
-    let centre = equations.unbounded(&reduced)?;
-    let information = reduced.information / (variance * excess);
-    let fitted =
-        Fitted { space: &space, constraints: &request.constraints, free, information: &information, centre };
+    let estimated = estimates(&equations, &space, request, free, variance * excess)?;
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
         let squares = |frame| residuals_as_measured(frame, structure, coefficients.as_slice());
@@ -100,16 +98,10 @@ pub fn infer(
         results.push(frame_result(frame, objective.place(index, nudges)?, &coefficients, held_out));
     }
     let cells: usize = frames.iter().map(|frame| frame.positions.len()).sum();
-    let estimated = request.noise.position.is_none() || request.noise.velocity.is_none();
-    let deviation = (value - expected) / (2.0 * expected).sqrt();
-    let doubts = [
-        (deviation > ACCEPTED_EXCESS).then_some(Doubt::Objective(deviation)),
-        at_limit(&levels, &request.noise).then_some(Doubt::PositionNoise),
-        (found.status == Status::StepLimit).then_some(Doubt::Steps),
-    ];
     let mut inference = Inference {
-        parameters: fitted.estimates()?,
-        effects: fitted.effects()?,
+        parameters: estimated.parameters,
+        effects: estimated.effects,
+        directions: estimated.directions,
         model_parameters: parameters(&coefficients),
         naive: parameters(&space.coefficients(&naive)),
         nmse: Nmse {
@@ -128,11 +120,13 @@ pub fn infer(
         },
         coefficients,
         noise: levels,
-        noise_source: if estimated { NoiseSource::Estimated } else { NoiseSource::Given },
+        noise_source: match (request.noise.position, request.noise.velocity) {
+            (Some(_), Some(_)) => NoiseSource::Given,
+            _ => NoiseSource::Estimated,
+        },
         degrees_of_freedom: equations.degrees_of_freedom()?,
         nudge_rms: (parts.nudges / cells as f64).sqrt(),
         contribution_ratio: objective.spring() * parts.nudges / parts.residual,
-        directions: fitted.directions()?,
         frames: results,
         status: found.status,
         steps: found.steps,
@@ -141,7 +135,7 @@ pub fn infer(
         trace: found.trace.iter().map(|phi| phi / variance).collect(),
         starts: found.starts.iter().map(|phi| phi / variance).collect(),
         transitions: [found.transitions_tried, found.transitions_made],
-        doubts: doubts.into_iter().flatten().collect(),
+        doubts: doubts(value, expected, &levels, &request.noise, found.status),
         used,
         total,
     };
@@ -152,6 +146,62 @@ pub fn infer(
     Ok(inference)
 }
 
+/// What a fit says of the model.
+pub(crate) struct Estimates {
+    pub parameters: ParameterEstimates,
+    pub effects: Vec<Estimate>,
+    pub directions: Vec<Direction>,
+}
+
+/// Estimates at β from the linearised problem about it, with σ_v² as the fit bears it out.
+pub(crate) fn estimates(
+    equations: &NormalEquations,
+    space: &CoefficientSpace,
+    request: &Request,
+    free: &[f64],
+    variance: f64,
+) -> Result<Estimates, Error> {
+    let reduced = equations.reduced()?;
+    let centre = equations.unbounded(&reduced)?;
+    let information = reduced.information / variance;
+    let fitted = Fitted { space, constraints: &request.constraints, free, information: &information, centre };
+    Ok(Estimates {
+        parameters: fitted.estimates()?,
+        effects: fitted.effects()?,
+        directions: fitted.directions()?,
+    })
+}
+
+/// Reasons not to trust a fit whose objective and its expected value are in units of σ_v².
+pub(crate) fn doubts(
+    value: f64,
+    expected: f64,
+    levels: &NoiseLevels,
+    known: &KnownNoise,
+    status: Status,
+) -> Vec<Doubt> {
+    let deviation = (value - expected) / (2.0 * expected).sqrt();
+    let doubts = [
+        (deviation > ACCEPTED_EXCESS).then_some(Doubt::Objective(deviation)),
+        at_limit(levels, known).then_some(Doubt::PositionNoise),
+        (status == Status::StepLimit).then_some(Doubt::Steps),
+    ];
+    doubts.into_iter().flatten().collect()
+}
+
+/// Pairs of neighbours before, but not after, and the other way round.
+pub(crate) fn changed_edges(before: &Tessellation, after: &Tessellation) -> [Vec<(u32, u32)>; 2] {
+    let (before, after) = (before.edges(), after.edges());
+    let missing_from = |edges: &[(u32, u32, [i16; 2])], others: &[(u32, u32, [i16; 2])]| {
+        edges
+            .iter()
+            .filter(|edge| others.binary_search(edge).is_err())
+            .map(|edge| (edge.0, edge.1))
+            .collect::<Vec<_>>()
+    };
+    [missing_from(&before, &after), missing_from(&after, &before)]
+}
+
 /// One frame at its nudged positions.
 fn frame_result(
     frame: &Observation,
@@ -160,22 +210,15 @@ fn frame_result(
     held_out: Vec<Option<Vector<f64>>>,
 ) -> FrameResult {
     let evaluated = nudged.evaluate(coefficients.as_slice());
-    let (before, after) = (frame.tessellation.edges(), nudged.tessellation.edges());
-    let missing_from = |edges: &[(u32, u32, [i16; 2])], others: &[(u32, u32, [i16; 2])]| {
-        edges
-            .iter()
-            .filter(|edge| others.binary_search(edge).is_err())
-            .map(|edge| (edge.0, edge.1))
-            .collect::<Vec<_>>()
-    };
+    let [edges_lost, edges_gained] = changed_edges(&frame.tessellation, &nudged.tessellation);
     let weights = match frame.is_weighted() {
         true => (0..frame.velocities.values().len()).map(|datum| frame.weight(datum)).collect(),
         false => Vec::new(),
     };
     FrameResult {
         weights,
-        edges_lost: missing_from(&before, &after),
-        edges_gained: missing_from(&after, &before),
+        edges_lost,
+        edges_gained,
         predicted: evaluated.of_cells,
         predicted_data: evaluated.predicted,
         held_out,

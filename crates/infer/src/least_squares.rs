@@ -103,7 +103,7 @@ fn normal_equations(
 }
 
 /// Σ c_t X_t at one place.
-fn combined(columns: &Columns, coefficients: &[f64], datum: usize) -> Vector<f64> {
+pub(crate) fn combined(columns: &Columns, coefficients: &[f64], datum: usize) -> Vector<f64> {
     columns.iter().zip(coefficients).fold(Vector::zeros(), |sum, (column, c)| sum + column[datum] * *c)
 }
 

@@ -48,6 +48,7 @@ mod scale;
 mod search;
 #[cfg(test)]
 mod tests;
+mod tracks;
 mod uncertainty;
 mod verdict;
 mod whitening;
@@ -67,5 +68,6 @@ pub use quantity::Quantity;
 pub use request::{CrossValidation, Examination, Loss, Method, Request};
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;
+pub use tracks::{Drift, Integration, Movie, Track, Tracked, infer_tracks};
 pub use uncertainty::{Bootstrap, Landscape, Profile, bootstrap, landscape, profile};
 pub use verdict::Verdict;

@@ -50,6 +50,18 @@ pub struct KnownNoise {
     pub velocity: Option<f64>,
 }
 
+impl KnownNoise {
+    /// Refuses levels that are none.
+    pub(crate) fn check(&self) -> Result<(), Error> {
+        for (name, value) in [("position", self.position), ("velocity", self.velocity)] {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
+                return Err(Error::Noise { name, value });
+            }
+        }
+        Ok(())
+    }
+}
+
 /// Position noise assumed first, in units of ℓ₀: a careful segmentation.
 pub(crate) const FIRST_POSITION_NOISE: f64 = 0.02;
 
@@ -95,6 +107,23 @@ impl Restricted<'_> {
         let found = executor.run().map_err(|error| Error::Optimiser(error.to_string()))?;
         let log_k = found.state.get_best_param().copied().unwrap_or(grid[best].0);
         self.levels(log_k)
+    }
+
+    /// One step towards the most likely levels, for problems whose likelihood is dear: to the least of the parabola through the present
+    /// log k and one so far to either side.
+    pub fn towards(&self, present: NoiseLevels, spacing: f64) -> Result<NoiseLevels, Error> {
+        let centre = present.spring().ln();
+        let values: Vec<f64> = [-spacing, 0.0, spacing]
+            .into_par_iter()
+            .map(|aside| self.criterion(centre + aside))
+            .collect::<Result<_, Error>>()?;
+        let (slope, bend) = (values[2] - values[0], values[2] - 2.0 * values[1] + values[0]);
+        let furthest = 2.0 * spacing;
+        let step = match bend > 0.0 {
+            true => (-0.5 * spacing * slope / bend).clamp(-furthest, furthest),
+            false => -furthest.copysign(slope),
+        };
+        self.levels(centre + step)
     }
 
     /// The levels that belong to k, within their limits.

@@ -176,11 +176,7 @@ pub(crate) fn at_limit(levels: &NoiseLevels, known: &KnownNoise) -> bool {
 
 /// Noise levels before any nudged fit: as given, or a usual position noise and the spread of the naive residual.
 fn first_levels(objective: &Objective<'_>, naive: &[f64], known: &KnownNoise) -> Result<NoiseLevels, Error> {
-    for (name, value) in [("position", known.position), ("velocity", known.velocity)] {
-        if let Some(value) = value.filter(|value| !(value.is_finite() && *value > 0.0)) {
-            return Err(Error::Noise { name, value });
-        }
-    }
+    known.check()?;
     let coefficients = objective.space.coefficients(naive);
     let mut sizes: Vec<f64> = objective
         .frames

@@ -34,7 +34,7 @@ pub(crate) struct Reduced {
     /// The information on β, in units of 1/σ_v².
     pub information: DMatrix<f64>,
     /// Half the decrease of Φ with β.
-    gradient: DVector<f64>,
+    pub gradient: DVector<f64>,
 }
 
 /// The penalty of the priors, linearised about the present coefficients.

@@ -6,7 +6,7 @@ use crate::linearisation::{Linearisation, Local};
 use crate::normal_equations::NormalEquations;
 use crate::position_rows::PositionRows;
 use crate::rows::Rows;
-use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Prior, Quantity};
+use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -58,7 +58,7 @@ impl<'a> Nudged<'a> {
         Self::new(frame, structure, frame.positions.clone(), frame.tessellation.clone())
     }
 
-    fn new(
+    pub fn new(
         frame: &Observation,
         structure: &'a Structure,
         positions: Vec<Vector<f64>>,
@@ -204,11 +204,7 @@ impl<'a> Objective<'a> {
 
     /// The penalty of the priors for given coefficients.
     pub fn prior_penalty(&self, coefficients: &DVector<f64>) -> f64 {
-        let scaled = |(quantity, prior): &(Quantity, Prior)| {
-            (quantity.of(coefficients.as_slice()) - prior.mean) * self.levels.velocity
-                / prior.standard_deviation
-        };
-        self.space.priors().iter().map(scaled).map(|rest| rest * rest).sum()
+        self.space.penalty(coefficients, self.levels.velocity)
     }
 
     /// Φ; infinite where there is no tessellation.

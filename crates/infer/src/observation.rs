@@ -132,6 +132,11 @@ impl Observation {
         Self { environment, ..self }
     }
 
+    /// The same cells with other velocities.
+    pub(crate) fn with_velocities(self, velocities: Vec<Option<Vector<f64>>>) -> Self {
+        Self { velocities: velocities.into(), ..self }
+    }
+
     /// What surrounds and preceded the cells.
     pub fn environment(&self) -> &Arc<Environment> {
         &self.environment

@@ -85,10 +85,10 @@ pub fn import_trackmate(path: &Path, options: &ImportOptions) -> Result<Import, 
 ///
 /// Unless named in the options, columns are recognised by usual names: `track_id`, `track`,
 /// `particle`, `cell`, `id` …; `frame`, `t`, `time_index` …; `x`, `position_x`, `pos_x` … The
-/// earlier name wins where several are there.
+/// earlier name wins where several are there. A track is in one place in each frame: unlike TrackMate's, tracks do not split.
 ///
 /// # Errors
-/// As [`import_trackmate`].
+/// As [`import_trackmate`], and [`TableFault::SpotTwice`].
 pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Error> {
     import(path, options, Layout::Tracks)
 }
@@ -111,7 +111,7 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     if let (None, None, Some(unit)) = (&options.length_unit, options.pixel_size, &table.length_unit) {
         dataset.length_unit.clone_from(unit);
     }
-    let tracks = Tracks::arrange(&table).map_err(|fault| Error::Table {
+    let tracks = Tracks::arrange(&table, layout).map_err(|fault| Error::Table {
         path: path.to_path_buf(),
         line: None,
         fault,
@@ -167,7 +167,7 @@ struct Tracks {
 }
 
 impl Tracks {
-    fn arrange(table: &SpotTable) -> Result<Self, TableFault> {
+    fn arrange(table: &SpotTable, layout: Layout) -> Result<Self, TableFault> {
         let (first, frames) = frame_span(table.spots.iter().map(|spot| spot.frame))?;
         let ids: BTreeSet<i64> = table.spots.iter().map(|spot| spot.track).collect();
         let ids: Vec<i64> = ids.into_iter().collect();
@@ -185,6 +185,8 @@ impl Tracks {
                 positions[[frame, cell, 0]] = spot.x;
                 positions[[frame, cell, 1]] = spot.y;
                 occupied[frame] += 1;
+            } else if layout == Layout::Tracks {
+                return Err(TableFault::SpotTwice { track: spot.track, frame: spot.frame });
             } else {
                 duplicates += 1;
             }

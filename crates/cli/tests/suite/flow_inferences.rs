@@ -153,7 +153,8 @@ fn flow_fields_that_cannot_be_used_are_refused() {
     refused("--window gaussian --window-width 0", &["--window-width is 0", "above zero"]);
     refused("--window gaussian --window-width nan", &["--window-width is NaN"]);
     refused("--frames 3", &["frame 3 does not exist"]);
-    refused("--data cells", &["central differences need 3 frames"]);
+    refused("--data cells", &["there is one frame and no velocities"]);
+    refused("--data cells --difference central", &["central differences need 3 frames"]);
     let mut flow: Array3<f64> = read(&data.file("flow.npy"));
     flow.fill(0.0);
     data.write_array("flow.npy", &flow);

@@ -136,9 +136,41 @@ fn the_number_of_threads_changes_no_byte() {
     assert!(results[0] == results[1] && results[1] == results[2]);
 }
 
+/// Five frames of an open field with a gap in one track, fitted without velocities.
+#[test]
+fn tracks_are_fitted_themselves() {
+    let out = infer(&fixture("open-field"), "");
+    let mut files = FILES.to_vec();
+    files.push("trajectories.npy");
+    assert_eq!(out.names(), files);
+    let report = report(out.path());
+    assert_valid(&report);
+    assert_eq!(report["cells"]["frames"], serde_json::json!([0, 1, 2, 3, 4]));
+    let tracks = &report["measurement"]["tracks"];
+    assert!(tracks["substeps"].as_u64() >= Some(1) && tracks["drifts"].as_array().unwrap().len() == 4);
+    assert!(number(tracks, "/sigma_r") > 0.0 && number(tracks, "/sigma_d") > 0.0);
+    for (name, truth, tolerance) in [("K_P_alpha", 0.02, 0.05), ("P_0", 78.0, 0.05)] {
+        let found = number(&report, &format!("/parameters/{name}/value"));
+        assert!((found - truth).abs() < tolerance * truth, "{name} is {found}");
+    }
+    let measured: Array3<f64> = read(&fixture("open-field/positions.npy"));
+    let trajectories: Array3<f64> = read(&out.file("trajectories.npy"));
+    let nudged: Array3<f64> = read(&out.file("nudged_positions.npy"));
+    assert_eq!((trajectories.dim(), nudged.dim()), (measured.dim(), measured.dim()));
+    // In the files y points down, in the results too.
+    for ((place, seen), nudged) in trajectories.iter().zip(&measured).zip(&nudged) {
+        assert!(seen.is_nan() || (place - seen).abs() < 10.0);
+        assert!(place.to_bits() == nudged.to_bits() || place.is_nan() && nudged.is_nan());
+    }
+    // The last frame has no velocity up to a next one.
+    let residual: Array3<f64> = read(&out.file("residual_velocities.npy"));
+    assert!(residual.index_axis(ndarray::Axis(0), 4).iter().all(|r| r.is_nan()));
+    assert!(residual.index_axis(ndarray::Axis(0), 0).iter().any(|r| r.is_finite()));
+}
+
 #[test]
 fn positions_alone_tell_the_sense_of_chirality() {
-    let out = infer(&fixture("open-field"), "");
+    let out = infer(&fixture("open-field"), "--difference central");
     assert_eq!(out.names(), FILES);
     let report = report(out.path());
     assert_valid(&report);

@@ -16,6 +16,7 @@ mod voids;
 
 pub(crate) use examine::{examine, examine_residuals};
 pub use voids::Voids;
+pub(crate) use voids::voids;
 
 /// The probability of a doubt of one kind about data that are as the fit takes them.
 const LEVEL: f64 = 0.001;
@@ -40,6 +41,8 @@ pub enum Doubt {
     LongSteps(f64),
     /// Residuals follow an error of measurement that the catalogue of effects knows, with this coefficient.
     Effect(&'static str, f64),
+    /// A finer integration of the motion between frames would change a coefficient by so many standard errors, but is too dear.
+    Integration(f64),
 }
 
 /// What of a fit is in doubt.
@@ -75,7 +78,7 @@ impl Doubt {
             Self::Voids(_) => Part::Cells,
             Self::Tails(_) => Part::Outliers,
             Self::Pattern => Part::Pattern,
-            Self::LongSteps(_) | Self::Effect("time_lag", _) => Part::Tracks,
+            Self::LongSteps(_) | Self::Integration(_) | Self::Effect("time_lag", _) => Part::Tracks,
             Self::Effect("flow_blur", _) => Part::Window,
             Self::Effect(..) => Part::Positions,
         }

@@ -38,7 +38,7 @@ struct Circle {
 }
 
 /// The voids of some frames, if there are more than chance makes.
-pub(super) fn voids(frames: &[Observation]) -> Option<Voids> {
+pub(crate) fn voids(frames: &[Observation]) -> Option<Voids> {
     let circles: Vec<Vec<Circle>> = frames.iter().map(circles).collect();
     let mut radii: Vec<f64> = circles.iter().flatten().map(|circle| circle.radius.ln()).collect();
     if radii.len() < FEWEST {

@@ -1,6 +1,6 @@
 //! From loose to tight data, the springs held: a stiff start keeps the nudges from falling into wrong neighbourhoods.
 
-use super::{Found, Watch, optimise};
+use super::{Found, TOLERANCE, Watch, optimise};
 use crate::objective::Objective;
 use crate::{Error, NoiseLevels};
 use std::ops::ControlFlow;
@@ -39,6 +39,7 @@ pub(crate) fn follow(
             &loose,
             std::mem::take(&mut at),
             if last { max_steps } else { STEPS_PER_STAGE },
+            TOLERANCE,
             &mut observer,
         )?;
         steps += optimum.steps;

@@ -14,9 +14,10 @@ pub(crate) use continuation::follow;
 pub(crate) use descent::descend;
 
 use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
+use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
 use crate::{Error, Progress, Status};
-use argmin::core::{Executor, TerminationReason, TerminationStatus};
+use argmin::core::{CostFunction, Executor, Jacobian, TerminationReason, TerminationStatus};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -24,7 +25,7 @@ use std::ops::ControlFlow;
 const AT_ONCE: usize = 8;
 
 /// Relative decrease of the objective that counts as none.
-const TOLERANCE: f64 = 1e-5;
+pub(crate) const TOLERANCE: f64 = 1e-5;
 
 /// How far to search.
 #[derive(Debug, Clone, Copy)]
@@ -120,14 +121,18 @@ impl Optimum {
     }
 }
 
-/// Levenberg–Marquardt from a point.
-fn optimise(
-    objective: &Objective<'_>,
+/// Levenberg–Marquardt from a point, until a step gains less than the tolerance, as a share of the objective.
+pub(crate) fn optimise<P>(
+    objective: P,
     start: Vec<f64>,
     max_steps: u64,
+    tolerance: f64,
     observer: Observer<'_>,
-) -> Result<Optimum, Error> {
-    let solver = LevenbergMarquardt::new(TOLERANCE, observer);
+) -> Result<Optimum, Error>
+where
+    P: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
+{
+    let solver = LevenbergMarquardt::new(tolerance, observer);
     let executor = Executor::new(objective, solver)
         .configure(|state| state.param(start).max_iters(max_steps))
         .ctrlc(false);
@@ -145,7 +150,7 @@ fn optimise(
 
 /// The same without telling of progress.
 pub(crate) fn refine(objective: &Objective<'_>, start: Vec<f64>, max_steps: u64) -> Result<Optimum, Error> {
-    optimise(objective, start, max_steps, &mut |_, _| ControlFlow::Continue(()))
+    optimise(objective, start, max_steps, TOLERANCE, &mut |_, _| ControlFlow::Continue(()))
 }
 
 /// The error within argmin's.

@@ -1,6 +1,6 @@
 //! Further starts within the noise.
 
-use super::{Effort, Found, Watch, optimise, transitions};
+use super::{Effort, Found, TOLERANCE, Watch, optimise, transitions};
 use crate::Error;
 use crate::objective::Objective;
 use rand::SeedableRng;
@@ -32,7 +32,7 @@ pub(super) fn try_another(
             Err(_) => ControlFlow::Break(()),
         }
     };
-    let optimum = optimise(objective, at, effort.max_steps, &mut observer)?;
+    let optimum = optimise(objective, at, effort.max_steps, TOLERANCE, &mut observer)?;
     let mut other = optimum.found(trace);
     transitions::flip(objective, &mut other, effort.max_steps, watch)?;
     found.steps += other.steps;

@@ -12,7 +12,7 @@
 //! descends again.
 
 use super::patch::{Patch, Whole};
-use super::{Found, Watch, optimise, refine};
+use super::{Found, TOLERANCE, Watch, optimise, refine};
 use crate::least_squares::residuals;
 use crate::objective::Objective;
 use crate::{CoefficientSpace, Error, Observation};
@@ -235,7 +235,7 @@ fn trial(
         if hopeless { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     };
     let key = (frame, side.cells);
-    let optimum = match optimise(&local, start, TRIAL_STEPS, &mut observer) {
+    let optimum = match optimise(&local, start, TRIAL_STEPS, TOLERANCE, &mut observer) {
         Err(Error::Interrupted) => return Ok(Some(Trial { key, gain: 0.0, moved: Vec::new() })),
         other => other?,
     };

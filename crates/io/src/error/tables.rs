@@ -115,6 +115,14 @@ pub enum TableFault {
         /// Frame as in the table; 0 where it has none.
         frame: i64,
     },
+    /// Two rows for one track in one frame.
+    #[error("a second row for track {track} in frame {frame}")]
+    SpotTwice {
+        /// Track as in the table.
+        track: i64,
+        /// Frame as in the table.
+        frame: i64,
+    },
     /// The table cannot be split into fields.
     #[error("cannot be read as a table: {0}")]
     Unreadable(String),
@@ -145,6 +153,9 @@ impl TableFault {
             Self::NodeTwice { .. } => {
                 "if the table holds several frames, name their column with --frame-column, or give one \
                  file for each frame"
+            }
+            Self::SpotTwice { .. } => {
+                "each cell needs a track of its own: a track is in one place in each frame"
             }
             Self::Unreadable(_) => {
                 "open the table in a text editor: it should have one line for each cell and frame"

@@ -1,6 +1,6 @@
 //! How the cells were measured, as far as the results depend on it.
 
-use super::LatentCells;
+use super::{LatentCells, TracksReport};
 use serde::Serialize;
 
 /// What was seen of the tissue.
@@ -16,6 +16,8 @@ pub struct Measurement {
     pub outside: usize,
     /// What was wrong with detections; `null` if that was not looked for.
     pub latent: Option<LatentCells>,
+    /// The tracks, where these were fitted themselves.
+    pub tracks: Option<TracksReport>,
 }
 
 /// A region where every cell would have been seen.

@@ -7,6 +7,7 @@ mod constraints;
 mod implied;
 mod latent;
 mod measurement;
+mod tracks;
 mod uncertainty;
 mod verdict;
 
@@ -14,6 +15,7 @@ pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
 pub use latent::LatentCells;
 pub use measurement::{Measurement, RegionSource, SeenRegion};
+pub use tracks::TracksReport;
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
 pub use verdict::{Verdict, VerdictKind};
 

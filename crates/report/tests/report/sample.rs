@@ -153,6 +153,7 @@ pub fn report() -> InferReport {
             uncertain: 141,
             outside: 11,
             latent: Some(LatentCells { inserted: 3, deleted: 1, split: 1, merged: 0, missed_rate: 0.02 }),
+            tracks: None,
         },
         flow: None,
         constraints: GivenConstraints {

@@ -58,7 +58,7 @@ impl History {
             .with_hint("leave it out; --difference says how velocities are derived from tracks"));
         }
         let (velocities, lag, interval, overlap) = match explained {
-            Measured::Flow(_) => return Ok(None),
+            Measured::Flow(_) | Measured::Tracks(_) => return Ok(None),
             Measured::Derived(_, Difference::Forward) => (
                 Measured::Derived(derive_velocities(data, Difference::Backward)?, Difference::Backward),
                 0,
@@ -115,7 +115,7 @@ impl History {
     fn reaches(&self, data: &DataSet, frame: usize) -> bool {
         let velocities = match &self.velocities {
             Measured::Given(all) | Measured::Derived(all, _) => all,
-            Measured::Flow(_) => return false,
+            Measured::Flow(_) | Measured::Tracks(_) => return false,
         };
         frame.checked_sub(self.lag).is_some_and(|earlier| {
             let picked = Snapshot::new(data, frame).pick(velocities.index_axis(Axis(0), earlier));

@@ -15,11 +15,33 @@ pub(crate) enum Measured {
     Given(Array3<f64>),
     /// Of cells, from their tracks.
     Derived(Array3<f64>, Difference),
+    /// None: the tracks themselves are to be explained. Mean velocities up to the next frame tell their scale.
+    Tracks(Array3<f64>),
     /// On a grid.
     Flow(OrderedField),
 }
 
 impl Measured {
+    /// What there is to be explained: velocities if there are any, otherwise the tracks, or their differences if these are asked for.
+    pub fn of_tracks(
+        arguments: &SnapshotArguments,
+        data: &DataSet,
+        difference: Option<Difference>,
+    ) -> Result<Self, Failure> {
+        let measured = Self::new(arguments, data, difference.unwrap_or(Difference::Forward));
+        match (difference, measured) {
+            (None, Ok(Self::Derived(means, _))) => Ok(Self::Tracks(means)),
+            (None, Err(_)) if data.velocities.is_none() && data.frames() < 2 => Err(Failure::new(
+                "there is one frame and no velocities: nothing tells how cells move",
+            )
+            .with_hint(
+                "give velocities, a flow field, or the positions of the same cells in two frames or more",
+            )
+            .at(arguments.data.positions_file().display())),
+            (_, measured) => measured,
+        }
+    }
+
     /// The velocities that were asked for.
     pub fn new(
         arguments: &SnapshotArguments,
@@ -57,7 +79,7 @@ impl Measured {
     pub fn file(&self, arguments: &SnapshotArguments) -> PathBuf {
         match self {
             Self::Given(_) => arguments.data.velocities_file(),
-            Self::Derived(..) => arguments.data.positions_file(),
+            Self::Derived(..) | Self::Tracks(_) => arguments.data.positions_file(),
             Self::Flow(_) => arguments.data.flow_file(),
         }
     }
@@ -65,7 +87,7 @@ impl Measured {
     /// Whether a frame has a velocity anywhere.
     pub fn has_velocity(&self, frame: usize) -> bool {
         match self {
-            Self::Given(all) | Self::Derived(all, _) => {
+            Self::Given(all) | Self::Derived(all, _) | Self::Tracks(all) => {
                 all.index_axis(Axis(0), frame).iter().any(|v| v.is_finite())
             }
             Self::Flow(field) => field.has_velocity(frame),
@@ -75,13 +97,18 @@ impl Measured {
     /// Those of one frame.
     pub fn of(&self, snapshot: &Snapshot, frame: usize) -> Velocities {
         match self {
-            Self::Given(all) | Self::Derived(all, _) => snapshot.pick(all.index_axis(Axis(0), frame)).into(),
+            Self::Given(all) | Self::Derived(all, _) | Self::Tracks(all) => {
+                snapshot.pick(all.index_axis(Axis(0), frame)).into()
+            }
             Self::Flow(field) => Velocities::OnGrid(field.frame(frame)),
         }
     }
 
     /// The frames asked for; all that have velocities, if none were.
     pub fn frames(&self, arguments: &SnapshotArguments, data: &DataSet) -> Result<Vec<usize>, Failure> {
+        if let Self::Tracks(_) = self {
+            return track_frames(arguments, data);
+        }
         let Some(selection) = &arguments.frames else {
             return Ok((0..data.frames()).filter(|&frame| self.has_velocity(frame)).collect());
         };
@@ -94,7 +121,9 @@ impl Measured {
                     "no cell has a velocity",
                     "central differences need the frame before and the frame after",
                 ),
-                Self::Derived(..) => ("no cell has a velocity", "differences need the neighbouring frame"),
+                Self::Derived(..) | Self::Tracks(_) => {
+                    ("no cell has a velocity", "differences need the neighbouring frame")
+                }
                 Self::Given(_) => {
                     ("no cell has a velocity", "choose a frame whose velocities are not all NaN")
                 }
@@ -104,5 +133,22 @@ impl Measured {
             return Err(Failure::new(what).with_hint(hint).at(place));
         }
         Ok(frames)
+    }
+}
+
+/// The frames whose tracks are to be explained: those asked for, or all.
+fn track_frames(arguments: &SnapshotArguments, data: &DataSet) -> Result<Vec<usize>, Failure> {
+    let file = arguments.data.positions_file();
+    let frames = match &arguments.frames {
+        None => (0..data.frames()).collect(),
+        Some(selection) => {
+            selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(file.display()))?
+        }
+    };
+    match frames.as_slice() {
+        [only] => Err(Failure::new("tracks take two frames or more")
+            .with_hint("add the frames before and after, or give --difference central for a velocity of this frame alone")
+            .at(format!("{}, frame {only}", file.display()))),
+        _ => Ok(frames),
     }
 }

@@ -4,6 +4,7 @@
 //! |---|---|
 //! | `arguments`, `constraints`, `flow`, `search` | options: which data, what is known of the parameters, velocities on a grid, how long to search |
 //! | `measured`, `prepare`, `scaling` | from the data set to the problem in scaled units, and back |
+//! | `tracks` | tracks as a movie, and what came of them |
 //! | `outcome`, `implied`, `words` | a fitted model as reports tell it |
 //! | `arrays`, `views`, `browser` | arrays, frames to be drawn, the page on the screen |
 
@@ -19,6 +20,7 @@ pub(crate) mod outcome;
 mod prepare;
 pub(crate) mod scaling;
 mod search;
+mod tracks;
 pub(crate) mod views;
 pub(crate) mod words;
 
@@ -28,3 +30,4 @@ pub(crate) use flow::{OrderedField, scaled as scaled_flow};
 pub(crate) use measured::Measured;
 pub(crate) use prepare::{Prepared, Question, observe, remove_median};
 pub(crate) use search::SearchArguments;
+pub(crate) use tracks::PreparedTracks;

@@ -180,6 +180,7 @@ pub(crate) fn measurement(prepared: &Prepared) -> Measurement {
         uncertain: count(Certainty::Uncertain),
         outside: count(Certainty::Outside),
         latent: prepared.latent_cells(),
+        tracks: None,
     }
 }
 

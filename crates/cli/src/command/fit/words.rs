@@ -78,6 +78,11 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
             "positions look like centroids of cells rather than the sites of their polygons ({} of the way)",
             significant(share, 2)
         ),
+        Doubt::Integration(errors) => format!(
+            "the cells move so far between frames that a finer integration would change a coefficient by {} standard errors; \
+             fit fewer frames at a time, or frames that are closer in time",
+            significant(errors, 2)
+        ),
     }
 }
 

@@ -38,6 +38,11 @@ enum DescendedLoss {
 }
 
 impl MethodArguments {
+    /// Whether the paper's optimiser is asked for.
+    pub fn is_descent(&self) -> bool {
+        self.method == Optimiser::Descent
+    }
+
     /// How the objective is made small.
     pub fn method(&self) -> Result<Method, Failure> {
         let refuse = |option: &str, method: &str, other: &str| {

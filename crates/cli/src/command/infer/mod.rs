@@ -9,7 +9,8 @@ mod summary;
 mod verdict;
 
 use super::fit::{
-    ConstraintArguments, Measured, Question, SnapshotArguments, arrays, browser, latent, words,
+    ConstraintArguments, Measured, PreparedTracks, Question, SnapshotArguments, arrays, browser, latent,
+    words,
 };
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -19,21 +20,22 @@ use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
-use voronudge_infer::infer;
+use voronudge_infer::{infer, infer_tracks};
 use voronudge_io::{Difference, OutputDirectory};
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
 ///
-/// Velocities are read from the data set, of cells or on a grid, or derived from its tracked positions. Writes
-/// report.json, report.html, nudged_positions.npy, predicted_velocities.npy and residual_velocities.npy (for a flow field
-/// predicted_flow.npy and residual_flow.npy), and latent_cells.npy, the cells that were not detected.
+/// Velocities are read from the data set, of cells or on a grid. Where there are none, the tracks of the cells are fitted
+/// themselves, which also writes trajectories.npy. Writes report.json, report.html, nudged_positions.npy,
+/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy), and
+/// latent_cells.npy, the cells that were not detected.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     snapshots: SnapshotArguments,
-    /// How velocities are derived from positions where none are given.
-    #[arg(long, value_name = "central|forward|backward", default_value_t = Difference::Central)]
-    difference: Difference,
+    /// Derive velocities from tracked positions by differences, where none are given [default: fit the tracks themselves].
+    #[arg(long, value_name = "central|forward|backward")]
+    difference: Option<Difference>,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -49,6 +51,26 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
+impl Arguments {
+    /// Refuses what is for velocities, where tracks are fitted.
+    fn check_tracks(&self) -> Result<(), Failure> {
+        let asked = [
+            (self.method.is_descent(), "--method descent"),
+            (self.snapshots.background.is_some(), "--background"),
+            (self.uncertainty.is_asked(), "--profile, --landscape or --bootstrap"),
+        ];
+        match asked.into_iter().find(|(given, _)| *given) {
+            None => Ok(()),
+            Some((_, option)) => Err(Failure::new(format!(
+                "{option} needs velocities, but there are only tracks"
+            ))
+            .with_hint(format!(
+                "leave out {option}, or give --difference central for velocities from the tracks"
+            ))),
+        }
+    }
+}
+
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("infer", &arguments.common)?;
     arguments.snapshots.check()?;
@@ -58,7 +80,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     arguments.uncertainty.check(&constraints)?;
     let data = arguments.snapshots.data.load()?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
-    let velocities = Measured::new(&arguments.snapshots, &data, arguments.difference)?;
+    let velocities = Measured::of_tracks(&arguments.snapshots, &data, arguments.difference)?;
     if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
         run.warn(format!(
             "velocities are {difference} differences, which share the error of the position they start or end at: it acts \
@@ -69,25 +91,45 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let seed = arguments.common.seed;
     let question =
         Question { arguments: &arguments.snapshots, data: &data, constraints, method, seed, scale: None };
-    let mut prepared = question.prepare(velocities, frames, &mut run)?;
+    let (mut prepared, movie) = match velocities {
+        Measured::Tracks(_) => {
+            arguments.check_tracks()?;
+            let (prepared, movie) = PreparedTracks::new(question, velocities, frames, &mut run)?;
+            (prepared, Some(movie))
+        }
+        _ => (question.prepare(velocities, frames, &mut run)?, None),
+    };
     let mut progress = Progress::new(arguments.common.verbosity());
-    let completed = arguments.latent.complete(&mut prepared, &mut progress);
+    let completed = match &movie {
+        Some(_) => Ok(()),
+        None => arguments.latent.complete(&mut prepared, &mut progress),
+    };
     let fitted = completed.and_then(|()| {
-        infer(&prepared.observations, &prepared.request, &mut |state| {
-            progress.step(state.stage, state.step.0, state.step.1)
-        })
+        let mut observe =
+            |state: voronudge_infer::Progress<'_>| progress.step(state.stage, state.step.0, state.step.1);
+        match &movie {
+            Some(tracks) => infer_tracks(&tracks.movie, &prepared.request, &mut observe)
+                .map(|(result, tracked)| (result, Some((tracks, tracked)))),
+            None => {
+                infer(&prepared.observations, &prepared.request, &mut observe).map(|result| (result, None))
+            }
+        }
     });
-    let answered = fitted.and_then(|result| {
+    let answered = fitted.and_then(|(result, tracked)| {
         let answers = arguments.uncertainty.ask(&prepared, &result, &mut progress)?;
-        Ok((result, answers))
+        Ok((result, tracked, answers))
     });
     progress.finish();
-    let (result, answers) = answered.map_err(|error| prepared.place(error, &arguments.snapshots))?;
+    let (result, tracked, answers) = answered.map_err(|error| prepared.place(error, &arguments.snapshots))?;
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
-    let report = report::report(&run, &data, &prepared, &result, &answers);
+    if let Some((tracks, tracked)) = &tracked {
+        tracks.write(&mut out, &data, &prepared, tracked)?;
+    }
+    let tracks = tracked.map(|(tracks, tracked)| tracks.report(&prepared, &result, &tracked));
+    let report = report::report(&run, &data, &prepared, &result, &answers, tracks);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;

@@ -44,6 +44,11 @@ pub(super) fn page(
 fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<String> {
     let source = match &prepared.velocities {
         Measured::Given(_) => "Velocities were given".to_owned(),
+        Measured::Tracks(_) => format!(
+            "No velocities were given: the tracks of the cells, {} {} from frame to frame, were fitted themselves, and the velocities \
+             shown are means up to the next frame",
+            data.frame_interval, data.time_unit
+        ),
         Measured::Flow(_) => "Velocities were measured on a grid, and stand for averages over cells".into(),
         Measured::Derived(_, difference) => format!(
             "Velocities are {} differences of tracked positions, {} {} apart",

@@ -91,6 +91,11 @@ impl UncertaintyArguments {
         Ok(())
     }
 
+    /// Whether anything is asked.
+    pub fn is_asked(&self) -> bool {
+        self.bootstrap > 0 || !self.profile.is_empty() || !self.landscape.is_empty()
+    }
+
     /// Asks a finished fit.
     pub fn ask(
         &self,

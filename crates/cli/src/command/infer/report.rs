@@ -8,7 +8,9 @@ use crate::command::fit::{OrderedField, Prepared, implied, outcome};
 use crate::run::Run;
 use voronudge_infer::{Inference, NoiseSource, Quantity as What};
 use voronudge_io::DataSet;
-use voronudge_report::infer_report::{InferReport, NaiveParameters, Nmse, Quantity};
+use voronudge_report::infer_report::{
+    InferReport, Measurement, NaiveParameters, Nmse, Quantity, TracksReport,
+};
 
 pub(super) fn report(
     run: &Run,
@@ -16,6 +18,7 @@ pub(super) fn report(
     prepared: &Prepared,
     result: &Inference,
     answers: &Answers,
+    tracks: Option<TracksReport>,
 ) -> InferReport {
     let units = outcome::units(data);
     let scale = &prepared.scale;
@@ -27,7 +30,7 @@ pub(super) fn report(
         verdict: verdict(result, &nmse, &parameters),
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, result),
-        measurement: outcome::measurement(prepared),
+        measurement: Measurement { tracks, ..outcome::measurement(prepared) },
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         parameters,

@@ -80,7 +80,9 @@ fn misfit(doubt: &Doubt) -> &'static str {
         }
         Doubt::Voids(_) => "cells were missed",
         Doubt::Tails(_) => "a few velocities are out of line with the rest",
-        Doubt::LongSteps(_) | Doubt::Effect("time_lag", _) => "cells move too far between frames",
+        Doubt::LongSteps(_) | Doubt::Integration(_) | Doubt::Effect("time_lag", _) => {
+            "cells move too far between frames"
+        }
         Doubt::Effect("flow_blur", _) => "the flow is averaged over another window than the fit takes",
         Doubt::Effect(..) => "positions are centroids rather than sites",
         Doubt::Objective(_) | Doubt::Steps | Doubt::Pattern => "the fit is not a good one",

@@ -1,0 +1,28 @@
+//! Space-time nudging: the model fitted to cells followed from frame to frame, without velocities.
+//!
+//! ```text
+//! minimise over β, x:   Σ ‖y_f − x_f‖² / σ_r²  +  Σ ‖x_{j+1} − x_j − ∫F_β(x) dt‖² / σ_d²
+//! ```
+//!
+//! Positions x of the cells are unknowns at the frames and at instants between them. What moves a cell from one instant to the next
+//! is the integral of the model's velocities by a collocation rule, so that no velocity is ever derived from positions. The
+//! problem has the form of the nudged fit of snapshots and is solved by the same means.
+
+mod fit;
+mod held_out;
+mod inference;
+mod join;
+mod linearised;
+mod movie;
+mod objective;
+mod result;
+mod rule;
+#[cfg(test)]
+mod sample;
+mod states;
+#[cfg(test)]
+mod tests;
+
+pub use inference::infer_tracks;
+pub use movie::{Drift, Movie, Track};
+pub use result::{Integration, Tracked};

@@ -1,0 +1,189 @@
+//! Cells followed from frame to frame.
+
+use super::join::join;
+use super::rule::Rule;
+use super::states::States;
+use crate::{Error, Observation};
+use voronudge_geometry::{Domain, FieldOfView, Vector};
+
+/// One cell while it is followed.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Track {
+    /// First frame in which the cell was seen.
+    pub first: usize,
+    /// Where it was seen from then on, up to the last frame in which it was; `None` in a gap. In a periodic box positions go
+    /// on beyond its sides, so that two that follow each other are less than half a box apart.
+    pub seen: Vec<Option<Vector<f64>>>,
+    /// Its names, each with the frame from which on it bears it: its number in the frames that the movie was made from.
+    pub names: Vec<(usize, usize)>,
+}
+
+impl Track {
+    /// Frame after the last in which the cell was seen.
+    pub fn end(&self) -> usize {
+        self.first + self.seen.len()
+    }
+
+    /// Where the cell was seen in a frame.
+    pub fn at(&self, frame: usize) -> Option<Vector<f64>> {
+        self.seen.get(frame.checked_sub(self.first)?).copied().flatten()
+    }
+
+    /// The name that it bears in a frame.
+    pub fn name(&self, frame: usize) -> usize {
+        let later = self.names.partition_point(|(from, _)| *from <= frame);
+        self.names[later.saturating_sub(1)].1
+    }
+
+    /// Number of frames within the track in which the cell was not seen.
+    pub fn gaps(&self) -> usize {
+        self.seen.iter().filter(|place| place.is_none()).count()
+    }
+
+    /// Where the cell was seen in a frame, or between the frames before and after in which it was; `None` before the first and
+    /// after the last.
+    pub fn near(&self, frame: usize, times: &[f64]) -> Option<Vector<f64>> {
+        if let Some(place) = self.at(frame) {
+            return Some(place);
+        }
+        let before = (self.first..frame).rev().find_map(|f| Some((f, self.at(f)?)))?;
+        let after = (frame + 1..self.end()).find_map(|f| Some((f, self.at(f)?)))?;
+        let share = (times[frame] - times[before.0]) / (times[after.0] - times[before.0]);
+        Some(before.1 + (after.1 - before.1) * share)
+    }
+}
+
+/// What moves all cells alike from one frame to the next without being a motion of the tissue.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Drift {
+    /// Nothing: the camera stands still.
+    None,
+    /// A translation in each interval: drift or jumps of the stage.
+    PerInterval,
+}
+
+/// Positions of cells in several frames, the same cells under the same number.
+#[derive(Debug, Clone)]
+pub struct Movie {
+    /// Time of each frame (F), ascending.
+    pub times: Vec<f64>,
+    /// The cells.
+    pub tracks: Vec<Track>,
+    /// The boundary condition.
+    pub domain: Domain,
+    /// Where every cell would have been seen.
+    pub field_of_view: FieldOfView,
+    /// What moves all cells alike.
+    pub drift: Drift,
+    /// The usual time between two frames.
+    usual: f64,
+}
+
+impl Movie {
+    /// A movie from the position of each cell in each frame; `frames` and `times` are as long as each other (F), each frame has an
+    /// entry for every cell. Cells that are in no frame have no track.
+    ///
+    /// # Errors
+    /// [`Error::Frames`] for fewer than two frames, times that do not ascend, or frames of different length.
+    pub fn new(
+        times: Vec<f64>,
+        frames: &[Vec<Option<Vector<f64>>>],
+        domain: Domain,
+        field_of_view: FieldOfView,
+        drift: Drift,
+    ) -> Result<Self, Error> {
+        let cells = frames.first().map_or(0, Vec::len);
+        let ascending = times.windows(2).all(|pair| pair[1] > pair[0]) && times.iter().all(|t| t.is_finite());
+        if frames.len() < 2 || times.len() != frames.len() || !ascending {
+            return Err(Error::Frames { frames: frames.len(), times: times.len() });
+        }
+        if frames.iter().any(|frame| frame.len() != cells) {
+            return Err(Error::Frames { frames: frames.len(), times: times.len() });
+        }
+        let tracks = (0..cells).filter_map(|cell| track(frames, cell, domain)).collect();
+        let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
+        lengths.sort_unstable_by(f64::total_cmp);
+        let usual = lengths[lengths.len() / 2];
+        Ok(Self { times, tracks, domain, field_of_view, drift, usual })
+    }
+
+    /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.
+    ///
+    /// A track that ends and one that begins a frame or two later are taken for one cell where that is more likely than two that are
+    /// there by chance, given how well the motion of its neighbours predicts that of a cell.
+    pub fn join(&mut self) -> usize {
+        join(self)
+    }
+
+    /// Number of frames.
+    pub fn frames(&self) -> usize {
+        self.times.len()
+    }
+
+    /// The usual time between two frames: the median.
+    pub fn interval(&self) -> f64 {
+        self.usual
+    }
+
+    /// The displacements of the cells seen in a frame and in the next: cell and displacement.
+    pub fn increments(&self, frame: usize) -> impl Iterator<Item = (usize, Vector<f64>)> + '_ {
+        let seen =
+            move |(cell, track): (usize, &Track)| Some((cell, track.at(frame + 1)? - track.at(frame)?));
+        self.tracks.iter().enumerate().filter_map(seen)
+    }
+
+    /// What moves all cells alike in an interval, as far as the increments tell before any fit: their median, which a few fast
+    /// cells do not decide.
+    pub fn first_drift(&self, frame: usize) -> Vector<f64> {
+        if self.drift == Drift::None {
+            return Vector::zeros();
+        }
+        let all: Vec<Vector<f64>> = self.increments(frame).map(|(_, step)| step).collect();
+        let median = |axis: usize| {
+            let mut values: Vec<f64> = all.iter().map(|step| step[axis]).collect();
+            values.sort_unstable_by(f64::total_cmp);
+            values.get(values.len() / 2).copied().unwrap_or(0.0)
+        };
+        Vector::new(median(0), median(1))
+    }
+
+    /// The cells of each frame, those in gaps of their tracks included, with their mean velocities up to the next frame, where the model
+    /// can explain these, without the median of the interval; in the last frame there is none. Tracks ascend within a frame.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`].
+    pub fn observations(&self) -> Result<Vec<Observation>, Error> {
+        let states = States::new(self, Rule::TRAPEZOID)?;
+        let mut velocities: Vec<Vec<Option<Vector<f64>>>> =
+            states.instants.iter().map(|instant| vec![None; instant.tracks.len()]).collect();
+        for motion in &states.motions {
+            let (frame, track) = (motion.interval, &self.tracks[motion.track as usize]);
+            if let (Some(from), Some(to)) = (track.at(frame), track.at(frame + 1)) {
+                let moved = to - from - self.first_drift(frame);
+                let time = self.times[frame + 1] - self.times[frame];
+                velocities[frame][motion.cells[0] as usize] = Some(moved / time);
+            }
+        }
+        let frames = states.instants.into_iter().zip(velocities);
+        Ok(frames.map(|(instant, velocities)| instant.cells.with_velocities(velocities)).collect())
+    }
+
+    /// The tracks of the cells of [`observations`](Self::observations) in a frame.
+    pub fn present(&self, frame: usize) -> impl Iterator<Item = usize> + '_ {
+        (0..self.tracks.len())
+            .filter(move |track| self.tracks[*track].first <= frame && frame < self.tracks[*track].end())
+    }
+}
+
+/// One cell's track, if it was seen at all.
+fn track(frames: &[Vec<Option<Vector<f64>>>], cell: usize, domain: Domain) -> Option<Track> {
+    let first = frames.iter().position(|frame| frame[cell].is_some())?;
+    let last = frames.iter().rposition(|frame| frame[cell].is_some())?;
+    let mut previous: Option<Vector<f64>> = None;
+    let seen = frames[first..=last].iter().map(|frame| {
+        let place = frame[cell].map(|r| previous.map_or(r, |from| from + domain.shortest(r - from)));
+        previous = place.or(previous);
+        place
+    });
+    Some(Track { first, seen: seen.collect(), names: vec![(first, cell)] })
+}

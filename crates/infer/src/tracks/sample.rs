@@ -1,0 +1,62 @@
+//! Movies of simulated tissues for the tests of this module.
+
+use super::movie::{Drift, Movie};
+use rand_distr::{Distribution, Normal};
+use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
+use voronudge_model::{Model, Parameters};
+use voronudge_simulate::{RandomPlacement, Simulation, generator};
+
+/// P_0 and α of the tissue.
+pub const TRUTH: [f64; 2] = [4.0, 2.9];
+
+/// A liquid tissue that is seen in some frames.
+pub struct Filmed {
+    /// Cells, frames.
+    pub size: [usize; 2],
+    /// Root mean square step from frame to frame, and error of a coordinate.
+    pub step: f64,
+    pub error: f64,
+    pub seed: u64,
+}
+
+impl Filmed {
+    /// Positions in each frame, the box, and K_P α in units of the velocities.
+    pub fn film(&self) -> (Vec<Vec<Option<Vector<f64>>>>, Domain, f64) {
+        let [cells, frames] = self.size;
+        let side = (cells as f64).sqrt();
+        let domain = Domain::Periodic(PeriodicBox::new([side, side]).unwrap());
+        let mut rng = generator(self.seed);
+        let start =
+            RandomPlacement::new(cells, PeriodicBox::new([side, side]).unwrap()).draw(&mut rng).unwrap();
+        let truth = Parameters {
+            area_elasticity: 0.0,
+            perimeter_elasticity: 1.0,
+            preferred_perimeter: TRUTH[0],
+            preferred_area: 1.0,
+            chirality: TRUTH[1],
+        };
+        let mut tissue = Simulation::new(start, domain, Model::chiral_voronoi(&truth)).unwrap();
+        (0..1000).for_each(|_| tissue.step(0.01).unwrap());
+        let speed = tissue.velocities().iter().map(|v| v.norm_squared()).sum::<f64>() / cells as f64;
+        let interval = self.step / speed.sqrt();
+        let fine = (interval / 0.003).ceil();
+        let noise = Normal::new(0.0, self.error).unwrap();
+        let mut film = Vec::new();
+        for frame in 0..frames {
+            if frame > 0 {
+                (0..fine as usize).for_each(|_| tissue.step(interval / fine).unwrap());
+            }
+            let mut seen =
+                |r: &Vector<f64>| Some(r + Vector::new(noise.sample(&mut rng), noise.sample(&mut rng)));
+            film.push(tissue.positions_with_images().iter().map(&mut seen).collect());
+        }
+        (film, domain, TRUTH[1] / speed.sqrt())
+    }
+
+    /// The same as a movie whose velocities are of order one, and K_P α.
+    pub fn movie(&self) -> (Movie, f64) {
+        let (film, domain, truth) = self.film();
+        let times = (0..film.len()).map(|k| k as f64 * self.step).collect();
+        (Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap(), truth)
+    }
+}

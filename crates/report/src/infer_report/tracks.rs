@@ -1,0 +1,30 @@
+//! Tracks that were fitted themselves.
+
+use serde::Serialize;
+
+/// The tracks of a movie, and how the motion along them was integrated.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct TracksReport {
+    /// Number of tracks after joining.
+    pub tracks: usize,
+    /// Tracks that broke and went on under another name, and were joined.
+    pub joined: usize,
+    /// Cells times frames within tracks in which the cell was not seen.
+    pub gaps: usize,
+    /// Tracks that begin after the first frame.
+    pub begun: usize,
+    /// Tracks that end before the last frame.
+    pub ended: usize,
+    /// Steps of integration from one frame to the next.
+    pub substeps: usize,
+    /// Order of the rule in the length of a step: 2 for the trapezoid rule, 4 for Hermite–Simpson.
+    pub order: usize,
+    /// By how much a finer rule would change the coefficients: the largest change, in standard errors.
+    pub integration_error: f64,
+    /// Position noise that the tracks imply, in units of ℓ₀.
+    pub sigma_r: f64,
+    /// What the model misses of a displacement from frame to frame, in units of ℓ₀.
+    pub sigma_d: f64,
+    /// Translation of all cells over each interval, drift of the stage among it, in units of length, y up; empty if none was allowed.
+    pub drifts: Vec<[f64; 2]>,
+}
