@@ -60,15 +60,31 @@ fn a_frame_that_does_not_exist_is_refused() {
 #[test]
 fn a_frame_without_velocities_is_refused() {
     let data = fixture("open-field");
-    assert_refused("infer", &data, &["--frames", "0"], &["positions.npy, frame 0", "no cell has a velocity"]);
-    assert_refused("infer", &data, &["--frames", "1..5"], &["positions.npy, frame 4"]);
+    let refused = |frames: &str, facts: &[&str]| {
+        assert_refused("infer", &data, &["--difference", "central", "--frames", frames], facts);
+    };
+    refused("0", &["positions.npy, frame 0", "no cell has a velocity"]);
+    refused("1..5", &["positions.npy, frame 4"]);
+}
+
+#[test]
+fn tracks_of_one_frame_are_refused() {
+    let data = fixture("open-field");
+    let facts = ["positions.npy, frame 2", "two frames or more", "--difference central"];
+    assert_refused("infer", &data, &["--frames", "2"], &facts);
+    for option in [["--background", "1"], ["--bootstrap", "40"], ["--method", "descent"]] {
+        let facts = [option[0], "only tracks", "--difference central"];
+        assert_refused("infer", &data, &option, &facts);
+    }
 }
 
 #[test]
 fn positions_of_one_moment_have_no_velocities() {
     let data = Folder::copy_of("chiral-liquid");
     data.remove("velocities.npy");
-    assert_refused("infer", data.path(), &[], &["positions.npy", "need 3 frames", "has 1"]);
+    assert_refused("infer", data.path(), &[], &["positions.npy", "there is one frame and no velocities"]);
+    let facts = ["positions.npy", "need 3 frames", "has 1"];
+    assert_refused("infer", data.path(), &["--difference", "central"], &facts);
 }
 
 #[test]

@@ -139,12 +139,13 @@ impl Measured {
 /// The frames whose tracks are to be explained: those asked for, or all.
 fn track_frames(arguments: &SnapshotArguments, data: &DataSet) -> Result<Vec<usize>, Failure> {
     let file = arguments.data.positions_file();
-    let frames = match &arguments.frames {
+    let mut frames: Vec<usize> = match &arguments.frames {
         None => (0..data.frames()).collect(),
         Some(selection) => {
             selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(file.display()))?
         }
     };
+    frames.sort_unstable();
     match frames.as_slice() {
         [only] => Err(Failure::new("tracks take two frames or more")
             .with_hint("add the frames before and after, or give --difference central for a velocity of this frame alone")
