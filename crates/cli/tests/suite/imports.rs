@@ -82,7 +82,7 @@ fn assert_read_by_others(data: &Path) {
     let noise = "--position-noise 20% --velocity-noise 50%";
     succeed(&format!("infer --fix K_A=0.1 --quiet {noise}"), &[("", data), ("--out", fit.path())]);
     let fit = report(fit.path());
-    assert_eq!(fit["cells"]["frames"], serde_json::json!([1, 2]));
+    assert_eq!(fit["cells"]["frames"], serde_json::json!([0, 1, 2, 3]));
     assert_eq!(fit["units"], serde_json::json!({"length": "um", "time": "min"}));
 }
 

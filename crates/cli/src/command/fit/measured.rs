@@ -28,10 +28,11 @@ impl Measured {
         data: &DataSet,
         difference: Option<Difference>,
     ) -> Result<Self, Failure> {
+        let on_grid = arguments.flow.field(&arguments.data, data)?.is_some();
         let measured = Self::new(arguments, data, difference.unwrap_or(Difference::Forward));
         match (difference, measured) {
             (None, Ok(Self::Derived(means, _))) => Ok(Self::Tracks(means)),
-            (None, Err(_)) if data.velocities.is_none() && data.frames() < 2 => Err(Failure::new(
+            (None, Err(_)) if !on_grid && data.velocities.is_none() && data.frames() < 2 => Err(Failure::new(
                 "there is one frame and no velocities: nothing tells how cells move",
             )
             .with_hint(
