@@ -74,7 +74,8 @@ fn of_cells(seed: u64, faults: [usize; 3]) -> Detections {
 
 fn looked_over(set: &Detections) -> Completion {
     let request = set.tissue.request(NOISE.known());
-    complete(&[set.observation.clone()], &request, None, &mut |_| ControlFlow::Continue(())).unwrap()
+    complete(std::slice::from_ref(&set.observation), &request, None, &mut |_| ControlFlow::Continue(()))
+        .unwrap()
 }
 
 /// Hidden cells with an inserted one within half a cell, each counted once.
@@ -107,7 +108,8 @@ fn hidden_cells_are_found_and_no_others() {
         inserted += completion.count(ChangeKind::Inserted);
         let request = set.tissue.request(NOISE.known());
         let fit = |frame: &Observation| {
-            let fit = infer(&[frame.clone()], &request, &mut |_| ControlFlow::Continue(())).unwrap();
+            let fit =
+                infer(std::slice::from_ref(frame), &request, &mut |_| ControlFlow::Continue(())).unwrap();
             fit.parameters.chiral_coefficient.value / set.tissue.truth(Quantity::ChiralCoefficient)
         };
         errors.push((fit(&completion.frames[0].observation) - 1.0).abs());
@@ -156,9 +158,10 @@ fn merged_and_split_detections_are_told_apart() {
 fn noise_levels_need_not_be_known() {
     let set = of_cells(8, [7, 0, 0]);
     let request = set.tissue.request(KnownNoise::default());
-    let completion =
-        complete(&[set.observation.clone()], &request, Some(0.05), &mut |_| ControlFlow::Continue(()))
-            .unwrap();
+    let completion = complete(std::slice::from_ref(&set.observation), &request, Some(0.05), &mut |_| {
+        ControlFlow::Continue(())
+    })
+    .unwrap();
     assert!(recovered(&set, &completion) >= 6);
     assert_eq!(completion.missed_rate, 0.05);
 }

@@ -30,7 +30,7 @@ enum Command {
     /// Make figures of the paper anew, and the page of them.
     Figures(figures::Arguments),
     /// Run a statistical study and print its table.
-    Study(study::Arguments),
+    Study(Box<study::Arguments>),
     /// Make everything in fixtures/ from recorded seeds; twice gives the same bytes.
     Fixtures {
         /// Folder to write to.

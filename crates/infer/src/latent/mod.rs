@@ -247,7 +247,7 @@ impl Search<'_> {
         let mut found: Vec<Vec<(voronudge_geometry::Vector<f64>, Change)>> = vec![Vec::new(); scenes.len()];
         for (index, centre, change) in changes.into_iter().filter(|change| change.2.evidence > least) {
             let scene = &scenes[index];
-            if found[index].iter().all(|(other, _)| scene.from_to(*other, centre).norm() > APART) {
+            if found[index].iter().all(|(other, _)| scene.between(*other, centre).norm() > APART) {
                 found[index].push((centre, change));
             }
         }

@@ -79,7 +79,7 @@ impl Neighbourhood {
     ) -> Result<Self, Error> {
         let (mut cells, mut positions, mut targets) = (Vec::new(), Vec::new(), Vec::new());
         for cell in scene.cells(undone, without) {
-            let d = scene.from_to(centre, cell.position);
+            let d = scene.between(centre, cell.position);
             if d.norm_squared() < CONTEXT * CONTEXT {
                 if let Some(target) = cell.target.filter(|_| d.norm_squared() < COMPARED * COMPARED) {
                     targets.push((cells.len(), target));

@@ -151,7 +151,7 @@ pub(super) fn reassess(
             change.added.iter().map(|place| proposal(ChangeKind::Inserted, *place, Vec::new())).collect()
         }
         ChangeKind::Inserted if stage == Stage::All => {
-            let distance = |cell: usize| scene.from_to(centre, scene.measured.positions[cell]).norm();
+            let distance = |cell: usize| scene.between(centre, scene.measured.positions[cell]).norm();
             let detections = scene.origins.iter().filter_map(|origin| match origin {
                 Origin::Detected(cell) => Some(*cell),
                 Origin::Added(..) => None,
@@ -192,7 +192,7 @@ fn judge(
     for mut guess in guesses {
         if !start.is_empty() {
             guess.start =
-                start.iter().map(|at| proposal.centre + scene.from_to(proposal.centre, *at)).collect();
+                start.iter().map(|at| proposal.centre + scene.between(proposal.centre, *at)).collect();
         }
         let placed = after.as_ref().unwrap_or(&before).place(law, &guess, STEPS)?;
         let n = placed.information.nrows();

@@ -152,7 +152,7 @@ impl<'a> Scene<'a> {
     }
 
     /// The shortest way from one place to another.
-    pub fn from_to(&self, from: Vector<f64>, to: Vector<f64>) -> Vector<f64> {
+    pub fn between(&self, from: Vector<f64>, to: Vector<f64>) -> Vector<f64> {
         self.measured.tessellation.domain().shortest(to - from)
     }
 
@@ -160,7 +160,7 @@ impl<'a> Scene<'a> {
     pub fn unexplained(&self, place: Vector<f64>, radius: f64) -> f64 {
         self.squares
             .iter()
-            .filter(|(at, _)| self.from_to(place, *at).norm_squared() < radius * radius)
+            .filter(|(at, _)| self.between(place, *at).norm_squared() < radius * radius)
             .map(|(_, square)| (square / super::law::FREEDOM).ln_1p())
             .sum()
     }

@@ -28,8 +28,8 @@ pub fn draw(summaries: &[Summary]) -> String {
     }
     let height = AXIS + ROW * shown.len() as f64;
     let mut svg = Svg::new([NAMES + 2.0 * (WIDE + NARROW), height], TITLE);
-    let columns: [(&str, &str, fn(&Summary) -> &Errors); 2] =
-        [("K_P α", BLUE, |own| &own.k_p_alpha), ("P_0", GREEN, |own| &own.p_0)];
+    type Column = (&'static str, &'static str, fn(&Summary) -> &Errors);
+    let columns: [Column; 2] = [("K_P α", BLUE, |own| &own.k_p_alpha), ("P_0", GREEN, |own| &own.p_0)];
     let mut left = NAMES;
     for (name, colour, errors) in columns {
         let rows: Vec<&Errors> = shown.iter().map(|own| errors(own)).collect();
