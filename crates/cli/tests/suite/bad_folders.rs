@@ -70,10 +70,10 @@ fn a_frame_without_velocities_is_refused() {
 #[test]
 fn tracks_of_one_frame_are_refused() {
     let data = fixture("open-field");
-    let facts = ["positions.npy, frame 2", "two frames or more", "--difference central"];
+    let facts = ["positions.npy, frame 2", "two frames or more"];
     assert_refused("infer", &data, &["--frames", "2"], &facts);
     for option in [["--background", "1"], ["--bootstrap", "40"], ["--method", "descent"]] {
-        let facts = [option[0], "only tracks", "--difference central"];
+        let facts = [option[0], "only tracks"];
         assert_refused("infer", &data, &option, &facts);
     }
 }
