@@ -123,23 +123,37 @@ impl Restricted<'_> {
             true => (-0.5 * spacing * slope / bend).clamp(-furthest, furthest),
             false => -furthest.copysign(slope),
         };
-        self.levels(centre + step)
+        let log_k = centre + step;
+        let root = (0.5 * log_k).exp();
+        let velocity = self.velocity(log_k)?;
+        let position = velocity / root;
+        Ok(NoiseLevels {
+            velocity: self.known.velocity.unwrap_or(velocity.max(SMALLEST_VELOCITY_NOISE)),
+            position: self
+                .known
+                .position
+                .unwrap_or(position.clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)),
+        })
     }
 
     /// The levels that belong to k, within their limits.
     fn levels(&self, log_k: f64) -> Result<NoiseLevels, Error> {
         let root = (0.5 * log_k).exp();
-        let velocity = match self.known {
-            KnownNoise { velocity: Some(velocity), .. } => velocity,
-            KnownNoise { position: Some(position), .. } => position * root,
-            _ => (self.leftover(log_k)?.misfit / self.left()).sqrt(),
-        }
-        .max(self.known.velocity.unwrap_or(SMALLEST_VELOCITY_NOISE));
+        let velocity = self.velocity(log_k)?.max(self.known.velocity.unwrap_or(SMALLEST_VELOCITY_NOISE));
         let position = self
             .known
             .position
             .unwrap_or_else(|| (velocity / root).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE));
         Ok(NoiseLevels { position, velocity })
+    }
+
+    /// σ_v that belongs to k.
+    fn velocity(&self, log_k: f64) -> Result<f64, Error> {
+        Ok(match self.known {
+            KnownNoise { velocity: Some(velocity), .. } => velocity,
+            KnownNoise { position: Some(position), .. } => position * (0.5 * log_k).exp(),
+            _ => (self.leftover(log_k)?.misfit / self.left()).sqrt(),
+        })
     }
 
     /// n − p.

@@ -39,18 +39,6 @@ impl Track {
     pub fn gaps(&self) -> usize {
         self.seen.iter().filter(|place| place.is_none()).count()
     }
-
-    /// Where the cell was seen in a frame, or between the frames before and after in which it was; `None` before the first and
-    /// after the last.
-    pub fn near(&self, frame: usize, times: &[f64]) -> Option<Vector<f64>> {
-        if let Some(place) = self.at(frame) {
-            return Some(place);
-        }
-        let before = (self.first..frame).rev().find_map(|f| Some((f, self.at(f)?)))?;
-        let after = (frame + 1..self.end()).find_map(|f| Some((f, self.at(f)?)))?;
-        let share = (times[frame] - times[before.0]) / (times[after.0] - times[before.0]);
-        Some(before.1 + (after.1 - before.1) * share)
-    }
 }
 
 /// What moves all cells alike from one frame to the next without being a motion of the tissue.
@@ -77,6 +65,8 @@ pub struct Movie {
     pub drift: Drift,
     /// The usual time between two frames.
     usual: f64,
+    /// How far the stage had moved in each frame, as far as the increments tell.
+    stage: Vec<Vector<f64>>,
 }
 
 impl Movie {
@@ -104,7 +94,12 @@ impl Movie {
         let mut lengths: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
         lengths.sort_unstable_by(f64::total_cmp);
         let usual = lengths[lengths.len() / 2];
-        Ok(Self { times, tracks, domain, field_of_view, drift, usual })
+        let stage = vec![Vector::zeros(); times.len()];
+        let mut movie = Self { times, tracks, domain, field_of_view, drift, usual, stage };
+        for frame in 1..movie.frames() {
+            movie.stage[frame] = movie.stage[frame - 1] + movie.median_step(frame - 1);
+        }
+        Ok(movie)
     }
 
     /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.
@@ -132,9 +127,28 @@ impl Movie {
         self.tracks.iter().enumerate().filter_map(seen)
     }
 
+    /// Where a cell was seen in a frame, or, in a gap, on the straight line between the frames before and after in which it was, drift of
+    /// the stage apart; `None` before the first and after the last.
+    pub fn near(&self, track: usize, frame: usize) -> Option<Vector<f64>> {
+        let track = &self.tracks[track];
+        if let Some(place) = track.at(frame) {
+            return Some(place);
+        }
+        let seen = |f: usize| Some((f, track.at(f)? - self.stage[f]));
+        let before = (track.first..frame).rev().find_map(seen)?;
+        let after = (frame + 1..track.end()).find_map(seen)?;
+        let share = (self.times[frame] - self.times[before.0]) / (self.times[after.0] - self.times[before.0]);
+        Some(before.1 + (after.1 - before.1) * share + self.stage[frame])
+    }
+
     /// What moves all cells alike in an interval, as far as the increments tell before any fit: their median, which a few fast
     /// cells do not decide.
     pub fn first_drift(&self, frame: usize) -> Vector<f64> {
+        self.stage[frame + 1] - self.stage[frame]
+    }
+
+    /// The median of the increments, if the stage may move.
+    fn median_step(&self, frame: usize) -> Vector<f64> {
         if self.drift == Drift::None {
             return Vector::zeros();
         }

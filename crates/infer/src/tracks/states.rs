@@ -175,10 +175,9 @@ impl States {
 
     /// Where a cell is at an instant.
     pub fn position(&self, instant: usize, cell: usize, displacements: &[f64]) -> Vector<f64> {
-        let parts = self.instants[instant].place[cell]
-            .shares()
-            .map(|(at, share)| (self.start[at] + Self::vector(displacements, at)) * share);
-        parts.fold(Vector::zeros(), |sum: Vector<f64>, part| sum + part)
+        let instant = &self.instants[instant];
+        let parts = instant.place[cell].shares().map(|(at, share)| Self::vector(displacements, at) * share);
+        parts.fold(instant.cells.positions[cell], |sum, part| sum + part)
     }
 
     /// Number of places and translations: blocks of two unknowns.
@@ -202,11 +201,11 @@ fn instants(movie: &Movie, rule: Rule) -> Result<Vec<Instant>, Error> {
     all.into_par_iter()
         .map(|(frame, share)| {
             let (mut tracks, mut positions) = (Vec::new(), Vec::new());
-            for (number, track) in movie.tracks.iter().enumerate() {
-                let Some(here) = track.near(frame, &movie.times) else { continue };
+            for number in 0..movie.tracks.len() {
+                let Some(here) = movie.near(number, frame) else { continue };
                 let place = match share > 0.0 {
                     false => Some(here),
-                    true => track.near(frame + 1, &movie.times).map(|next| here + (next - here) * share),
+                    true => movie.near(number, frame + 1).map(|next| here + (next - here) * share),
                 };
                 if let Some(place) = place {
                     tracks.push(number as u32);
