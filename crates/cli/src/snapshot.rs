@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use ndarray::{Array, Array3, ArrayD, ArrayView2, Axis, Ix2, RemoveAxis};
-use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_io::{Boundary, DataSet, YAxis};
+use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Seen, Vector};
+use voronudge_io::{Boundary, DataSet, Noise, YAxis};
 
 /// The boundary as the geometry knows it, for what does not know of boxes that change.
 pub(crate) fn domain(data: &DataSet) -> Result<Domain, Failure> {
@@ -32,6 +32,25 @@ pub(crate) fn domain_at(data: &DataSet, frame: usize) -> Result<Domain, Failure>
             Domain::Periodic(PeriodicBox::sheared(lengths, offset.copied().unwrap_or(0.0))?)
         }
         Boundary::Open => Domain::Open,
+    })
+}
+
+/// Standard deviations of the positions by which circumdisks stay away from the border of a field of view.
+const MARGIN: f64 = 3.0;
+
+/// Where every cell would have been seen, in the unit of the data.
+pub(crate) fn field_of_view(data: &DataSet) -> Result<FieldOfView, Failure> {
+    let usual = FieldOfView::default();
+    let seen = match &data.field_of_view {
+        Some(area) => Seen::Within(area.region()?),
+        None => Seen::Hull,
+    };
+    Ok(match data.position_noise {
+        Some(Noise::Absolute(error)) => FieldOfView { seen, least_margin: MARGIN * error, ..usual },
+        Some(Noise::Relative(share)) => {
+            FieldOfView { seen, margin: usual.margin.max(MARGIN * share), ..usual }
+        }
+        None => FieldOfView { seen, ..usual },
     })
 }
 

@@ -17,6 +17,8 @@ pub struct FieldOfView {
     /// Circumdisks must stay so far from the border of the region, for errors of the positions: in multiples of the root of
     /// the median area.
     pub margin: f64,
+    /// The same as a length: the larger of the two is in force.
+    pub least_margin: f64,
     /// Multiple of the median area above which a polygon is taken for a hole in the data. It must not reach farther than a
     /// regular hexagon of that area either, and bays of the tissue are where disks as large as that hexagon fit in.
     pub largest_area: f64,
@@ -38,14 +40,14 @@ pub enum Seen {
 impl Default for FieldOfView {
     /// The hull of the cells, a margin of .05 roots of the median area, polygons up to three times the median area.
     fn default() -> Self {
-        Self { seen: Seen::Hull, margin: 0.05, largest_area: 3.0 }
+        Self { seen: Seen::Hull, margin: 0.05, least_margin: 0.0, largest_area: 3.0 }
     }
 }
 
 impl FieldOfView {
     /// Trusts every closed polygon.
     pub fn everywhere() -> Self {
-        Self { seen: Seen::Everywhere, margin: 0.0, largest_area: f64::INFINITY }
+        Self { seen: Seen::Everywhere, margin: 0.0, least_margin: 0.0, largest_area: f64::INFINITY }
     }
 
     /// The same in a unit of length that is `1/factor` times as large.
@@ -55,7 +57,12 @@ impl FieldOfView {
             Seen::Within(region) => Seen::Within(region.scaled(factor)),
             other => other.clone(),
         };
-        Self { seen, ..*self }
+        Self { seen, least_margin: self.least_margin * factor, ..*self }
+    }
+
+    /// The margin in force for cells of a size.
+    pub fn margin_for(&self, size: f64) -> f64 {
+        (self.margin * size).max(self.least_margin)
     }
 
     /// Judges every cell. Positions (N) in the unit of the region. In a periodic box all cells count.
@@ -81,7 +88,7 @@ impl FieldOfView {
             }
             Seen::Everywhere => (None, vec![false; cells]),
         };
-        let margin = self.margin * median.sqrt();
+        let margin = self.margin_for(median.sqrt());
         let of_triangles = |centre: Vector<f64>, radius: f64| {
             let stays = region.as_ref().is_none_or(|region| region.holds_disk(centre, radius + margin));
             match (stays, radius <= largest_radius) {

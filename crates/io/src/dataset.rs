@@ -7,6 +7,7 @@ use std::str::FromStr;
 use ndarray::{Array, Array2, Array3, Axis, RemoveAxis};
 
 use crate::error::{Error, SettingFault};
+use crate::field_of_view::SeenArea;
 use crate::flow::{FlowField, FlowNames};
 use crate::input::InputFile;
 use crate::noise::Noise;
@@ -46,6 +47,8 @@ pub struct DataSet {
     pub position_noise: Option<Noise>,
     /// Standard deviation of a velocity component, where known.
     pub velocity_noise: Option<Noise>,
+    /// Where every cell would have been seen, in an open field, where known; y up.
+    pub field_of_view: Option<SeenArea>,
     /// The files that were read, in reading order.
     pub inputs: Vec<InputFile>,
 }
@@ -118,6 +121,9 @@ impl DataSet {
         let name = if self.walls.is_some() { "walls" } else { "box_offset" };
         if self.boundary == Boundary::Open && (self.box_offset.is_some() || self.walls.is_some()) {
             return Err(SettingFault::NeedsBox { key: name });
+        }
+        if let Some(area) = &self.field_of_view {
+            area.check(self.boundary)?;
         }
         if let Some(&value) = self.box_offset.iter().flatten().find(|offset| !offset.is_finite()) {
             return Err(SettingFault::NotFinite { key: "box_offset", value });

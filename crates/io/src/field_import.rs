@@ -175,6 +175,7 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
         flow: FlowNames::in_folder(),
     })?;
     dataset.y_axis.turn(&mut dataset.positions);
+    dataset.see_within_image(lengths);
     Ok(import)
 }
 

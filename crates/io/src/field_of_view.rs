@@ -4,7 +4,7 @@ use ndarray::Array3;
 use toml::de::DeValue;
 use voronudge_geometry::{Region, Vector};
 
-use crate::dataset::YAxis;
+use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{SettingFault, TomlFault};
 use crate::settings::{kind, number};
 
@@ -34,6 +34,14 @@ impl SeenArea {
         }
     }
 
+    /// The corners with y as in the files.
+    #[must_use]
+    pub fn corners_in_file(&self, y_axis: YAxis) -> Vec<[f64; 2]> {
+        let mut area = self.clone();
+        area.turn(y_axis);
+        area.corners()
+    }
+
     /// The same as a region.
     ///
     /// # Errors
@@ -53,16 +61,18 @@ impl SeenArea {
         }
     }
 
-    pub(crate) fn check(&self) -> Result<(), SettingFault> {
-        self.region().map(|_| ()).map_err(SettingFault::FieldOfView)
+    pub(crate) fn check(&self, boundary: Boundary) -> Result<(), SettingFault> {
+        match boundary {
+            Boundary::Open => self.region().map(|_| ()).map_err(SettingFault::FieldOfView),
+            Boundary::Periodic { .. } => Err(SettingFault::NeedsOpen { key: "field_of_view" }),
+        }
     }
 
     /// The first cell outside, with its frame. A cell on the border is inside.
     pub(crate) fn first_outside(&self, positions: &Array3<f64>) -> Option<[usize; 2]> {
         let region = self.region().ok()?;
         let mut cells = positions.outer_iter().enumerate().flat_map(|(frame, rows)| {
-            let places: Vec<Vector<f64>> =
-                rows.outer_iter().map(|row| Vector::new(row[0], row[1])).collect();
+            let places: Vec<Vector<f64>> = rows.outer_iter().map(|row| Vector::new(row[0], row[1])).collect();
             places.into_iter().enumerate().map(move |(cell, r)| ([frame, cell], r))
         });
         cells.find(|(_, r)| r.x.is_finite() && !region.holds(*r)).map(|(place, _)| place)
@@ -75,9 +85,9 @@ impl SeenArea {
             found,
             expected: "a rectangle [x0, y0, x1, y1] or the corners [[x, y], [x, y], [x, y], …] of a polygon",
         };
-        let numbers = |value: &DeValue<'_>| match value {
-            DeValue::Array(items) => items.iter().map(|item| number(item.get_ref())).collect(),
-            _ => None,
+        let numbers = |value: &DeValue<'_>| -> Option<Vec<f64>> {
+            let DeValue::Array(items) = value else { return None };
+            items.iter().map(|item| number(item.get_ref())).collect()
         };
         let DeValue::Array(items) = value else {
             return Err(wrong(kind(value)));
@@ -91,7 +101,7 @@ impl SeenArea {
                 .map(Self::Polygon),
         };
         let area = area.ok_or_else(|| wrong("an array of another form"))?;
-        area.check().map_err(TomlFault::Setting)?;
+        area.check(Boundary::Open).map_err(TomlFault::Setting)?;
         Ok(area)
     }
 
@@ -108,5 +118,15 @@ impl SeenArea {
                 format!("[{}]", corners.join(", "))
             }
         }
+    }
+}
+
+impl DataSet {
+    /// Takes an image, its size in units of length, for the field of view if that holds all cells. Positions are turned
+    /// already.
+    pub(crate) fn see_within_image(&mut self, size: [f64; 2]) {
+        let area = SeenArea::image(size, self.y_axis);
+        let fits = self.boundary == Boundary::Open && area.first_outside(&self.positions).is_none();
+        self.field_of_view = fits.then_some(area);
     }
 }

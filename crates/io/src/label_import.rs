@@ -88,7 +88,11 @@ pub fn import_labels(path: &Path, options: &LabelOptions) -> Result<ShapeImport,
         seen.push(one);
         before = Some(pixels);
     }
-    assemble(path, dataset, scale, seen, summary)
+    let mut import = assemble(path, dataset, scale, seen, summary)?;
+    if options.border == BorderCells::Kept {
+        import.dataset.see_within_image([columns, rows].map(|pixels| pixels as f64 * scale));
+    }
+    Ok(import)
 }
 
 fn look(mask: &Mask<'_>, gap: usize, summary: &mut ShapeSummary) -> SeenFrame {

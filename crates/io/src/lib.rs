@@ -32,6 +32,7 @@ mod array;
 mod dataset;
 mod error;
 mod field_import;
+mod field_of_view;
 mod flow;
 mod flow_import;
 mod frames;
@@ -60,6 +61,7 @@ pub use error::{
     ShapeFault, TableFault, TomlFault, ValueFault,
 };
 pub use field_import::{FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field};
+pub use field_of_view::SeenArea;
 pub use flow::FlowField;
 pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
 pub use frames::FrameSelection;

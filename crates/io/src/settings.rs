@@ -7,6 +7,7 @@ use toml::de::{DeTable, DeValue};
 
 use crate::dataset::{Boundary, DataSet, WalledSides, YAxis};
 use crate::error::{Error, SettingFault, TomlFault};
+use crate::field_of_view::SeenArea;
 use crate::noise::Noise;
 use crate::validate;
 
@@ -22,6 +23,7 @@ const KEYS: &[&str] = &[
     "unwrapped",
     "position_noise",
     "velocity_noise",
+    "field_of_view",
 ];
 
 /// What a `dataset.toml` says; everything is optional.
@@ -39,6 +41,7 @@ pub(crate) struct Settings {
     pub(crate) unwrapped: Option<bool>,
     pub(crate) position_noise: Option<Noise>,
     pub(crate) velocity_noise: Option<Noise>,
+    field_of_view: Option<(SeenArea, u64)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -88,11 +91,32 @@ impl Settings {
             "unwrapped" => self.unwrapped = Some(truth("unwrapped", value)?),
             "position_noise" => self.position_noise = Some(noise("position_noise", value)?),
             "velocity_noise" => self.velocity_noise = Some(noise("velocity_noise", value)?),
+            "field_of_view" => self.field_of_view = Some((SeenArea::parse(value)?, line)),
             _ => {
                 return Err(TomlFault::UnknownKey { key: key.to_owned(), known: KEYS });
             }
         }
         Ok(())
+    }
+
+    /// The field of view that is given besides, or else the stated one, which must suit the boundary.
+    pub(crate) fn field_of_view(
+        &mut self,
+        given: Option<&SeenArea>,
+        boundary: Boundary,
+    ) -> Result<Option<SeenArea>, Error> {
+        match (given, self.field_of_view.take()) {
+            (Some(given), _) => given.check(boundary).map_err(Error::Setting).map(|()| Some(given.clone())),
+            (None, Some((stated, line))) => match stated.check(boundary) {
+                Ok(()) => Ok(Some(stated)),
+                Err(fault) => Err(Error::Toml {
+                    path: self.path.clone(),
+                    line: Some(line),
+                    fault: TomlFault::Setting(fault),
+                }),
+            },
+            (None, None) => Ok(None),
+        }
     }
 
     /// Puts `boundary` and `box` together.
@@ -154,6 +178,11 @@ pub(crate) fn render(data: &DataSet) -> String {
             Some(relative) => lines.push(format!("{key} = \"{relative}\"")),
             None => {}
         }
+    }
+    if let Some(area) = &data.field_of_view {
+        let mut area = area.clone();
+        area.turn(data.y_axis);
+        lines.push(format!("field_of_view = {}", area.rendered()));
     }
     lines.push(String::new());
     lines.join("\n")
@@ -244,7 +273,7 @@ fn truth(key: &'static str, value: &DeValue<'_>) -> Result<bool, TomlFault> {
     }
 }
 
-fn number(value: &DeValue<'_>) -> Option<f64> {
+pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(float) => float.as_str().parse().ok(),
         DeValue::Integer(integer) => {
@@ -254,7 +283,7 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-fn kind(value: &DeValue<'_>) -> &'static str {
+pub(crate) fn kind(value: &DeValue<'_>) -> &'static str {
     match value {
         DeValue::String(_) => "a text",
         DeValue::Integer(_) | DeValue::Float(_) => "a number",

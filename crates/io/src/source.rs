@@ -8,6 +8,7 @@ use ndarray::{Array2, Axis, Ix2};
 use crate::array::{parse_field, parse_integers, parse_row, parse_vectors};
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, FileFault, GridFault, SettingFault, ShapeFault};
+use crate::field_of_view::SeenArea;
 use crate::flow::{FlowField, FlowNames, grid_error};
 use crate::input::{InputFile, file_fault, read_input};
 use crate::noise::Noise;
@@ -60,6 +61,8 @@ pub struct Source {
     pub position_noise: Option<Noise>,
     /// Standard deviation of a velocity component.
     pub velocity_noise: Option<Noise>,
+    /// Where every cell would have been seen, y as in the files.
+    pub field_of_view: Option<SeenArea>,
 }
 
 impl Source {
@@ -77,11 +80,12 @@ impl Source {
     /// flow field without its coordinates.
     pub fn load(&self) -> Result<DataSet, Error> {
         let mut inputs = Vec::new();
-        let settings = self.read_settings(&mut inputs)?;
+        let mut settings = self.read_settings(&mut inputs)?;
         let boundary = match self.boundary {
             Some(boundary) => boundary,
             None => settings.boundary()?.ok_or_else(|| self.missing_boundary())?,
         };
+        let field_of_view = settings.field_of_view(self.field_of_view.as_ref(), boundary)?;
         let positions_path = self
             .file(self.positions.as_ref(), "positions.npy")
             .ok_or(Error::Setting(SettingFault::MissingPositions))?;
@@ -104,6 +108,7 @@ impl Source {
             unwrapped: self.unwrapped.or(settings.unwrapped).unwrap_or(false),
             position_noise: self.position_noise.or(settings.position_noise),
             velocity_noise: self.velocity_noise.or(settings.velocity_noise),
+            field_of_view,
             inputs,
         };
         data.check_settings().map_err(Error::Setting)?;
@@ -127,6 +132,9 @@ impl Source {
         })?;
 
         data.y_axis.turn(&mut data.positions);
+        if let Some(area) = &mut data.field_of_view {
+            area.turn(data.y_axis);
+        }
         data.y_axis.turn_offsets(data.box_offset.as_deref_mut().unwrap_or_default());
         if let Some(velocities) = &mut data.velocities {
             data.y_axis.turn(velocities);

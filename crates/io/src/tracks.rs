@@ -7,10 +7,11 @@ use ndarray::Array3;
 
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
+use crate::field_of_view::SeenArea;
 use crate::flow::FlowNames;
 use crate::input::read_input;
 use crate::table::{ColumnNames, Layout, SpotTable, read_spots};
-use crate::validate::{self, ArrayNames};
+use crate::validate::{self, ArrayNames, check_seen};
 
 /// The most frames between the first and the last spot.
 const FRAME_LIMIT: usize = 100_000;
@@ -36,6 +37,8 @@ pub struct ImportOptions {
     pub y_axis: Option<YAxis>,
     /// What is around the cells; default open.
     pub boundary: Option<Boundary>,
+    /// Width and height of the image, in units of the table: the field of view.
+    pub image_size: Option<[f64; 2]>,
 }
 
 /// An imported data set and what became of the rows.
@@ -125,6 +128,11 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
         flow: FlowNames::in_folder(),
     })?;
     dataset.y_axis.turn(&mut dataset.positions);
+    if let Some(size) = options.image_size {
+        dataset.field_of_view = Some(SeenArea::image(size.map(|length| length * scale), dataset.y_axis));
+        dataset.check_settings().map_err(Error::Setting)?;
+        check_seen(path, &dataset)?;
+    }
     Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary })
 }
 
@@ -155,6 +163,7 @@ pub(crate) fn describe(
         unwrapped: false,
         position_noise: None,
         velocity_noise: None,
+        field_of_view: None,
         inputs: Vec::new(),
     }
 }

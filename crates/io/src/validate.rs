@@ -28,6 +28,7 @@ impl DataSet {
         check_vectors(names.positions, &self.positions)?;
         check_distinct(names.positions, self)?;
         check_extent(names.positions, self)?;
+        check_seen(names.positions, self)?;
         if let Some(found) = self.box_offset.as_ref().map(Vec::len).filter(|found| *found != self.frames()) {
             return Err(Error::Setting(SettingFault::OffsetCount { found, frames: self.frames() }));
         }
@@ -146,6 +147,18 @@ fn check_extent(path: &Path, data: &DataSet) -> Result<(), Error> {
         }
     }
     Ok(())
+}
+
+/// No cell is outside the field of view.
+pub(crate) fn check_seen(path: &Path, data: &DataSet) -> Result<(), Error> {
+    let outside = data.field_of_view.as_ref().and_then(|area| area.first_outside(&data.positions));
+    match outside {
+        Some([frame, cell]) => {
+            let [x, y] = [0, 1].map(|axis| data.positions[(frame, cell, axis)]);
+            Err(value_error(path, ValueFault::Outside { frame, cell, x, y }))
+        }
+        None => Ok(()),
+    }
 }
 
 fn value_error(path: &Path, fault: ValueFault) -> Error {

@@ -7,9 +7,6 @@ use crate::svg::{Anchor, PathData, Svg, TextStyle};
 use crate::units::Units;
 use crate::view::{CellStatus, CellView, FrameView, is_finite};
 
-/// Height of a line of a legend in pixels.
-const LINE: f64 = 16.0;
-
 /// Radius of the ring at a cell that was not detected, in pixels.
 const RING: f64 = 3.4;
 
@@ -101,8 +98,8 @@ pub struct Map {
     /// The drawing area, clipped to the viewport.
     pub layer: Svg,
     title: String,
-    /// Height of a third line of the legend.
-    third_line: f64,
+    /// Lines that [`Legend::left_out`] needs.
+    entries: usize,
 }
 
 impl Map {
@@ -116,21 +113,28 @@ impl Map {
     #[must_use]
     pub fn with_view(view: Viewport, frame: &FrameView, title: &str) -> Self {
         let title = format!("{title}, {}", frame.label);
-        let both = frame.left_out() > 0 && frame.not_detected().next().is_some();
-        let third_line = if both { LINE } else { 0.0 };
-        Self { view, layer: Svg::new(view.size, &title), title, third_line }
+        let entries = entries(frame).into_iter().flatten().count();
+        Self { view, layer: Svg::new(view.size, &title), title, entries }
     }
 
-    /// Draws faint outlines of all cells, those left out on grey, and the box.
+    /// Draws faint outlines of all cells, those left out on grey, uncertain ones hatched, the box and the field of view.
     pub fn outlines(&mut self, frame: &FrameView) {
-        let [mut used, mut left_out] = [PathData::new(), PathData::new()];
+        let [mut used, mut left_out, mut hatching] = std::array::from_fn(|_| PathData::new());
         for cell in &frame.cells {
             if let Some(polygon) = self.view.polygon(cell) {
-                if cell.status == CellStatus::LeftOut { &mut left_out } else { &mut used }.polygon(&polygon);
+                let left_out = match cell.status {
+                    CellStatus::LeftOut | CellStatus::Uncertain => &mut left_out,
+                    CellStatus::Used | CellStatus::NotDetected => &mut used,
+                };
+                left_out.polygon(&polygon);
+                if cell.status == CellStatus::Uncertain {
+                    hatch(&mut hatching, &polygon);
+                }
             }
         }
         let stroke = r##"stroke="#c4c4c4" stroke-width=".6" stroke-linejoin="round""##;
-        self.layer.path(&left_out, &format!(r##"fill="#ebebeb" {stroke}"##));
+        self.layer.path(&left_out, &format!(r##"fill="{GREY}" {stroke}"##));
+        self.layer.path(&hatching, HATCH_STYLE);
         self.layer.path(&used, &format!(r#"fill="none" {stroke}"#));
         self.not_detected(frame);
         self.boundary(frame);
@@ -149,20 +153,26 @@ impl Map {
         self.layer.path(&rings, &format!(r#"fill="none" stroke="{GREEN}" stroke-width="1.4""#));
     }
 
-    /// Draws the outline of the periodic box, dashed, where the frame has one.
+    /// Draws the outline of the periodic box, dashed, and of the field of view, where the frame has them.
     pub fn boundary(&mut self, frame: &FrameView) {
         if let Some([low, high]) = frame.outline {
             let mut path = PathData::new();
             path.rectangle(self.view.place(low), self.view.place(high));
             self.layer.path(&path, r##"fill="none" stroke="#666" stroke-dasharray="4 3""##);
         }
+        let mut border = PathData::new();
+        for corners in &frame.region {
+            border.polygon(&corners.iter().map(|&at| self.view.place(at)).collect::<Vec<_>>());
+        }
+        self.layer.path(&border, REGION_STYLE);
     }
 
     /// Closes the drawing area and adds an empty legend strip of the given height beneath it.
     #[must_use]
     pub fn with_legend(self, height: f64) -> Legend {
         let [width, map_height] = self.view.size;
-        let mut svg = Svg::new([MAP_WIDTH, map_height + height + self.third_line], &self.title);
+        let height = height + ENTRY * self.entries.saturating_sub(1) as f64;
+        let mut svg = Svg::new([MAP_WIDTH, map_height + height], &self.title);
         let left = (MAP_WIDTH - width) / 2.0;
         svg.nest([left, 0.0], &self.layer);
         let mut border = PathData::new();
@@ -205,49 +215,66 @@ impl Legend {
         self.svg.text([end + 7.0, y + 4.0], &label, TextStyle::label(Anchor::Start));
     }
 
-    /// Draws the entries for cells left out and for cells not detected, from the second line on at `x`, unless there are none.
-    pub fn left_out(&mut self, x: f64, frame: &FrameView, swatch: Swatch) {
-        let hidden = frame.not_detected().count();
-        if hidden > 0 {
-            let y = self.top + 32.0 + if frame.left_out() > 0 { LINE } else { 0.0 };
-            let mut ring = PathData::new();
-            Marker::Circle.push(&mut ring, [x + 7.0, y + 5.5], RING);
-            let style = format!(r#"fill="{GREEN}" fill-opacity=".16" stroke="{GREEN}" stroke-width="1.4""#);
-            self.svg.path(&ring, &style);
-            let label = format!("not detected ({hidden})");
+    /// Draws the entries for uncertain cells, cells left out, cells not detected and the field of view, from the second line on
+    /// at `x`, as far as the frame has them.
+    pub fn left_out(&mut self, x: f64, frame: &FrameView) {
+        let mut y = self.top + 32.0;
+        for (sample, label) in entries(frame).into_iter().flatten() {
+            let corners = [[x, y], [x + 14.0, y], [x + 14.0, y + 11.0], [x, y + 11.0]];
+            let [mut outline, mut lines] = [PathData::new(), PathData::new()];
+            let style = match sample {
+                Sample::Region => REGION_STYLE.to_owned(),
+                Sample::Ring => {
+                    format!(r#"fill="{GREEN}" fill-opacity=".16" stroke="{GREEN}" stroke-width="1.4""#)
+                }
+                Sample::Grey | Sample::Hatched => {
+                    format!(r##"fill="{GREY}" stroke="#999" stroke-width=".7""##)
+                }
+            };
+            match sample {
+                Sample::Ring => Marker::Circle.push(&mut outline, [x + 7.0, y + 5.5], RING),
+                _ => outline.polygon(&corners),
+            }
+            self.svg.path(&outline, &style);
+            if sample == Sample::Hatched {
+                hatch(&mut lines, &corners);
+                self.svg.path(&lines, HATCH_STYLE);
+            }
             self.svg.text([x + 20.0, y + 9.5], &label, TextStyle::quiet(Anchor::Start));
+            y += ENTRY;
         }
-        let count = frame.left_out();
-        if count == 0 {
-            return;
-        }
-        let y = self.top + 32.0;
-        let corners = [[x, y], [x + 14.0, y], [x + 14.0, y + 11.0], [x, y + 11.0]];
-        let mut outline = PathData::new();
-        outline.polygon(&corners);
-        let fill = match swatch {
-            Swatch::Grey => "#ebebeb",
-            Swatch::Hatched => "none",
-        };
-        self.svg.path(&outline, &format!(r##"fill="{fill}" stroke="#999" stroke-width=".7""##));
-        if swatch == Swatch::Hatched {
-            let mut lines = PathData::new();
-            hatch(&mut lines, &corners);
-            self.svg.path(&lines, HATCH_STYLE);
-        }
-        let label = format!("left out ({count})");
-        self.svg.text([x + 20.0, y + 9.5], &label, TextStyle::quiet(Anchor::Start));
     }
 }
 
-/// How cells left out look.
+/// What an entry of the legend shows.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Swatch {
-    /// Plain light grey.
-    Grey,
-    /// Diagonal lines.
+enum Sample {
     Hatched,
+    Grey,
+    Ring,
+    Region,
 }
+
+/// Entries for what the frame has: uncertain cells, cells left out or not detected, a field of view.
+fn entries(frame: &FrameView) -> [Option<(Sample, String)>; 4] {
+    let cells = |status: CellStatus, sample: Sample, label: &str| {
+        let count = frame.count(status);
+        (count > 0).then(|| (sample, format!("{label} ({count})")))
+    };
+    [
+        cells(CellStatus::Uncertain, Sample::Hatched, "uncertain"),
+        cells(CellStatus::LeftOut, Sample::Grey, "left out"),
+        cells(CellStatus::NotDetected, Sample::Ring, "not detected"),
+        (!frame.region.is_empty()).then(|| (Sample::Region, "field of view".to_owned())),
+    ]
+}
+
+/// Height of an entry of the legend in pixels.
+const ENTRY: f64 = 14.0;
+/// Fill of cells left out.
+pub const GREY: &str = "#ebebeb";
+/// Presentation attributes of the border of the field of view.
+const REGION_STYLE: &str = r##"fill="none" stroke="#222" stroke-width="1.1" stroke-linejoin="round""##;
 
 /// Presentation attributes of hatch lines.
 pub const HATCH_STYLE: &str = r##"fill="none" stroke="#9a9a9a" stroke-width=".7""##;

@@ -8,10 +8,12 @@
 pub enum CellStatus {
     /// The cell's velocity was fitted.
     Used,
-    /// The cell was left out (at the rim, too large, no velocity, …).
+    /// The cell was left out (no velocity, held, not compared, …).
     LeftOut,
     /// The cell was not detected: the fit put it there.
     NotDetected,
+    /// The cell was left out because its polygon or that of a neighbour could be another one, had all cells been seen.
+    Uncertain,
 }
 
 /// One cell of one frame.
@@ -81,6 +83,8 @@ pub struct FrameView {
     pub changed_edges: ChangedEdges,
     /// Lower left and upper right corner of the periodic box, outlined where given.
     pub outline: Option<[[f64; 2]; 2]>,
+    /// Closed lines around the field of view, outlined where given.
+    pub region: Vec<Vec<[f64; 2]>>,
 }
 
 impl FrameView {
@@ -103,10 +107,10 @@ impl FrameView {
         sum / count
     }
 
-    /// Number of cells left out.
+    /// Number of cells of a status.
     #[must_use]
-    pub fn left_out(&self) -> usize {
-        self.cells.iter().filter(|cell| cell.status == CellStatus::LeftOut).count()
+    pub fn count(&self, status: CellStatus) -> usize {
+        self.cells.iter().filter(|cell| cell.status == status).count()
     }
 
     /// The cells that were not detected.

@@ -3,7 +3,7 @@
 use crate::failure::Failure;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use voronudge_io::{Boundary, DataSet, Noise, Source, YAxis};
+use voronudge_io::{Boundary, DataSet, Noise, SeenArea, Source, YAxis};
 
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Data")]
@@ -35,6 +35,10 @@ pub(crate) struct DataSetArguments {
     /// Open field of view.
     #[arg(long)]
     pub open: bool,
+    /// Rectangle in which every cell would have been seen, in an open field [default: that of the data set, or the hull of the
+    /// cells of each frame].
+    #[arg(long, num_args = 4, value_names = ["X0", "Y0", "X1", "Y1"], allow_negative_numbers = true)]
+    pub field_of_view: Option<Vec<f64>>,
     /// Time between frames.
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub frame_interval: Option<f64>,
@@ -59,6 +63,12 @@ pub(crate) struct DataSetArguments {
 }
 
 impl DataSetArguments {
+    /// The field of view given, y as in the files.
+    fn field_of_view(&self) -> Option<SeenArea> {
+        let ends = self.field_of_view.as_deref()?;
+        <[f64; 4]>::try_from(ends).ok().map(SeenArea::Rectangle)
+    }
+
     /// The same of the folder of another data set, with its own files.
     pub fn of_folder(&self, folder: &Path) -> Self {
         Self {
@@ -100,6 +110,7 @@ impl DataSetArguments {
             unwrapped: self.unwrapped.then_some(true),
             position_noise: self.position_noise,
             velocity_noise: self.velocity_noise,
+            field_of_view: self.field_of_view(),
         };
         Ok(source.load()?)
     }

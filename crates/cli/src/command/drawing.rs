@@ -1,7 +1,13 @@
 //! Cells of a tessellation as figures show them.
 
-use voronudge_geometry::{CellPolygon, Domain, Tessellation, Vector};
+use voronudge_geometry::{CellPolygon, Domain, Region, Tessellation, Vector};
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView};
+
+/// The border of a field of view in another unit of length, `1/unit` times as large.
+pub(crate) fn borders(region: Option<&Region>, unit: f64) -> Vec<Vec<[f64; 2]>> {
+    let border = |corners: &Vec<Vector<f64>>| corners.iter().map(|r| [r.x * unit, r.y * unit]).collect();
+    region.map_or_else(Vec::new, |region| region.loops().iter().map(border).collect())
+}
 
 /// The cells of a tessellation with their polygons; those that are not used are shown as left out.
 pub(crate) fn cells_view(
@@ -25,6 +31,7 @@ pub(crate) fn cells_view(
             Domain::Periodic(cell_box) => Some([[0.0; 2], cell_box.lengths()]),
             Domain::Open => None,
         },
+        region: Vec::new(),
     }
 }
 

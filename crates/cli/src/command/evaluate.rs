@@ -6,13 +6,13 @@ use crate::arguments::{
 };
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain_at, labels, to_array, to_scalars};
+use crate::snapshot::{Snapshot, domain_at, field_of_view, labels, to_array, to_scalars};
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Cursor;
-use voronudge_geometry::{FieldOfView, Tessellation, Vector, areas, perimeters};
+use voronudge_geometry::{Tessellation, Vector, areas, perimeters};
 use voronudge_io::{DataSet, FrameSelection, OutputDirectory, YAxis};
 use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
 use voronudge_report::infer_report::RunRecord;
@@ -126,7 +126,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         let snapshot = Snapshot::new(&data, frame);
         let tessellation = Tessellation::new(&snapshot.positions, domain)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
-        let view = FieldOfView::default().judge(&tessellation, &snapshot.positions);
+        let view = field_of_view(&data)?.judge(&tessellation, &snapshot.positions);
         let mut surroundings = environment(&tessellation, &snapshot.positions, &view)?;
         if let Some(labels) = labels(&data, &snapshot, frame) {
             surroundings = surroundings

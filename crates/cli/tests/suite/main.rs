@@ -10,6 +10,7 @@ mod bad_places;
 mod channels;
 mod discoveries;
 mod evaluations;
+mod fields_of_view;
 mod flow_imports;
 mod flow_inferences;
 mod gradient_checks;

@@ -197,6 +197,18 @@ pub enum ValueFault {
         /// Second component.
         y: f64,
     },
+    /// A cell outside the field of view that is declared.
+    #[error("frame {frame}, cell {cell}: ({x}, {y}) is outside the field of view")]
+    Outside {
+        /// Frame, from zero.
+        frame: usize,
+        /// Cell, from zero.
+        cell: usize,
+        /// Its x coordinate.
+        x: f64,
+        /// Its y coordinate.
+        y: f64,
+    },
     /// Two cells in one place.
     #[error("frame {frame}: cells {first} and {second} are both at ({x}, {y})")]
     Duplicate {
@@ -235,6 +247,10 @@ impl ValueFault {
             Self::HalfAbsent { .. } => "set both components to NaN where the cell is absent",
             Self::Duplicate { .. } => {
                 "remove one of the two, or set it to NaN in this frame; a double detection is usual"
+            }
+            Self::Outside { .. } => {
+                "field_of_view is where every cell would have been seen: correct it, in the unit and the y direction of the \
+                 positions, or leave it out"
             }
             Self::BoxTooSmall { .. } => {
                 "check the box and the length unit; trajectories that were unwrapped across the \

@@ -54,6 +54,15 @@ pub enum SettingFault {
         /// Name of the setting.
         key: &'static str,
     },
+    /// A setting that only an open field can have.
+    #[error("{key} is given but the boundary is periodic")]
+    NeedsOpen {
+        /// Name of the setting.
+        key: &'static str,
+    },
+    /// A field of view that is no region.
+    #[error("field_of_view: {0}")]
+    FieldOfView(voronudge_geometry::Error),
     /// A number that must be finite.
     #[error("{key} has the entry {value}, it must be finite")]
     NotFinite {
@@ -93,6 +102,8 @@ impl SettingFault {
                 "set boundary = \"periodic\", or remove box if the field of view is open"
             }
             Self::NeedsBox { .. } => "remove it, or set boundary = \"periodic\" and a box",
+            Self::NeedsOpen { .. } => "remove it: in a periodic box every cell counts",
+            Self::FieldOfView(fault) => return fault.hint().map(str::to_owned),
             Self::NotFinite { .. } => "give a length for each frame",
             Self::OffsetCount { .. } => {
                 "give one number for each frame: how far the image one box above is displaced along x"

@@ -58,6 +58,7 @@ fn full_data() -> DataSet {
         position_noise: Some(Noise::Relative(0.1 / 3.0)),
         velocity_noise: Some(Noise::Absolute(1e-300)),
         inputs: Vec::new(),
+        field_of_view: None,
     }
 }
 
@@ -115,6 +116,7 @@ fn saving_and_loading_is_the_identity() {
         unwrapped: false,
         position_noise: None,
         velocity_noise: None,
+        field_of_view: None,
         ..full
     };
     assert_same(&bare, &round_trip(&bare));

@@ -21,6 +21,7 @@ fn movie(positions: Array3<f64>, boundary: Boundary) -> DataSet {
         unwrapped: false,
         position_noise: None,
         velocity_noise: None,
+        field_of_view: None,
         inputs: Vec::new(),
     }
 }

@@ -3,7 +3,7 @@
 use super::no_data;
 use crate::colour::{ColourScale, Palette};
 use crate::colour_bar::ColourBar;
-use crate::map::{HATCH_STYLE, Legend, MAP_WIDTH, Map, Swatch, hatch};
+use crate::map::{GREY, HATCH_STYLE, Legend, MAP_WIDTH, Map, hatch};
 use crate::numbers::{tick_labels, ticks};
 use crate::svg::PathData;
 use crate::units::Units;
@@ -51,7 +51,7 @@ impl CellScalar {
 }
 
 /// A map of the cells coloured by `scalar`, with scale bar and colour bar. Cells left out are
-/// hatched; cells without a value stay white. Triangles at the ends of the colour bar say that some
+/// grey, uncertain ones hatched; cells without a value stay white. Triangles at the ends of the colour bar say that some
 /// values lie beyond it.
 #[must_use]
 pub fn cell_map(frame: &FrameView, scalar: &CellScalar, units: &Units) -> String {
@@ -66,30 +66,34 @@ pub fn cell_map(frame: &FrameView, scalar: &CellScalar, units: &Units) -> String
     map.boundary(frame);
     let mut legend = map.with_legend(54.0);
     legend.scale_bar(units);
-    legend.left_out(4.0, frame, Swatch::Hatched);
+    legend.left_out(4.0, frame);
     colour_bar(&mut legend, &colours, &scalar.label);
     legend.svg.finish()
 }
 
 pub(super) fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&CellScalar, &ColourScale)) {
     let mut classes = vec![PathData::new(); ColourScale::LEVELS];
-    let [mut hatching, mut outlines] = [PathData::new(), PathData::new()];
+    let [mut hatching, mut outlines, mut left_out] = std::array::from_fn(|_| PathData::new());
     for (cell, &value) in frame.cells.iter().zip(&scalar.values) {
         let Some(polygon) = map.view.polygon(cell) else {
             continue;
         };
         match colours.level(value).filter(|_| cell.is_used()) {
             Some(level) => classes[level].polygon(&polygon),
+            None if cell.is_used() => outlines.polygon(&polygon),
             None => {
-                outlines.polygon(&polygon);
-                if cell.status == CellStatus::LeftOut {
+                if cell.status == CellStatus::NotDetected { &mut outlines } else { &mut left_out }
+                    .polygon(&polygon);
+                if cell.status == CellStatus::Uncertain {
                     hatch(&mut hatching, &polygon);
                 }
             }
         }
     }
+    let stroke = r##"stroke="#b5b5b5" stroke-width=".6""##;
+    map.layer.path(&left_out, &format!(r#"fill="{GREY}" {stroke}"#));
     map.layer.path(&hatching, HATCH_STYLE);
-    map.layer.path(&outlines, r##"fill="none" stroke="#b5b5b5" stroke-width=".6""##);
+    map.layer.path(&outlines, &format!(r#"fill="none" {stroke}"#));
     for (level, path) in classes.iter().enumerate() {
         let fill = colours.colour(level);
         map.layer.path(

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use super::no_data;
 use crate::arrows::Arrows;
 use crate::colour::{BLUE, INK, VERMILLION};
-use crate::map::{Legend, Map, Swatch};
+use crate::map::{Legend, Map};
 use crate::numbers::quantile;
 use crate::svg::{Anchor, PathData, TextStyle};
 use crate::units::Units;
@@ -61,7 +61,7 @@ pub fn mode_map(frame: &FrameView, mode: &DrawnMode, units: &Units) -> String {
         sense_entry(&mut legend, 154.0, "counter-clockwise", BLUE);
         sense_entry(&mut legend, 280.0, "clockwise", VERMILLION);
     }
-    legend.left_out(4.0, frame, Swatch::Grey);
+    legend.left_out(4.0, frame);
     legend.svg.finish()
 }
 

@@ -3,7 +3,7 @@
 use super::no_data;
 use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
 use crate::colour::{BLUE, INK, VERMILLION};
-use crate::map::{Legend, Map, Swatch};
+use crate::map::{Legend, Map};
 use crate::numbers::significant;
 use crate::svg::{Anchor, PathData, TextStyle};
 use crate::units::Units;
@@ -45,7 +45,7 @@ pub fn nudge_map(frame: &FrameView, scale: Option<&ArrowScale>, units: &Units) -
             legend.svg.text(at, "no cell is nudged", TextStyle::quiet(Anchor::Start));
         }
     }
-    legend.left_out(4.0, frame, Swatch::Grey);
+    legend.left_out(4.0, frame);
     if !edges.lost.is_empty() || !edges.gained.is_empty() {
         let lost = format!("contacts lost ({})", edges.lost.len());
         edge_entry(&mut legend, 122.0, (&lost, VERMILLION, LOST));

@@ -2,7 +2,7 @@
 
 use super::no_data;
 use crate::colour::{BLUE, GREEN, INK, VERMILLION};
-use crate::map::{Legend, Map, Swatch};
+use crate::map::{Legend, Map};
 use crate::markers::Marker;
 use crate::svg::{Anchor, PathData, TextStyle};
 use crate::units::Units;
@@ -77,7 +77,7 @@ pub fn outlier_map(frame: &FrameView, outliers: &[Outlier], units: &Units) -> St
     }
     let mut legend = map.with_legend(48.0);
     legend.scale_bar(units);
-    legend.left_out(4.0, frame, Swatch::Grey);
+    legend.left_out(4.0, frame);
     entries(&mut legend, counts);
     legend.svg.finish()
 }

@@ -39,6 +39,6 @@ pub fn outline_map(frame: &FrameView, outlines: &[Segment], units: &Units) -> St
         legend.svg.path(&line, style);
         legend.svg.text([x + 23.0, y + 4.0], label, TextStyle::label(Anchor::Start));
     }
-    legend.left_out(4.0, frame, crate::map::Swatch::Grey);
+    legend.left_out(4.0, frame);
     legend.svg.finish()
 }

@@ -3,7 +3,7 @@
 use super::no_data;
 use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
 use crate::colour::{BLUE, INK, VERMILLION};
-use crate::map::{Legend, Map, Swatch};
+use crate::map::{Legend, Map};
 use crate::units::Units;
 use crate::view::{CellView, FrameView, residual};
 
@@ -102,6 +102,6 @@ pub(super) fn arrow_legend(
     let unit = units.velocity_text();
     let mark = ReferenceMark { unit: &unit, remark: "", colour: field.colour() };
     legend.reference_arrow(160.0, scale, &mark);
-    legend.left_out(4.0, frame, Swatch::Grey);
+    legend.left_out(4.0, frame);
     legend
 }

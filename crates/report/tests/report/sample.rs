@@ -49,7 +49,11 @@ pub fn frame(label: &str, side: usize) -> FrameView {
             area: area(&polygon),
             perimeter: perimeter(&polygon),
             polygon: if rim && index % 3 == 0 { Vec::new() } else { polygon },
-            status: if rim || index % 57 == 20 { CellStatus::LeftOut } else { CellStatus::Used },
+            status: match (rim, index % 57) {
+                (true, _) => CellStatus::Uncertain,
+                (false, 20) => CellStatus::LeftOut,
+                (false, _) => CellStatus::Used,
+            },
             measured: (index % 41 != 7).then_some(measured),
             predicted: (!rim).then_some(predicted),
             held_out: (!rim).then_some([0.9 * predicted[0], 0.9 * predicted[1]]),
@@ -63,7 +67,9 @@ pub fn frame(label: &str, side: usize) -> FrameView {
         lost: vec![edge(middle, middle + 1), edge(middle + 3 * side, middle + 3 * side + 1)],
         gained: vec![edge(middle - side, middle + side)],
     };
-    FrameView { label: label.to_owned(), cells, changed_edges, outline: None }
+    let end = side as f64 * SPACING;
+    let region = vec![vec![[-4.0, -6.0], [end, -6.0], [end, 0.88 * end], [-4.0, 0.88 * end]]];
+    FrameView { label: label.to_owned(), cells, changed_edges, outline: None, region }
 }
 
 /// A few cells with everything that can be unknown unknown.
@@ -84,6 +90,7 @@ pub fn degenerate_frame() -> FrameView {
         cells: vec![cell(0.0, f64::NAN), cell(2.0, 0.0), cell(f64::NAN, 1.0)],
         changed_edges: ChangedEdges { lost: vec![[[0.0, f64::NAN], [1.0, 1.0]]], gained: vec![] },
         outline: None,
+        region: vec![vec![[0.0, f64::NAN], [1.0, 0.0], [0.0, 1.0]]],
     }
 }
 

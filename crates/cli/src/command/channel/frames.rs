@@ -134,6 +134,7 @@ impl Frames {
             unwrapped: true,
             position_noise: None,
             velocity_noise: None,
+            field_of_view: None,
             inputs: Vec::new(),
         };
         Ok(data.save(out)?)

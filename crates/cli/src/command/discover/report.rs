@@ -37,7 +37,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         run: run.record(Some(data)),
         length_scale: Quantity { value: prepared.scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, &discovery.before.inference),
-        measurement: outcome::measurement(prepared),
+        measurement: outcome::measurement(data, prepared),
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         verdict: verdict(discovery.verdict),

@@ -3,10 +3,11 @@
 use super::flow::FlowArguments;
 use crate::arguments::DataSetArguments;
 use crate::failure::Failure;
+use crate::snapshot::field_of_view;
 use clap::{Args, ValueEnum};
 use std::path::Path;
 use voronudge_geometry::FieldOfView;
-use voronudge_io::FrameSelection;
+use voronudge_io::{DataSet, FrameSelection};
 
 #[derive(Debug, Clone, Args)]
 pub(crate) struct SnapshotArguments {
@@ -48,9 +49,9 @@ impl SnapshotArguments {
         Err(Failure::new(text).with_hint("leave it out for 3 times the median area"))
     }
 
-    /// Where cells would have been seen.
-    pub fn field_of_view(&self) -> FieldOfView {
-        FieldOfView { largest_area: self.largest_area, ..FieldOfView::default() }
+    /// Where every cell would have been seen, and what is taken for one.
+    pub fn field_of_view(&self, data: &DataSet) -> Result<FieldOfView, Failure> {
+        Ok(FieldOfView { largest_area: self.largest_area, ..field_of_view(data)? })
     }
 
     /// The same of the folder of another data set, all frames.

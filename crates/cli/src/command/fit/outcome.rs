@@ -13,7 +13,7 @@ use voronudge_io::DataSet;
 use voronudge_report::Units;
 use voronudge_report::infer_report::{
     CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, Measurement, Noise,
-    NoiseSource, Nudge, Parameter, Parameters, RegionSource, SeenRegion, Transitions,
+    NoiseSource, Nudge, Parameter, Parameters, SeenRegion, Transitions,
 };
 
 /// Names of the coefficients along which directions are given.
@@ -162,20 +162,19 @@ pub(crate) fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts
 }
 
 /// What was seen of the tissue.
-pub(crate) fn measurement(prepared: &Prepared) -> Measurement {
+pub(crate) fn measurement(data: &DataSet, prepared: &Prepared) -> Measurement {
     let judged = prepared.observations.iter().flat_map(|observation| {
         let seen = |(cell, own): (usize, _)| observation.is_seen(cell).then_some(own);
         observation.visibility.iter().enumerate().filter_map(seen)
     });
     let count = |class: Certainty| judged.clone().filter(|own| own.certainty() == class).count();
+    let view = |first: &Observation| SeenRegion {
+        source: prepared.region_source,
+        corners: data.field_of_view.as_ref().map(|area| area.corners_in_file(data.y_axis)),
+        margin: first.field_of_view.margin_for(1.0) * prepared.scale.length,
+    };
     Measurement {
-        field_of_view: prepared.observations.first().and_then(|observation| {
-            observation.region.as_ref().map(|_| SeenRegion {
-                source: RegionSource::Hull,
-                corners: None,
-                margin: observation.field_of_view.margin * prepared.scale.length,
-            })
-        }),
+        field_of_view: prepared.observations.first().filter(|first| first.region.is_some()).map(view),
         certain: count(Certainty::Certain),
         uncertain: count(Certainty::Uncertain),
         outside: count(Certainty::Outside),

@@ -11,7 +11,7 @@ use voronudge_infer::{
     Completion, Constraints, Error, Inference, KnownNoise, Method, Observation, Request, Scale, Velocities,
 };
 use voronudge_io::{DataSet, Noise};
-use voronudge_report::infer_report::{MeanRemoved, NoiseSource};
+use voronudge_report::infer_report::{MeanRemoved, NoiseSource, RegionSource};
 
 /// What is asked of the data.
 pub(crate) struct Question<'a> {
@@ -40,6 +40,8 @@ pub(crate) struct Prepared {
     pub background: Option<u32>,
     /// Where the noise levels come from if both were stated.
     pub stated_noise: NoiseSource,
+    /// Where the field of view comes from, if it is open.
+    pub region_source: RegionSource,
     pub velocities: Measured,
     /// What is known of the parameters, in the units of the data.
     pub constraints: Constraints,
@@ -173,6 +175,11 @@ impl Question<'_> {
             mean_removed,
             background: arguments.background,
             stated_noise,
+            region_source: match &data.field_of_view {
+                Some(_) if arguments.data.field_of_view.is_some() => RegionSource::Given,
+                Some(_) => RegionSource::DataSet,
+                None => RegionSource::Hull,
+            },
             velocities,
             constraints: self.constraints,
         })
@@ -216,7 +223,7 @@ pub(crate) fn observe(
     let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
     let domain = domain(data)?;
     let observation =
-        Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.field_of_view())
+        Observation::new(frame, snapshot.positions.clone(), targets, domain, arguments.field_of_view(data)?)
             .map_err(|error| match error {
                 Error::Geometry { source, .. } => Failure::from(snapshot.in_file_numbers(source)).at(place()),
                 other => Failure::from(other).at(place()),

@@ -1,6 +1,7 @@
 //! Frames to be drawn.
 
 use super::prepare::Prepared;
+use crate::command::drawing::borders;
 use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
 use voronudge_infer::Inference;
 use voronudge_report::figure::FlowMap;
@@ -76,10 +77,11 @@ pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) 
                 },
                 area: if closed { shape.area * scale.length * scale.length } else { f64::NAN },
                 perimeter: if closed { shape.perimeter * scale.length } else { f64::NAN },
-                status: match observation.is_seen(cell) {
-                    false => CellStatus::NotDetected,
-                    true if used => CellStatus::Used,
-                    true => CellStatus::LeftOut,
+                status: match (observation.is_seen(cell), used) {
+                    (false, _) => CellStatus::NotDetected,
+                    (true, true) => CellStatus::Used,
+                    (true, false) if counted => CellStatus::LeftOut,
+                    (true, false) => CellStatus::Uncertain,
                 },
                 measured: target.map(velocity),
                 predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
@@ -113,5 +115,6 @@ pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) 
             }
             Domain::Open => None,
         },
+        region: borders(observation.region.as_ref(), scale.length),
     }
 }

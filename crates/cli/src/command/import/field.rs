@@ -6,10 +6,10 @@ use crate::arguments::CommonArguments;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain, y_sign};
+use crate::snapshot::{Snapshot, domain, field_of_view, y_sign};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
-use voronudge_geometry::{Edge, FieldOfView, Tessellation};
+use voronudge_geometry::{Edge, Tessellation};
 use voronudge_io::{FieldImport, FieldLinking, FieldOptions, OutputDirectory, WantedExtrema, import_field};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
@@ -143,7 +143,7 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
     let snapshot = Snapshot::new(data, 0);
     let tessellation = Tessellation::new(&snapshot.positions, domain(data)?)
         .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(file.display()))?;
-    let view = FieldOfView::default().judge(&tessellation, &snapshot.positions);
+    let view = field_of_view(data)?.judge(&tessellation, &snapshot.positions);
     let mut frame =
         cells_view("frame 0".into(), &tessellation, &snapshot.positions, |cell| view.counts(cell));
     let up = y_sign(data);

@@ -29,6 +29,9 @@ pub(super) struct Arguments {
     /// Name of the column with y.
     #[arg(long, value_name = "NAME")]
     y_column: Option<String>,
+    /// Width and height of the image in the unit of the table: the field of view.
+    #[arg(long, num_args = 2, value_names = ["W", "H"], conflicts_with = "box_lengths", allow_negative_numbers = true)]
+    image_size: Option<Vec<f64>>,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -62,6 +65,7 @@ pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
             y: table.y_column,
         },
         boundary: scale.boundary(),
+        image_size: table.image_size.as_ref().map(|size| [size[0], size[1]]),
         pixel_size: scale.image.pixel_size,
         length_unit: scale.image.length_unit,
         time_unit: scale.image.time_unit,

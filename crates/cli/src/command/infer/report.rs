@@ -30,7 +30,7 @@ pub(super) fn report(
         verdict: verdict(result, &nmse, &parameters),
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, result),
-        measurement: Measurement { tracks, ..outcome::measurement(prepared) },
+        measurement: Measurement { tracks, ..outcome::measurement(data, prepared) },
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         parameters,

@@ -111,6 +111,7 @@ fn settings(simulation: &Simulation, request: &Request, schedule: &Schedule, uni
         unwrapped: true,
         position_noise: None,
         velocity_noise: None,
+        field_of_view: None,
         inputs: Vec::new(),
     }
 }

@@ -134,6 +134,7 @@ fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units)
         cells,
         changed_edges: ChangedEdges::default(),
         outline: whole.then_some([[0.0; 2], [width, height]]),
+        region: Vec::new(),
     };
     let arrows = ArrowScale::velocities(std::slice::from_ref(&frame));
     let scalar = CellScalar::shape_index(&frame);

@@ -5,9 +5,9 @@ use super::search::compute;
 use crate::arguments::{ChosenEffects, environment};
 use crate::failure::Failure;
 use crate::progress::Progress;
-use crate::snapshot::{Snapshot, domain_at, labels};
+use crate::snapshot::{Snapshot, domain_at, field_of_view, labels};
 use std::sync::Arc;
-use voronudge_geometry::{Certificate, FieldOfView, Tessellation};
+use voronudge_geometry::{Certificate, Tessellation};
 use voronudge_io::DataSet;
 use voronudge_model::{Model, Parameters, velocities};
 use voronudge_spectrum::{LinearProblem, Modes, Scope, TransitionDistance};
@@ -43,7 +43,7 @@ impl Solved {
         let positions = &snapshot.positions;
         let tessellation =
             Tessellation::new(positions, domain).map_err(|error| snapshot.in_file_numbers(error))?;
-        let view = FieldOfView::default().judge(&tessellation, positions);
+        let view = field_of_view(data)?.judge(&tessellation, positions);
         if (0..positions.len()).all(|cell| !view.counts(cell)) {
             return Err(voronudge_spectrum::Error::NoCells.into());
         }

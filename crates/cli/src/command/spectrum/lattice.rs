@@ -63,6 +63,7 @@ impl Lattice {
             unwrapped: true,
             position_noise: None,
             velocity_noise: None,
+            field_of_view: None,
             inputs: Vec::new(),
         }
     }
