@@ -11,6 +11,7 @@ use std::error::Error;
 use voronudge_geometry::{Domain, FieldOfView, Grid, PeriodicBox, Side, Tessellation, Vector};
 use voronudge_infer::{
     Constraints, CrossValidation, Flow, KnownNoise, Observation, Quantity, Request, Velocities, Window,
+    WindowKind,
 };
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{RandomPlacement, Simulation, generator};
@@ -150,7 +151,7 @@ impl Tissue {
         let mut noisy = noisy(seed);
         let positions = noisy(&self.positions, noise.position)?;
         let velocities = noisy(&averages, noise.velocity)?.into_iter().map(Some).collect();
-        let flow = Flow { grid, velocities, window: Window::Square };
+        let flow = Flow { grid, velocities, window: Window { kind: WindowKind::Square, width: spacing } };
         Ok(Observation::new(0, positions, Velocities::OnGrid(flow), domain, FieldOfView::default())?)
     }
 

@@ -11,7 +11,20 @@ pub struct Grid {
     origin: [f64; 2],
     spacing: [f64; 2],
     size: [usize; 2],
+    patch: Patch,
 }
+
+/// The part of the plane around a centre, with a weight.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub enum Patch {
+    /// A square, or a rectangle whose sides are in the ratio of the spacings, with the area of a square of some side; weight 1.
+    Square(f64),
+    /// All of the plane, with the weight `exp(−d²/2s²)` at the distance d; s is given.
+    Gaussian(f64),
+}
+
+/// Distance at which Gaussian patches end, in standard deviations; the weight there is 4e-6.
+const REACH: f64 = 5.0;
 
 impl Grid {
     /// A grid of `size` = [nx, ny] squares, the first of which is centred at `origin`, in the unit of the positions.
@@ -33,7 +46,41 @@ impl Grid {
                 return Err(Error::Grid { axis, origin, spacing });
             }
         }
-        Ok(Self { origin, spacing, size })
+        let patch = Patch::Square((spacing[0] * spacing[1]).sqrt());
+        Ok(Self { origin, spacing, size, patch })
+    }
+
+    /// The same centres with patches of another shape; by default squares that touch.
+    #[must_use]
+    pub fn with_patch(self, patch: Patch) -> Self {
+        Self { patch, ..self }
+    }
+
+    /// What is around each centre.
+    pub fn patch(&self) -> Patch {
+        self.patch
+    }
+
+    /// Area of a patch, weighted.
+    pub fn patch_area(&self) -> f64 {
+        match self.patch {
+            Patch::Square(side) => side * side,
+            Patch::Gaussian(width) => std::f64::consts::TAU * width * width,
+        }
+    }
+
+    /// Sides of a square patch of side one.
+    pub(crate) fn aspect(&self) -> [f64; 2] {
+        let [dx, dy] = self.spacing;
+        [(dx / dy).sqrt(), (dy / dx).sqrt()]
+    }
+
+    /// Distance along each axis from a centre to the end of its patch.
+    fn reach(&self) -> [f64; 2] {
+        match self.patch {
+            Patch::Square(side) => self.aspect().map(|part| 0.5 * side * part),
+            Patch::Gaussian(width) => [REACH * width; 2],
+        }
     }
 
     /// Number of squares along each axis, [nx, ny].
@@ -80,17 +127,12 @@ impl Grid {
         mut visit: impl FnMut(usize, Vector<f64>),
     ) {
         let reach = Vector::new(radius, radius);
-        self.for_images(domain, at, [-reach, reach], |lines| {
-            let ranges = [0, 1].map(|axis| lines.numbers(axis, [-radius, radius]));
-            for iy in ranges[1].clone() {
-                for ix in ranges[0].clone() {
-                    let centre = [lines.centre(0, ix), lines.centre(1, iy)];
-                    let displacement = Vector::from(centre);
-                    if displacement.norm_squared() <= radius * radius {
-                        visit(self.index([ix, iy]), displacement);
-                    }
+        self.for_images(domain, at, [-reach, reach], |centres| {
+            centres.near([-reach, reach], |square, displacement| {
+                if displacement.norm_squared() <= radius * radius {
+                    visit(square, displacement);
                 }
-            }
+            });
         });
     }
 
@@ -104,60 +146,77 @@ impl Grid {
         domain: Domain,
         at: Vector<f64>,
         [low, high]: [Vector<f64>; 2],
-        mut visit: impl FnMut(Lines<'_>),
+        mut visit: impl FnMut(Centres<'_>),
     ) {
-        let corner = Vector::from(self.origin) - Vector::from(self.spacing) * 0.5 - at;
+        let first = Vector::from(self.origin) - at;
         let Domain::Periodic(cell) = domain else {
-            return visit(Lines { grid: self, corner });
+            return visit(Centres { grid: self, first });
         };
-        let far = corner
-            + Vector::new(self.size[0] as f64 * self.spacing[0], self.size[1] as f64 * self.spacing[1]);
-        let lengths = cell.lengths();
+        let (lengths, reach) = (cell.lengths(), self.reach());
         let between = |axis: usize, shift: f64| {
-            let first = ((corner[axis] - high[axis] - shift) / lengths[axis]).ceil();
-            let last = ((far[axis] - low[axis] - shift) / lengths[axis]).floor();
-            first as i32..=last as i32
+            let last = first[axis] + (self.size[axis] as f64 - 1.0) * self.spacing[axis];
+            let below = (first[axis] - reach[axis] - high[axis] - shift) / lengths[axis];
+            let above = (last + reach[axis] - low[axis] - shift) / lengths[axis];
+            below.ceil() as i32..=above.floor() as i32
         };
         for ny in between(1, 0.0) {
             for nx in between(0, f64::from(ny) * cell.offset()) {
-                visit(Lines { grid: self, corner: corner - cell.translation([nx, ny]) });
+                visit(Centres { grid: self, first: first - cell.translation([nx, ny]) });
             }
         }
     }
 }
 
-/// The lines of a grid in coordinates relative to a point.
-pub(crate) struct Lines<'a> {
+/// The centres of a grid in coordinates relative to a point.
+pub(crate) struct Centres<'a> {
     grid: &'a Grid,
-    /// Lower left corner of the first square.
-    corner: Vector<f64>,
+    first: Vector<f64>,
 }
 
-impl Lines<'_> {
+impl Centres<'_> {
     pub fn grid(&self) -> &Grid {
         self.grid
     }
 
-    /// Lower end of the squares with a given number along an axis; upper end of those before.
-    pub fn line(&self, axis: usize, number: usize) -> f64 {
-        self.corner[axis] + number as f64 * self.grid.spacing[axis]
-    }
-
-    /// Middle of the squares with a given number along an axis.
+    /// Coordinate along an axis of the centres with a given number.
     pub fn centre(&self, axis: usize, number: usize) -> f64 {
-        self.line(axis, number) + 0.5 * self.grid.spacing[axis]
+        self.first[axis] + number as f64 * self.grid.spacing[axis]
     }
 
-    /// Number along an axis of the squares that hold a coordinate: −1 before the grid, at most n behind it.
-    pub fn number(&self, axis: usize, coordinate: f64) -> isize {
-        let number = ((coordinate - self.corner[axis]) / self.grid.spacing[axis]).floor();
-        (number as isize).clamp(-1, self.grid.size[axis] as isize)
+    /// Both ends along an axis of the patches with a given number.
+    pub fn ends(&self, axis: usize, number: usize) -> [f64; 2] {
+        let (centre, reach) = (self.centre(axis, number), self.grid.reach()[axis]);
+        [centre - reach, centre + reach]
     }
 
-    /// Numbers along an axis of the squares that meet an interval.
+    /// Numbers along an axis of the patches that meet an interval.
     pub fn numbers(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::Range<usize> {
-        let first = self.number(axis, low).max(0) as usize;
-        let end = (self.number(axis, high) + 1).max(0) as usize;
-        first..end.min(self.grid.size[axis])
+        let reach = self.grid.reach()[axis];
+        self.between(axis, [low - reach, high + reach])
+    }
+
+    /// Numbers along an axis of the centres in an interval.
+    fn between(&self, axis: usize, [low, high]: [f64; 2]) -> std::ops::Range<usize> {
+        let number = |coordinate: f64| (coordinate - self.first[axis]) / self.grid.spacing[axis];
+        let (first, last) = (number(low).ceil().max(0.0), number(high).floor() + 1.0);
+        first as usize..(last.max(0.0) as usize).min(self.grid.size[axis])
+    }
+
+    /// Visits the centres in a rectangle: index and place.
+    fn near(&self, [low, high]: [Vector<f64>; 2], visit: impl FnMut(usize, Vector<f64>)) {
+        self.each([0, 1].map(|axis| self.between(axis, [low[axis], high[axis]])), visit);
+    }
+
+    /// Visits the centres whose patches meet a rectangle.
+    pub fn meeting(&self, [low, high]: [Vector<f64>; 2], visit: impl FnMut(usize, Vector<f64>)) {
+        self.each([0, 1].map(|axis| self.numbers(axis, [low[axis], high[axis]])), visit);
+    }
+
+    fn each(&self, [xs, ys]: [std::ops::Range<usize>; 2], mut visit: impl FnMut(usize, Vector<f64>)) {
+        for iy in ys {
+            for ix in xs.clone() {
+                visit(self.grid.index([ix, iy]), Vector::new(self.centre(0, ix), self.centre(1, iy)));
+            }
+        }
     }
 }

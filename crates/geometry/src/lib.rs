@@ -27,13 +27,16 @@
 
 mod agreement;
 mod builder;
+mod centroid;
 mod domain;
 mod error;
 mod extrema;
 mod field_of_view;
+mod gaussian_patch;
 mod grid;
 mod honeycomb;
 mod hull;
+mod interface;
 mod linking;
 mod mask;
 mod moving;
@@ -48,12 +51,14 @@ mod side;
 mod tessellation;
 
 pub use agreement::{Agreement, MeasuredShape, agreement, comparable};
+pub use centroid::centroid_slopes;
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
 pub use extrema::{Extremum, ExtremumKind, ExtremumSearch, extrema};
 pub use field_of_view::{Certainty, Certificate, FieldOfView, Seen, Visibility};
-pub use grid::Grid;
+pub use grid::{Grid, Patch};
 pub use honeycomb::honeycomb;
+pub use interface::{Interface, outline_interfaces};
 pub use linking::{link_nearest, link_overlapping};
 pub use mask::{Mask, MaskedCell};
 pub use moving::{MovingTessellation, Renewal};

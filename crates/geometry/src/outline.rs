@@ -37,29 +37,40 @@ impl Outline {
     }
 }
 
-/// Pairs of polygons, the lower index first, with a side in common: two corners that follow each other in both and lie within
-/// `tolerance` of each other.
+/// Pairs of polygons, the lower index first, with a side in common ([`shared_sides`]).
 pub fn outline_contacts(outlines: &[Vec<Vector<f64>>], tolerance: f64) -> BTreeSet<[usize; 2]> {
+    shared_sides(outlines, tolerance).into_iter().map(|(pair, _)| pair).collect()
+}
+
+/// Sides that two polygons have in common, the lower index first: two corners that follow each other in both and lie within
+/// `tolerance` of each other.
+pub(crate) fn shared_sides(
+    outlines: &[Vec<Vector<f64>>],
+    tolerance: f64,
+) -> Vec<([usize; 2], [Vector<f64>; 2])> {
     let tolerance = tolerance.max(f64::MIN_POSITIVE);
     // Corners that round to one place are one corner.
     let key = |corner: &Vector<f64>| [corner.x, corner.y].map(|x| (x / (2.0 * tolerance)).round() as i64);
-    let mut sides: BTreeMap<[[i64; 2]; 2], Vec<usize>> = BTreeMap::new();
+    type Owners = (Vec<usize>, [Vector<f64>; 2]);
+    let mut sides: BTreeMap<[[i64; 2]; 2], Owners> = BTreeMap::new();
     for (cell, corners) in outlines.iter().enumerate() {
         let keys: Vec<[i64; 2]> = corners.iter().map(key).collect();
         for (index, &a) in keys.iter().enumerate() {
             let b = keys[(index + 1) % keys.len()];
             if a != b {
-                sides.entry([a.min(b), a.max(b)]).or_default().push(cell);
+                let ends = [corners[index], corners[(index + 1) % corners.len()]];
+                sides.entry([a.min(b), a.max(b)]).or_insert((Vec::new(), ends)).0.push(cell);
             }
         }
     }
-    let mut contacts = BTreeSet::new();
-    for cells in sides.values() {
+    let mut shared = Vec::new();
+    for (cells, ends) in sides.into_values() {
         for (index, &a) in cells.iter().enumerate() {
-            contacts.extend(cells[index + 1..].iter().filter(|&&b| a != b).map(|&b| [a.min(b), a.max(b)]));
+            let others = cells[index + 1..].iter().filter(|&&b| a != b);
+            shared.extend(others.map(|&b| ([a.min(b), a.max(b)], ends)));
         }
     }
-    contacts
+    shared
 }
 
 #[cfg(test)]

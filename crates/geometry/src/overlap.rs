@@ -1,7 +1,10 @@
-//! How much of each Voronoi cell lies in each square of a grid, and how that changes as the cells move.
+//! How much of each Voronoi cell lies in each square of a grid, or in Gaussian patches around its points, and how that changes as
+//! the cells move and the squares grow.
 
-use crate::grid::Lines;
-use crate::{CellPolygon, Grid, Tessellation, Vector, cross};
+use crate::gaussian_patch::{gaussian_area, gaussian_line};
+use crate::grid::Centres;
+use crate::{CellPolygon, Grid, Patch, Scalar, Tessellation, Vector, cross};
+use num_dual::Dual64;
 use rayon::prelude::*;
 
 /// Cells per task.
@@ -56,8 +59,10 @@ impl<T: Copy> BySquare<T> {
 pub struct Overlap {
     /// Index of the cell.
     pub cell: u32,
-    /// Area of the cell's polygon within the square, all its images together.
+    /// Area of the cell's polygon within the square, all its images together; weighted in a Gaussian patch.
     pub area: f64,
+    /// Its derivative by the side of the squares or the standard deviation of the patches.
+    pub by_width: f64,
 }
 
 impl BySquare<Overlap> {
@@ -77,7 +82,7 @@ impl BySquare<Overlap> {
 /// da_i = (ℓ/d) [(m − r_i)·dr_i − (m − r_j)·dr_j],        da_j = −da_i
 /// ```
 ///
-/// summed over the pieces of the square.
+/// summed over the pieces of the square. In a Gaussian patch ℓ and m are weighted.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct SidePiece {
     /// Index i of a cell with a closed polygon.
@@ -123,14 +128,20 @@ impl SidePiece {
 pub fn overlaps(tessellation: &Tessellation, positions: &[Vector<f64>], grid: &Grid) -> BySquare<Overlap> {
     by_square(tessellation, positions, grid, |scratch: &mut Clipper, polygon, cell, found| {
         scratch.vertices.clear();
-        scratch.vertices.extend(polygon.vertices());
+        let constant = |c: Vector<f64>| Vector::new(Dual64::from_re(c.x), Dual64::from_re(c.y));
+        scratch.vertices.extend(polygon.vertices().map(constant));
         let [x, y] = [0, 1].map(|axis| range(&scratch.vertices, axis));
         let bounds = [Vector::new(x[0], y[0]), Vector::new(x[1], y[1])];
         let first = found.len();
-        grid.for_images(tessellation.domain(), positions[cell], bounds, |lines| {
-            scratch.areas(&lines, |square, area| {
-                found.push((square, Overlap { cell: cell as u32, area }));
-            });
+        let mut add = |square: usize, area: Dual64| {
+            found.push((square, Overlap { cell: cell as u32, area: area.re, by_width: area.eps }));
+        };
+        grid.for_images(tessellation.domain(), positions[cell], bounds, |centres| match grid.patch() {
+            Patch::Square(side) => scratch.areas(&centres, Dual64::from_re(side).derivative(), &mut add),
+            Patch::Gaussian(width) => centres.meeting(bounds, |square, centre| {
+                let width = Dual64::from_re(width).derivative();
+                add(square, gaussian_area(polygon.vertices().map(|c| c - centre), width));
+            }),
         });
         merge(found, first);
     })
@@ -171,18 +182,27 @@ pub fn side_pieces(
             }
             let (length, distance) = ((side.to - side.from).norm(), displacement.norm());
             let bounds = [side.from.inf(&side.to), side.from.sup(&side.to)];
-            grid.for_images(tessellation.domain(), positions[cell], bounds, |lines| {
-                side.pieces(&lines, |square, share, middle| {
-                    let piece = SidePiece {
-                        cell: cell as u32,
-                        neighbour: neighbour as u32,
-                        length: share * length,
-                        from_cell: middle,
-                        from_neighbour: middle - displacement,
-                        distance,
-                    };
-                    found.push((square, piece));
-                });
+            let mut add = |square: usize, length: f64, middle: Vector<f64>| {
+                let piece = SidePiece {
+                    cell: cell as u32,
+                    neighbour: neighbour as u32,
+                    length,
+                    from_cell: middle,
+                    from_neighbour: middle - displacement,
+                    distance,
+                };
+                found.push((square, piece));
+            };
+            grid.for_images(tessellation.domain(), positions[cell], bounds, |centres| match grid.patch() {
+                Patch::Square(_) => {
+                    side.pieces(&centres, |square, share, middle| add(square, share * length, middle));
+                }
+                Patch::Gaussian(width) => centres.meeting(bounds, |square, centre| {
+                    let (length, middle) = gaussian_line([side.from - centre, side.to - centre], width);
+                    if length > 0.0 {
+                        add(square, length, middle + centre);
+                    }
+                }),
             });
         }
     })
@@ -219,6 +239,7 @@ fn merge(found: &mut Vec<(usize, Overlap)>, first: usize) {
     for k in first..found.len() {
         if kept > first && found[kept - 1].0 == found[k].0 {
             found[kept - 1].1.area += found[k].1.area;
+            found[kept - 1].1.by_width += found[k].1.by_width;
         } else {
             found[kept] = found[k];
             kept += 1;
@@ -230,24 +251,27 @@ fn merge(found: &mut Vec<(usize, Overlap)>, first: usize) {
 /// A polygon and what is left of it in a column and in a square. Buffers are kept between cells.
 #[derive(Default)]
 struct Clipper {
-    vertices: Vec<Vector<f64>>,
-    column: Vec<Vector<f64>>,
-    square: Vec<Vector<f64>>,
-    half: Vec<Vector<f64>>,
+    vertices: Vec<Vector<Dual64>>,
+    column: Vec<Vector<Dual64>>,
+    square: Vec<Vector<Dual64>>,
+    half: Vec<Vector<Dual64>>,
 }
 
 impl Clipper {
-    /// Visits the squares that the polygon overlaps, with the area in common.
-    fn areas(&mut self, lines: &Lines<'_>, mut visit: impl FnMut(usize, f64)) {
-        for ix in lines.numbers(0, range(&self.vertices, 0)) {
-            let sides = [lines.line(0, ix), lines.line(0, ix + 1)];
-            clip(&self.vertices, 0, sides, &mut self.half, &mut self.column);
-            for iy in lines.numbers(1, range(&self.column, 1)) {
-                let sides = [lines.line(1, iy), lines.line(1, iy + 1)];
-                clip(&self.column, 1, sides, &mut self.half, &mut self.square);
+    /// Visits the squares of some side that the polygon overlaps, with the area in common.
+    fn areas(&mut self, centres: &Centres<'_>, side: Dual64, visit: &mut impl FnMut(usize, Dual64)) {
+        let reach = centres.grid().aspect().map(|part| side * (0.5 * part));
+        let ends = |axis: usize, number: usize| {
+            let centre = centres.centre(axis, number);
+            [-reach[axis] + centre, reach[axis] + centre]
+        };
+        for ix in centres.numbers(0, range(&self.vertices, 0)) {
+            clip(&self.vertices, 0, ends(0, ix), &mut self.half, &mut self.column);
+            for iy in centres.numbers(1, range(&self.column, 1)) {
+                clip(&self.column, 1, ends(1, iy), &mut self.half, &mut self.square);
                 let area = area(&self.square);
-                if area > 0.0 {
-                    visit(lines.grid().index([ix, iy]), area);
+                if area.re > 0.0 {
+                    visit(centres.grid().index([ix, iy]), area);
                 }
             }
         }
@@ -255,26 +279,27 @@ impl Clipper {
 }
 
 /// Least and greatest coordinate along an axis.
-fn range(points: &[Vector<f64>], axis: usize) -> [f64; 2] {
+fn range<S: Scalar>(points: &[Vector<S>], axis: usize) -> [f64; 2] {
     points.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], point| {
-        [low.min(point[axis]), high.max(point[axis])]
+        let coordinate = point[axis].real();
+        [low.min(coordinate), high.max(coordinate)]
     })
 }
 
 /// The part of a convex polygon with a coordinate between two bounds (Sutherland and Hodgman).
-fn clip(
-    polygon: &[Vector<f64>],
+fn clip<S: Scalar>(
+    polygon: &[Vector<S>],
     axis: usize,
-    [low, high]: [f64; 2],
-    half: &mut Vec<Vector<f64>>,
-    clipped: &mut Vec<Vector<f64>>,
+    [low, high]: [S; 2],
+    half: &mut Vec<Vector<S>>,
+    clipped: &mut Vec<Vector<S>>,
 ) {
     cut(polygon, half, axis, |coordinate| coordinate - low);
     cut(half, clipped, axis, |coordinate| high - coordinate);
 }
 
 /// The part of a convex polygon where `inside` is not negative; it is linear in the coordinate along `axis`.
-fn cut(polygon: &[Vector<f64>], kept: &mut Vec<Vector<f64>>, axis: usize, inside: impl Fn(f64) -> f64) {
+fn cut<S: Scalar>(polygon: &[Vector<S>], kept: &mut Vec<Vector<S>>, axis: usize, inside: impl Fn(S) -> S) {
     kept.clear();
     let Some(&last) = polygon.last() else {
         return;
@@ -282,25 +307,26 @@ fn cut(polygon: &[Vector<f64>], kept: &mut Vec<Vector<f64>>, axis: usize, inside
     let (mut previous, mut before) = (last, inside(last[axis]));
     for &vertex in polygon {
         let here = inside(vertex[axis]);
-        if (before < 0.0) != (here < 0.0) {
+        if (before.real() < 0.0) != (here.real() < 0.0) {
             // From the nearer of the two: vertices at the rim of an open field can be very far away.
-            let swap = here.abs() < before.abs();
+            let swap = here.real().abs() < before.real().abs();
             let (near, far) = if swap { (vertex, previous) } else { (previous, vertex) };
             let (at_near, at_far) = if swap { (here, before) } else { (before, here) };
             kept.push(near + (far - near) * (at_near / (at_near - at_far)));
         }
-        if here >= 0.0 {
+        if here.real() >= 0.0 {
             kept.push(vertex);
         }
         (previous, before) = (vertex, here);
     }
 }
 
-fn area(polygon: &[Vector<f64>]) -> f64 {
+fn area<S: Scalar>(polygon: &[Vector<S>]) -> S {
     let Some(&first) = polygon.first() else {
-        return 0.0;
+        return S::constant(0.0);
     };
-    polygon.windows(2).map(|pair| 0.5 * cross(pair[0] - first, pair[1] - first)).sum()
+    let double = |pair: &[Vector<S>]| cross(pair[0] - first, pair[1] - first);
+    polygon.windows(2).fold(S::constant(0.0), |sum, pair| sum + double(pair) * 0.5)
 }
 
 /// A side from one vertex to the next, relative to the cell.
@@ -311,36 +337,33 @@ struct Side {
 
 impl Side {
     /// Visits the squares that the side crosses, with the share of its length there and the midpoint of the piece.
-    fn pieces(&self, lines: &Lines<'_>, mut visit: impl FnMut(usize, f64, Vector<f64>)) {
-        self.crossed(lines, 0, [0.0, 1.0], |ix, part| {
-            self.crossed(lines, 1, part, |iy, [s, t]| {
+    fn pieces(&self, centres: &Centres<'_>, mut visit: impl FnMut(usize, f64, Vector<f64>)) {
+        self.crossed(centres, 0, [0.0, 1.0], |ix, part| {
+            self.crossed(centres, 1, part, |iy, [s, t]| {
                 let middle = self.from + (self.to - self.from) * (0.5 * (s + t));
-                visit(lines.grid().index([ix, iy]), t - s, middle);
+                visit(centres.grid().index([ix, iy]), t - s, middle);
             });
         });
     }
 
-    /// Cuts the part `[s, t]` of the side, `0 ≤ s < t ≤ 1`, where it crosses grid lines along an axis.
+    /// The pieces of the part `[s, t]` of the side, `0 ≤ s < t ≤ 1`, within the squares of each number along an axis.
     fn crossed(
         &self,
-        lines: &Lines<'_>,
+        centres: &Centres<'_>,
         axis: usize,
         [s, t]: [f64; 2],
         mut visit: impl FnMut(usize, [f64; 2]),
     ) {
         let (from, step) = (self.from[axis], self.to[axis] - self.from[axis]);
-        let ends = [from + s * step, from + t * step];
-        let numbers = ends.map(|end| lines.number(axis, end));
-        let [low, high] = if step < 0.0 { [numbers[1], numbers[0]] } else { numbers };
-        let at = |number: usize| ((lines.line(axis, number) - from) / step).clamp(s, t);
-        for number in lines.numbers(axis, if step < 0.0 { [ends[1], ends[0]] } else { ends }) {
-            // The ends of the part, or where it crosses a line: only then is the step not zero.
-            let below = (number as isize > low).then(|| at(number));
-            let above = ((number as isize) < high).then(|| at(number + 1));
-            let part = if step < 0.0 {
-                [above.unwrap_or(s), below.unwrap_or(t)]
-            } else {
-                [below.unwrap_or(s), above.unwrap_or(t)]
+        let (one, other) = (from + s * step, from + t * step);
+        for number in centres.numbers(axis, [one.min(other), one.max(other)]) {
+            let [low, high] = centres.ends(axis, number);
+            // A side along the line between two squares is in one of them.
+            let part = match step {
+                0.0 if low <= from && from < high => [s, t],
+                0.0 => continue,
+                _ if step > 0.0 => [s.max((low - from) / step), t.min((high - from) / step)],
+                _ => [s.max((high - from) / step), t.min((low - from) / step)],
             };
             if part[0] < part[1] {
                 visit(number, part);

@@ -97,7 +97,7 @@ impl<S: Scalar> CellPolygon<S> {
     }
 
     /// Voronoi vertices relative to the cell, counter-clockwise.
-    pub fn vertices(&self) -> impl Iterator<Item = Vector<S>> {
+    pub fn vertices(&self) -> impl Iterator<Item = Vector<S>> + Clone {
         self.corners.iter().map(|corner| corner.centre)
     }
 

@@ -108,6 +108,12 @@ impl CoefficientSpace {
         Ok(held)
     }
 
+    /// The space with so many further directions, after all others, along which no coefficient changes.
+    pub(crate) fn widened(&self, directions: usize) -> Self {
+        let basis = self.basis.clone().resize_horizontally(self.dimension() + directions, 0.0);
+        Self { basis, ..self.clone() }
+    }
+
     /// The space of these coefficients alone.
     pub(crate) fn pinned(c: &[f64]) -> Self {
         Self {

@@ -2,12 +2,14 @@
 //!
 //! ```text
 //! v_g = Σ_i w_gi v_i / Σ_i w_gi        w_gi = area of cell i in the square of grid point g, or
-//!                                      w_gi = exp(−|x_g − r_i|² / 2s²)
+//!                                      w_gi = exp(−|x_g − r_i|² / 2s²), or
+//!                                      w_gi = ∫ exp(−|x_g − x|² / 2s²) over cell i
 //! ```
 //!
-//! Weights depend on where the cells are, so ∂v_g/∂r has a part from the velocities and a part from the weights.
+//! Weights depend on where the cells are, so ∂v_g/∂r has a part from the velocities and a part from the weights; and they depend on
+//! the width of the window.
 
-use voronudge_geometry::{Domain, Grid, Tessellation, Vector, Visibility, overlaps, side_pieces};
+use voronudge_geometry::{Domain, Grid, Patch, Tessellation, Vector, Visibility, overlaps, side_pieces};
 use voronudge_model::BlockMatrix;
 
 /// Velocities on a regular grid.
@@ -23,18 +25,42 @@ pub struct Flow {
 
 /// The average over cells that a grid point stands for.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Window {
-    /// Over the square around the grid point, in which every point moves with the cell that it belongs to.
-    Square,
-    /// Over the cells' centres with weights `exp(−d²/2s²)`, cut at `d = 4s`.
-    Gaussian {
-        /// `s`, in the unit of length.
-        width: f64,
-    },
+pub struct Window {
+    /// Its shape and what it averages.
+    pub kind: WindowKind,
+    /// Side of a square, standard deviation s of a Gaussian, in the unit of length.
+    pub width: f64,
 }
 
-/// Distance at which a Gaussian window is cut, in widths; its weight there is 3e-4.
-const CUT: f64 = 4.0;
+/// Shapes of windows.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum WindowKind {
+    /// Over the square around the grid point, in which every point moves with the cell that it belongs to. Where spacings differ
+    /// it is a rectangle of the same area with sides in their ratio.
+    Square,
+    /// Over the cells' centres with weights `exp(−d²/2s²)`, cut at `d = 5s`.
+    Gaussian,
+    /// Over the plane with the same weights; every point moves with the cell that it belongs to.
+    GaussianArea,
+}
+
+impl WindowKind {
+    /// All kinds.
+    pub const ALL: [Self; 3] = [Self::Square, Self::Gaussian, Self::GaussianArea];
+
+    /// The width to begin with, for a grid of some spacing.
+    pub fn usual_width(self, grid: &Grid) -> f64 {
+        let [dx, dy] = grid.spacing();
+        let spacing = (dx * dy).sqrt();
+        match self {
+            Self::Square => spacing,
+            Self::Gaussian | Self::GaussianArea => 0.5 * spacing,
+        }
+    }
+}
+
+/// Distance at which a Gaussian window is cut, in widths; its weight there is 4e-6.
+const CUT: f64 = 5.0;
 
 /// Least share of a window that trusted cells must fill for its velocity to be used.
 const FILLED: f64 = 0.999;
@@ -47,6 +73,8 @@ pub(crate) struct Sampling {
     cell: Vec<u32>,
     /// Normalised over the trusted cells of a window.
     weight: Vec<f64>,
+    /// Derivative of the weight by the width of the window.
+    by_width: Vec<f64>,
     filled: Vec<bool>,
     shift_start: Vec<usize>,
     shifts: Vec<Shift>,
@@ -70,11 +98,12 @@ impl Sampling {
         visibility: &[Visibility],
     ) -> Self {
         let trusted = |cell: u32| visibility[cell as usize] == Visibility::Counted;
-        match flow.window {
-            Window::Square => Self::squares(flow, tessellation, positions, trusted),
-            Window::Gaussian { width } => {
-                Self::gaussian(flow, tessellation.domain(), positions, width, trusted)
-            }
+        let Window { kind, width } = flow.window;
+        let of_area = |patch| Self::of_area(&flow.grid.with_patch(patch), tessellation, positions, trusted);
+        match kind {
+            WindowKind::Square => of_area(Patch::Square(width)),
+            WindowKind::GaussianArea => of_area(Patch::Gaussian(width)),
+            WindowKind::Gaussian => Self::gaussian(flow, tessellation.domain(), positions, width, trusted),
         }
     }
 
@@ -83,24 +112,29 @@ impl Sampling {
         &self.filled
     }
 
-    fn squares(
-        flow: &Flow,
+    /// Averages over patches of the plane.
+    fn of_area(
+        grid: &Grid,
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
         trusted: impl Fn(u32) -> bool,
     ) -> Self {
-        let overlaps = overlaps(tessellation, positions, &flow.grid);
-        let pieces = side_pieces(tessellation, positions, &flow.grid);
-        let whole = flow.grid.square_area();
+        let overlaps = overlaps(tessellation, positions, grid);
+        let pieces = side_pieces(tessellation, positions, grid);
+        let whole = grid.patch_area();
         let mut sampling = Self::empty();
-        for square in 0..flow.velocities.len() {
-            let entries = overlaps.square(square);
-            let area: f64 = entries.iter().filter(|entry| trusted(entry.cell)).map(|entry| entry.area).sum();
+        for square in 0..grid.len() {
+            let entries = overlaps.square(square).iter().filter(|entry| trusted(entry.cell));
+            let (area, growth) = entries
+                .clone()
+                .fold((0.0, 0.0), |(area, growth), entry| (area + entry.area, growth + entry.by_width));
             sampling.filled.push(area > FILLED * whole);
             if area > 0.0 {
-                for entry in entries.iter().filter(|entry| trusted(entry.cell)) {
+                for entry in entries {
+                    let weight = entry.area / area;
                     sampling.cell.push(entry.cell);
-                    sampling.weight.push(entry.area / area);
+                    sampling.weight.push(weight);
+                    sampling.by_width.push((entry.by_width - weight * growth) / area);
                 }
                 for piece in pieces.square(square) {
                     let (to, from) = (piece.cell, piece.neighbour);
@@ -140,9 +174,14 @@ impl Sampling {
             let all: f64 = weighted.iter().map(|entry| entry.2).sum();
             let sum: f64 = weighted.iter().filter(|entry| trusted(entry.0)).map(|entry| entry.2).sum();
             sampling.filled.push(sum > 0.0 && sum > FILLED * all);
-            for (cell, d, w) in weighted.into_iter().filter(|entry| trusted(entry.0)) {
+            // ∂w/∂s = w d²/s³
+            let growth = |d: Vector<f64>| d.norm_squared() / width.powi(3);
+            let counted = weighted.into_iter().filter(|entry| trusted(entry.0));
+            let mean = counted.clone().map(|(_, d, w)| growth(d) * w / sum).sum::<f64>();
+            for (cell, d, w) in counted {
                 sampling.cell.push(cell);
                 sampling.weight.push(w / sum);
+                sampling.by_width.push((growth(d) - mean) * w / sum);
                 let direction = d * (w / (sum * width * width));
                 sampling.shifts.push(Shift { to: cell, from: None, moved: cell, direction });
             }
@@ -156,6 +195,7 @@ impl Sampling {
             start: vec![0],
             cell: Vec::new(),
             weight: Vec::new(),
+            by_width: Vec::new(),
             filled: Vec::new(),
             shift_start: vec![0],
             shifts: Vec::new(),
@@ -177,6 +217,16 @@ impl Sampling {
         (0..self.filled.len())
             .map(|row| self.entries(row).fold(Vector::zeros(), |sum, (cell, w)| sum + field[cell] * w))
             .collect()
+    }
+
+    /// The derivative of the averages of a field by the width of the window.
+    pub fn width_slope(&self, field: &[Vector<f64>]) -> Vec<Vector<f64>> {
+        let of_row = |row: usize| {
+            let range = self.start[row]..self.start[row + 1];
+            let terms = self.cell[range.clone()].iter().zip(&self.by_width[range]);
+            terms.fold(Vector::zeros(), |sum, (cell, slope)| sum + field[*cell as usize] * *slope)
+        };
+        (0..self.filled.len()).map(of_row).collect()
     }
 
     /// `∂v_g/∂r_j` from the velocities of the cells and their Jacobian.
@@ -225,8 +275,17 @@ mod tests {
     use voronudge_geometry::FieldOfView;
     use voronudge_model::{Model, base_terms, jacobian, velocities};
 
-    fn windows() -> [Window; 2] {
-        [Window::Square, Window::Gaussian { width: 0.5 }]
+    /// Squares that touch, that overlap, that leave gaps, and Gaussians.
+    fn windows() -> [Window; 5] {
+        let window = |kind, width| Window { kind, width };
+        [
+            window(WindowKind::Square, 0.99f64.sqrt()),
+            window(WindowKind::Square, 1.6),
+            window(WindowKind::Square, 0.8),
+            // No cell is at the cut.
+            window(WindowKind::Gaussian, 0.51),
+            window(WindowKind::GaussianArea, 0.5),
+        ]
     }
 
     /// ∂v_g/∂r against central differences of what is measured.
@@ -249,6 +308,15 @@ mod tests {
             let v = velocities(&tessellation, &positions, &model);
             let exact = sampling.jacobian(&v, &jacobian(&tessellation, &positions, &model));
             let scale = exact.block.iter().flatten().fold(0.0, |max: f64, b| max.max(b.abs()));
+            let at_width = |width: f64| {
+                let flow = Flow { window: Window { width, ..window }, ..flow.clone() };
+                Sampling::new(&flow, &tessellation, &positions, &visibility).average(&v)
+            };
+            let (wider, narrower) = (at_width(window.width + 1e-5), at_width(window.width - 1e-5));
+            for (datum, slope) in sampling.width_slope(&v).into_iter().enumerate() {
+                let difference = (wider[datum] - narrower[datum]) / 2e-5;
+                assert!((difference - slope).norm() < 1e-5, "{window:?} {datum} {difference} {slope}");
+            }
             for cell in 0..positions.len() {
                 for axis in 0..2 {
                     let at = |sign: f64| {
@@ -263,8 +331,8 @@ mod tests {
                             exact.row(datum).find(|(column, _)| *column == cell).map(|(_, block)| *block);
                         let block = block.unwrap_or([0.0; 4]);
                         let found = Vector::new(block[axis], block[2 + axis]);
-                        // The cut of a Gaussian window leaves steps of 3e-4 of a weight.
-                        let tolerance = if window == Window::Square { 1e-7 } else { 2e-6 };
+                        // The cut of a Gaussian window leaves steps of 4e-6 of a weight.
+                        let tolerance = if window.kind == WindowKind::Square { 1e-7 } else { 2e-6 };
                         assert!((difference - found).norm() < tolerance * scale, "{window:?} {datum} {cell}");
                     }
                 }

@@ -6,7 +6,7 @@ use crate::doubts::examine;
 use crate::estimates::Fitted;
 use crate::least_squares::{self, residuals_as_measured};
 use crate::noisy_fit::{at_limit, fit, go_on};
-use crate::normal_equations::NormalEquations;
+use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Nudged, Objective};
 use crate::robust::reweighed;
 use crate::search::Watch;
@@ -38,16 +38,7 @@ pub fn infer(
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Inference, Error> {
     let space = request.space()?;
-    let used: usize = frames.iter().map(|frame| frame.targets().count()).sum();
-    let required =
-        2 * space.dimension() + 2 + frames.iter().map(Observation::background_dimension).sum::<usize>() / 2;
-    if used < required {
-        return Err(Error::TooFewVelocities { used, required });
-    }
-    let total: f64 = frames.iter().flat_map(Observation::explainable).map(|v| v.norm_squared()).sum();
-    if total <= 0.0 {
-        return Err(Error::NothingMoves);
-    }
+    let (used, total) = to_be_explained(frames, &space)?;
     let structure = &request.structure;
     let naive = least_squares::fit(frames, structure, &space)?;
     let mut watch = Watch { observe };
@@ -83,7 +74,15 @@ pub fn infer(
     // Where the model misses more than the noise explains, the misfit counts as noise.
     let excess = (value / expected).max(1.0);
     let equations = objective.linearise(&found.parameters)?;
-    let estimated = estimates(&equations, &space, request, free, variance * excess)?;
+    // What is not known of the measurement makes coefficients uncertain.
+    let unknowns = frames.first().map_or(&[][..], Observation::unknowns);
+    let reduced = match unknowns.is_empty() {
+        true => equations.reduced()?,
+        false => {
+            objective.linearise_with(&found.parameters, unknowns)?.reduced()?.without_last(unknowns.len())?
+        }
+    };
+    let estimated = estimates(&equations, reduced, &space, request, free, variance * excess)?;
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
         let squares = |frame| residuals_as_measured(frame, structure, coefficients.as_slice());
@@ -153,15 +152,15 @@ pub(crate) struct Estimates {
     pub directions: Vec<Direction>,
 }
 
-/// Estimates at β from the linearised problem about it, with σ_v² as the fit bears it out.
+/// Estimates at β from the linearised problem about it, reduced to the coefficients, with σ_v² as the fit bears it out.
 pub(crate) fn estimates(
     equations: &NormalEquations,
+    reduced: Reduced,
     space: &CoefficientSpace,
     request: &Request,
     free: &[f64],
     variance: f64,
 ) -> Result<Estimates, Error> {
-    let reduced = equations.reduced()?;
     let centre = equations.unbounded(&reduced)?;
     let information = reduced.information / variance;
     let fitted = Fitted { space, constraints: &request.constraints, free, information: &information, centre };
@@ -200,6 +199,24 @@ pub(crate) fn changed_edges(before: &Tessellation, after: &Tessellation) -> [Vec
             .collect::<Vec<_>>()
     };
     [missing_from(&before, &after), missing_from(&after, &before)]
+}
+
+/// Number of velocities and their sum of squares, where there is enough to fit.
+pub(crate) fn to_be_explained(
+    frames: &[Observation],
+    space: &CoefficientSpace,
+) -> Result<(usize, f64), Error> {
+    let used: usize = frames.iter().map(|frame| frame.targets().count()).sum();
+    let required =
+        2 * space.dimension() + 2 + frames.iter().map(Observation::background_dimension).sum::<usize>() / 2;
+    if used < required {
+        return Err(Error::TooFewVelocities { used, required });
+    }
+    let total: f64 = frames.iter().flat_map(Observation::explainable).map(|v| v.norm_squared()).sum();
+    if total <= 0.0 {
+        return Err(Error::NothingMoves);
+    }
+    Ok((used, total))
 }
 
 /// One frame at its nudged positions.

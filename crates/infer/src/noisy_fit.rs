@@ -14,13 +14,13 @@ const ROUNDS: [usize; 2] = [6, 3];
 const NOISE_STEPS: u64 = 60;
 
 /// Steps of the optimiser between two estimates.
-const STEPS_PER_ROUND: u64 = 8;
+pub(crate) const STEPS_PER_ROUND: u64 = 8;
 
 /// Position noise, in units of ℓ₀, of positions that are almost exact.
 const ALMOST_EXACT: f64 = 2e-3;
 
 /// Change of log σ that counts as none.
-const SETTLED: f64 = 0.02;
+pub(crate) const SETTLED: f64 = 0.02;
 
 /// Finds parameters, nudges and, where they are not known, noise levels. The objective has the levels on return.
 pub(crate) fn fit(
@@ -159,7 +159,7 @@ fn settle(
 }
 
 /// The most likely levels for a linearised problem, and their criterion.
-fn most_likely(
+pub(crate) fn most_likely(
     objective: &Objective<'_>,
     equations: &NormalEquations,
     known: &KnownNoise,
@@ -175,7 +175,11 @@ pub(crate) fn at_limit(levels: &NoiseLevels, known: &KnownNoise) -> bool {
 }
 
 /// Noise levels before any nudged fit: as given, or a usual position noise and the spread of the naive residual.
-fn first_levels(objective: &Objective<'_>, naive: &[f64], known: &KnownNoise) -> Result<NoiseLevels, Error> {
+pub(crate) fn first_levels(
+    objective: &Objective<'_>,
+    naive: &[f64],
+    known: &KnownNoise,
+) -> Result<NoiseLevels, Error> {
     known.check()?;
     let coefficients = objective.space.coefficients(naive);
     let mut sizes: Vec<f64> = objective

@@ -37,6 +37,22 @@ pub(crate) struct Reduced {
     pub gradient: DVector<f64>,
 }
 
+impl Reduced {
+    /// The problem in the first coefficients alone, the last ones, as many as given, eliminated.
+    ///
+    /// # Errors
+    /// [`Error::Degenerate`] if those are not determined.
+    pub fn without_last(&self, count: usize) -> Result<Self, Error> {
+        let own = self.gradient.len() - count;
+        let mixed = self.information.view((0, own), (own, count));
+        let inverse = invert(self.information.view((own, own), (count, count)).into_owned())?;
+        Ok(Self {
+            information: self.information.view((0, 0), (own, own)) - mixed * &inverse * mixed.transpose(),
+            gradient: self.gradient.rows(0, own) - mixed * inverse * self.gradient.rows(own, count),
+        })
+    }
+}
+
 /// The penalty of the priors, linearised about the present coefficients.
 #[derive(Debug, Clone)]
 struct Priors {

@@ -3,8 +3,9 @@
 use crate::flow::Sampling;
 use crate::least_squares::{Columns, free_rows, residuals};
 use crate::linearisation::{Linearisation, Local};
+use crate::measurement::Unknown;
 use crate::normal_equations::NormalEquations;
-use crate::position_rows::PositionRows;
+use crate::position_rows::{self, PositionRows};
 use crate::rows::Rows;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
@@ -14,7 +15,7 @@ use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::{BlockMatrix, Environment, Structure, jacobian};
 
-/// `Φ(β, ε) = Σ w ‖v − F_β(r + ε)‖² + k Σ m ‖ε‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors, with weights w of
+/// `Φ(β, ε) = Σ w ‖v − F_β(r + ε)‖² + k Σ m ‖y − H(r + ε)‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors, with weights w of
 /// velocities and the stiffness m of a cell. Cells that were not seen are held with the spread of [`WHEREABOUTS`]. The
 /// parameter vector is β, then ε frame by frame as x₀, y₀, x₁, …
 ///
@@ -185,11 +186,10 @@ impl<'a> Objective<'a> {
                     .into_iter()
                     .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
                 let free = self.floor() / self.spring();
-                let springs = nudges.chunks_exact(2).enumerate().map(|(cell, e)| {
-                    let stiffness = if frame.is_seen(cell) { frame.stiffness(cell) } else { free };
-                    stiffness * (e[0] * e[0] + e[1] * e[1])
-                });
-                (squares.sum(), springs.sum())
+                let unseen = nudges.chunks_exact(2).enumerate().filter(|(cell, _)| !frame.is_seen(*cell));
+                let stray = unseen.map(|(_, e)| free * (e[0] * e[0] + e[1] * e[1])).sum::<f64>();
+                let seen = position_rows::squares(frame, &nudged.tessellation, &nudged.positions, nudges);
+                (squares.sum(), seen + stray)
             })
             .collect();
         let (residual, nudges) =
@@ -216,8 +216,17 @@ impl<'a> Objective<'a> {
 
     /// The problem linearised about a point.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
+        self.linearise_with(parameters, &[])
+    }
+
+    /// The same with unknowns of the measurement as further coefficients, after all others.
+    pub fn linearise_with(&self, parameters: &[f64], unknowns: &[Unknown]) -> Result<NormalEquations, Error> {
         let (free, nudges) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
+        let own = self.space.dimension();
+        let p = own + unknowns.len();
+        let of_share = unknowns.iter().position(|unknown| *unknown == Unknown::Share).map(|k| own + k);
+        let of_width = unknowns.iter().position(|unknown| *unknown == Unknown::Width).map(|k| own + k);
         let frames = self
             .frames
             .par_iter()
@@ -236,13 +245,24 @@ impl<'a> Objective<'a> {
                 if !frame.is_free() {
                     jacobian = jacobian.only(|cell| !frame.is_held(cell));
                 }
+                for (_, _, x) in &mut rows {
+                    *x = std::mem::take(x).resize_horizontally(p, 0.0);
+                }
+                if let (Some(k), Some(sampling)) = (of_width, &nudged.sampling) {
+                    let slopes = sampling.width_slope(&evaluated.of_cells);
+                    let mut slopes: Vec<Vector<f64>> =
+                        rows.iter().map(|(datum, ..)| slopes[*datum]).collect();
+                    frame.remove_background(&mut slopes);
+                    rows.iter_mut().zip(slopes).for_each(|((_, _, x), slope)| x.set_column(k, &slope));
+                }
                 frame.weigh(&mut rows, &mut jacobian);
-                let p = self.space.dimension();
+                let positions =
+                    PositionRows::new(frame, &nudged.tessellation, &nudged.positions, nudges, p, of_share);
                 let floor = self.floor();
                 let of_cell = |cell| if frame.is_seen(cell) { 0.0 } else { floor };
                 Linearisation::new(&Local {
                     velocities: Rows { jacobian: &jacobian, rows: &rows },
-                    positions: PositionRows::new(frame, nudges, p).rows(),
+                    positions: positions.rows(),
                     nudges,
                     floor: match frame.unseen() {
                         0 => Vec::new(),
@@ -252,7 +272,9 @@ impl<'a> Objective<'a> {
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;
-        Ok(NormalEquations::new(self.space, self.levels, free, frames))
+        let mut free = free.to_vec();
+        free.resize(p, 0.0);
+        Ok(NormalEquations::new(&self.space.widened(unknowns.len()), self.levels, &free, frames))
     }
 }
 
@@ -261,7 +283,7 @@ impl<'a> Objective<'a> {
 pub(crate) struct Parts {
     /// Σ w ‖v − F‖²
     pub residual: f64,
-    /// Σ m ‖ε‖²
+    /// Σ m ‖y − H(r + ε)‖²
     pub nudges: f64,
     /// σ_v² Σ (q − m)² / s²
     pub priors: f64,

@@ -1,8 +1,11 @@
 //! One snapshot: where the cells are and how fast they move.
 
+mod measured;
+
 use crate::Error;
 use crate::background::Background;
 use crate::flow::{Flow, Sampling};
+use crate::measurement::Unknown;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Region, Tessellation, Vector, Visibility};
@@ -29,6 +32,16 @@ pub struct Observation {
     held: Vec<bool>,
     /// `(σ_r / σ_i)²` of each cell, zero for cells that were not seen; empty if all are measured alike.
     stiffness: Vec<f64>,
+    /// Share c of the way from a cell's site to its centroid at which its position is measured.
+    share: f64,
+    /// Where cells were measured, relative to `positions`; empty if there.
+    aims: Vec<Vector<f64>>,
+    /// Whether a cell's polygon is known well enough to have a centroid; empty if all are that have a polygon.
+    polygons: Vec<bool>,
+    /// Unknowns of the measurement that were fitted.
+    unknowns: Vec<Unknown>,
+    /// Grid points that are used at most; empty if all may be.
+    reach: Vec<bool>,
     /// Weight of each velocity; empty if all are one.
     weights: Vec<f64>,
     /// Degree of the polynomials that are no concern of the model, and what they are here.
@@ -109,6 +122,11 @@ impl Observation {
             used,
             held: Vec::new(),
             stiffness: Vec::new(),
+            share: 0.0,
+            aims: Vec::new(),
+            polygons: Vec::new(),
+            unknowns: Vec::new(),
+            reach: Vec::new(),
             weights: Vec::new(),
             background: None,
             environment: Arc::default(),
@@ -183,7 +201,14 @@ impl Observation {
         };
         let domain = self.tessellation.domain();
         let own = Self::new(0, positions, velocities, domain, self.field_of_view.clone())?;
-        let own = Self { stiffness, environment: self.environment.clone(), ..own };
+        let aims = match self.aims.is_empty() {
+            true => Vec::new(),
+            false => (0..own.positions.len())
+                .map(|cell| kept.get(cell).map_or_else(Vector::zeros, |kept| self.aim(*kept)))
+                .collect(),
+        };
+        let (share, unknowns) = (self.share, self.unknowns.clone());
+        let own = Self { stiffness, aims, share, unknowns, environment: self.environment.clone(), ..own };
         Ok(own.with_background(self.background_degree()))
     }
 
@@ -250,11 +275,12 @@ impl Observation {
         targets
     }
 
-    /// Some cells of this one, by their index, with positions of their own, the velocities that are to be explained, and those
+    /// Some cells of this one, by their index, that are displaced by nudges of all cells, with positions of their own, the velocities that are to be explained, and those
     /// that are held.
     pub(crate) fn cut(
         &self,
         cells: &[usize],
+        nudges: &[f64],
         positions: Vec<Vector<f64>>,
         targets: Vec<Option<Vector<f64>>>,
         held: Vec<bool>,
@@ -266,8 +292,25 @@ impl Observation {
         };
         Ok(Self {
             used: vec![true; cells.len()],
-            held,
             stiffness: own(&self.stiffness),
+            share: self.share,
+            aims: match self.aims.is_empty() && self.share == 0.0 {
+                true => Vec::new(),
+                // Cells that are held are where the nudges have put them.
+                false => cells
+                    .iter()
+                    .zip(&held)
+                    .map(|(&cell, held)| match held {
+                        true => self.aim(cell) - Vector::new(nudges[2 * cell], nudges[2 * cell + 1]),
+                        false => self.aim(cell),
+                    })
+                    .collect(),
+            },
+            polygons: match self.polygons.is_empty() {
+                true => Vec::new(),
+                false => cells.iter().map(|cell| self.polygons[*cell]).collect(),
+            },
+            held,
             weights: own(&self.weights),
             ..whole
         })

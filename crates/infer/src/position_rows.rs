@@ -1,16 +1,33 @@
 //! Measured positions as data of a fit: where cells are against where they were seen.
 //!
 //! ```text
-//! √m_i (y_i − r_i),      m_i = (σ_r / σ_i)²
+//! √m_i (y_i − H_i(r)),      m_i = (σ_r / σ_i)²,      H_i(r) = r_i + c (centroid_i(r) − r_i)
 //! ```
 //!
-//! σ_r is the error that the noise levels speak of, σ_i that of the cell. A cell that was not seen has m_i = 0 and no row.
+//! σ_r is the error that the noise levels speak of, σ_i that of the cell. A cell that was not seen has m_i = 0 and no row. The share c
+//! says what of a cell its position is: 0 for Voronoi sites, 1 for centroids. Cells whose polygon cannot be trusted are taken for
+//! measured at their sites.
 
 use crate::Observation;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
-use voronudge_geometry::Vector;
+use voronudge_geometry::{CellPolygon, Tessellation, Vector, centroid_slopes};
 use voronudge_model::BlockMatrix;
+
+/// Measured positions of places that are somewhere near them.
+pub(crate) struct Anchors<'a> {
+    /// Stiffness m of each place.
+    pub stiffness: &'a dyn Fn(usize) -> f64,
+    /// What a place is measured to be displaced from where it is now: y − r.
+    pub aim: &'a dyn Fn(usize) -> Vector<f64>,
+    /// c
+    pub share: f64,
+    /// Whether the polygon of a place is that of a cell.
+    pub has_polygon: &'a dyn Fn(usize) -> bool,
+    /// Whether a place cannot move.
+    pub is_held: &'a dyn Fn(usize) -> bool,
+    pub places: usize,
+}
 
 /// The rows of the measured positions of one frame.
 pub(crate) struct PositionRows {
@@ -19,29 +36,218 @@ pub(crate) struct PositionRows {
 }
 
 impl PositionRows {
-    /// The rows for cells displaced by nudges, for p free coefficients.
-    pub fn new(frame: &Observation, nudges: &[f64], p: usize) -> Self {
-        let stiffness = (0..frame.positions.len()).map(|cell| frame.stiffness(cell));
-        Self::of_sites(stiffness, nudges, p)
+    /// The rows for cells of a frame displaced by nudges to `positions`, for p free coefficients; the derivative by c is that of
+    /// coefficient `of_share`, if it is one of them.
+    pub fn new(
+        frame: &Observation,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        nudges: &[f64],
+        p: usize,
+        of_share: Option<usize>,
+    ) -> Self {
+        let anchors = Anchors {
+            stiffness: &|cell| frame.stiffness(cell),
+            aim: &|cell| frame.aim(cell) - Vector::new(nudges[2 * cell], nudges[2 * cell + 1]),
+            share: frame.share(),
+            has_polygon: &|cell| frame.has_polygon(cell) && tessellation.is_closed(cell),
+            is_held: &|cell| frame.is_held(cell),
+            places: positions.len(),
+        };
+        Self::of(&anchors, tessellation, positions, p, of_share)
     }
 
-    /// The same for any places with their stiffness m, whose displacements from where they were seen are the nudges.
+    /// The same for any places.
+    pub fn of(
+        anchors: &Anchors<'_>,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        p: usize,
+        of_share: Option<usize>,
+    ) -> Self {
+        let mut rows = Rowed::new(p);
+        let mut polygon = CellPolygon::default();
+        let mut pinned = Vec::new();
+        for place in 0..anchors.places {
+            let root = (anchors.stiffness)(place).sqrt();
+            if root > 0.0 {
+                let held = (anchors.is_held)(place);
+                let polygonal = (anchors.share != 0.0 || of_share.is_some()) && (anchors.has_polygon)(place);
+                let mut offset = Vector::zeros();
+                if polygonal {
+                    polygon.fill(tessellation, positions, place);
+                    offset = polygon.centroid();
+                    if anchors.share != 0.0 {
+                        centroid_slopes(tessellation, positions, place, |neighbour, block| {
+                            let block = block.map(|slope| anchors.share * root * slope);
+                            if !(anchors.is_held)(neighbour) {
+                                rows.add(neighbour, block);
+                            }
+                            if !held {
+                                rows.add(place, block.map(|slope| -slope));
+                            }
+                        });
+                    }
+                }
+                if held {
+                    pinned.push(place);
+                } else {
+                    rows.add(place, [root, 0.0, 0.0, root]);
+                }
+                // A place that cannot move is a datum if one that it sees can.
+                if !held || rows.is_begun() {
+                    let rest = ((anchors.aim)(place) - offset * anchors.share) * root;
+                    rows.end(place, rest, of_share.map(|k| (k, offset * root)));
+                    continue;
+                }
+            }
+            rows.skip();
+        }
+        for place in pinned {
+            rows.add(place, [1.0, 0.0, 0.0, 1.0]);
+            let row = rows.jacobian.row_start.len() - 1;
+            rows.end(row, Vector::zeros(), None);
+        }
+        Self { jacobian: rows.jacobian, rows: rows.rows }
+    }
+
+    /// Places with their stiffness m, measured as they are, whose displacements from where they were seen are the nudges.
+    #[allow(dead_code)]
     pub fn of_sites(stiffness: impl Iterator<Item = f64>, nudges: &[f64], p: usize) -> Self {
-        let mut jacobian = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
-        let mut rows = Vec::new();
+        let mut rows = Rowed::new(p);
         for (place, (m, e)) in stiffness.zip(nudges.chunks_exact(2)).enumerate() {
             if m > 0.0 {
                 let root = m.sqrt();
-                rows.push((place, Vector::new(-root * e[0], -root * e[1]), DMatrix::zeros(2, p)));
-                jacobian.column.push(place as u32);
-                jacobian.block.push([root, 0.0, 0.0, root]);
+                rows.add(place, [root, 0.0, 0.0, root]);
+                rows.end(place, Vector::new(-root * e[0], -root * e[1]), None);
+            } else {
+                rows.skip();
             }
-            jacobian.row_start.push(jacobian.column.len());
         }
-        Self { jacobian, rows }
+        Self { jacobian: rows.jacobian, rows: rows.rows }
     }
 
     pub fn rows(&self) -> Rows<'_> {
         Rows { jacobian: &self.jacobian, rows: &self.rows }
+    }
+}
+
+/// `Σ m ‖y − H(r)‖²` over the cells of a frame that were seen.
+pub(crate) fn squares(
+    frame: &Observation,
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    nudges: &[f64],
+) -> f64 {
+    let mut polygon = CellPolygon::default();
+    let square = |(cell, e): (usize, &[f64])| {
+        let mut rest = frame.aim(cell) - Vector::new(e[0], e[1]);
+        if frame.share() != 0.0 && frame.has_polygon(cell) && tessellation.is_closed(cell) {
+            polygon.fill(tessellation, positions, cell);
+            rest -= polygon.centroid() * frame.share();
+        }
+        frame.stiffness(cell) * rest.norm_squared()
+    };
+    nudges.chunks_exact(2).enumerate().map(square).sum()
+}
+
+/// Rows on the way.
+struct Rowed {
+    p: usize,
+    jacobian: BlockMatrix,
+    rows: Vec<(usize, Vector<f64>, DMatrix<f64>)>,
+}
+
+impl Rowed {
+    fn new(p: usize) -> Self {
+        Self { p, jacobian: BlockMatrix { row_start: vec![0], ..BlockMatrix::default() }, rows: Vec::new() }
+    }
+
+    fn begin(&self) -> usize {
+        self.jacobian.row_start[self.jacobian.row_start.len() - 1]
+    }
+
+    fn is_begun(&self) -> bool {
+        self.jacobian.column.len() > self.begin()
+    }
+
+    /// Adds to a block of the row that is on the way.
+    fn add(&mut self, column: usize, block: [f64; 4]) {
+        let first = self.begin();
+        match self.jacobian.column[first..].iter().position(|known| *known as usize == column) {
+            Some(at) => {
+                let sum = &mut self.jacobian.block[first + at];
+                sum.iter_mut().zip(block).for_each(|(sum, part)| *sum += part);
+            }
+            None => {
+                self.jacobian.column.push(column as u32);
+                self.jacobian.block.push(block);
+            }
+        }
+    }
+
+    fn end(&mut self, row: usize, rest: Vector<f64>, slope: Option<(usize, Vector<f64>)>) {
+        let mut by_coefficient = DMatrix::zeros(2, self.p);
+        if let Some((k, slope)) = slope {
+            by_coefficient.set_column(k, &slope);
+        }
+        self.rows.push((row, rest, by_coefficient));
+        self.skip();
+    }
+
+    fn skip(&mut self) {
+        self.jacobian.row_start.push(self.jacobian.column.len());
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::{cells, observation};
+
+    /// Rows of a frame at a share of the way to the centroids, with one cell held, against differences.
+    #[test]
+    fn derivatives_are_those_of_the_residuals() {
+        let frame = observation(0.02, 0.05, 4).with_positions_at(0.7).unwrap();
+        let (count, domain) = (cells().0.len(), cells().1);
+        let errors: Vec<f64> = (0..count).map(|cell| 1.0 + 0.3 * (cell as f64).sin()).collect();
+        let frame = frame.with_position_errors(&errors);
+        let nudges: Vec<f64> = (0..2 * count).map(|k| 0.02 * (k as f64).cos()).collect();
+        let rows_at = |share: f64, nudges: &[f64]| {
+            let frame = frame.clone().at_share(share);
+            let place =
+                |cell: usize| frame.positions[cell] + Vector::new(nudges[2 * cell], nudges[2 * cell + 1]);
+            let positions: Vec<Vector<f64>> = (0..count).map(place).collect();
+            let tessellation = Tessellation::new(&positions, domain).unwrap();
+            let total = squares(&frame, &tessellation, &positions, nudges);
+            (PositionRows::new(&frame, &tessellation, &positions, nudges, 1, Some(0)), total)
+        };
+        let (exact, total) = rows_at(0.7, &nudges);
+        let sum: f64 = exact.rows.iter().map(|row| row.1.norm_squared()).sum();
+        assert!((sum - total).abs() < 1e-12 * sum);
+        let step = 1e-6;
+        let ([above, _], [below, _]) = (
+            [rows_at(0.7 + step, &nudges).0, rows_at(0.7, &nudges).0],
+            [rows_at(0.7 - step, &nudges).0, rows_at(0.7, &nudges).0],
+        );
+        for (k, (_, _, by_share)) in exact.rows.iter().enumerate() {
+            let difference = (below.rows[k].1 - above.rows[k].1) / (2.0 * step);
+            assert!((difference - by_share.column(0)).norm() < 1e-8);
+        }
+        for moved in [0, 17, 41] {
+            let shifted = |sign: f64| {
+                let mut nudges = nudges.clone();
+                nudges[moved] += sign * step;
+                rows_at(0.7, &nudges).0
+            };
+            let (above, below) = (shifted(1.0), shifted(-1.0));
+            for (k, (row, ..)) in exact.rows.iter().enumerate() {
+                let difference = (below.rows[k].1 - above.rows[k].1) / (2.0 * step);
+                let block = exact.jacobian.row(*row).find(|(column, _)| *column == moved / 2);
+                let found =
+                    block.map_or(Vector::zeros(), |(_, b)| Vector::new(b[moved % 2], b[2 + moved % 2]));
+                assert!((difference - found).norm() < 1e-6, "{moved} {row}: {difference} {found}");
+            }
+        }
     }
 }

@@ -3,7 +3,7 @@
 use crate::sample::{COEFFICIENTS, flow, observation};
 use crate::{
     Constraints, CrossValidation, Error, Inference, KnownNoise, Loss, Method, Observation, Prior, Quantity,
-    Request, Window, bootstrap, infer, landscape, profile,
+    Request, Window, WindowKind, bootstrap, infer, landscape, profile,
 };
 use std::ops::ControlFlow;
 
@@ -113,7 +113,10 @@ fn the_bootstrap_spreads_like_the_standard_error_and_repeats() {
 
 #[test]
 fn a_flow_field_without_noise_gives_the_coefficients() {
-    for window in [Window::Square, Window::Gaussian { width: 0.5 }] {
+    for (kind, width) in
+        [(WindowKind::Square, 1.3), (WindowKind::Gaussian, 0.5), (WindowKind::GaussianArea, 0.5)]
+    {
+        let window = Window { kind, width };
         let frames = [flow(window)];
         let request = Request {
             noise: KnownNoise { position: Some(1e-3), velocity: Some(1e-3) },

@@ -10,6 +10,7 @@ use crate::error::{Error, SettingFault};
 use crate::field_of_view::SeenArea;
 use crate::flow::{FlowField, FlowNames};
 use crate::input::InputFile;
+use crate::measurement::{DeclaredWindow, PositionsAre};
 use crate::noise::Noise;
 use crate::validate;
 
@@ -27,6 +28,12 @@ pub struct DataSet {
     pub flow: Option<FlowField>,
     /// (frames, cells): a measured label of each cell.
     pub labels: Option<Array2<i64>>,
+    /// (frames, cells): standard deviation of each coordinate of a cell, in `length_unit`.
+    pub position_errors: Option<Array2<f64>>,
+    /// What of a cell a position is, where known.
+    pub positions_are: Option<PositionsAre>,
+    /// What a grid point of the flow field stands for, as far as known.
+    pub window: DeclaredWindow,
     /// What is around the cells.
     pub boundary: Boundary,
     /// Under simple shear of a periodic box, displacement along x of the image one box above, y up, in each frame.
@@ -85,6 +92,32 @@ pub enum YAxis {
 }
 
 impl DataSet {
+    /// Positions (frames, cells, 2), y up, and nothing else: one time unit between frames, lengths and times without units.
+    #[must_use]
+    pub fn new(positions: Array3<f64>, boundary: Boundary) -> Self {
+        Self {
+            positions,
+            velocities: None,
+            flow: None,
+            labels: None,
+            position_errors: None,
+            positions_are: None,
+            window: DeclaredWindow::default(),
+            boundary,
+            box_offset: None,
+            walls: None,
+            frame_interval: 1.0,
+            length_unit: "length".to_owned(),
+            time_unit: "time".to_owned(),
+            y_axis: YAxis::Up,
+            unwrapped: false,
+            position_noise: None,
+            velocity_noise: None,
+            field_of_view: None,
+            inputs: Vec::new(),
+        }
+    }
+
     /// Number of frames.
     #[must_use]
     pub fn frames(&self) -> usize {
@@ -104,13 +137,14 @@ impl DataSet {
     /// infinities, half-absent cells, two cells in one place, a box that cannot be right;
     /// [`Error::Grid`] for a flow field or a grid that cannot be used; [`Error::Setting`] for
     /// lengths, intervals and noise out of range. Arrays are named as in a folder:
-    /// `positions.npy`, `velocities.npy`, `labels.npy`, `flow.npy`, `flow_x.npy`, `flow_y.npy`.
+    /// `positions.npy`, `velocities.npy`, `labels.npy`, `position_errors.npy`, `flow.npy`, `flow_x.npy`, `flow_y.npy`.
     pub fn check(&self) -> Result<(), Error> {
         self.check_settings().map_err(Error::Setting)?;
         self.check_arrays(&validate::ArrayNames {
             positions: Path::new("positions.npy"),
             velocities: Path::new("velocities.npy"),
             labels: Path::new("labels.npy"),
+            position_errors: Path::new("position_errors.npy"),
             flow: FlowNames::in_folder(),
         })
     }
@@ -118,6 +152,7 @@ impl DataSet {
     pub(crate) fn check_settings(&self) -> Result<(), SettingFault> {
         self.boundary.check()?;
         validate::positive("frame_interval", self.frame_interval)?;
+        self.window.check(self.boundary)?;
         let name = if self.walls.is_some() { "walls" } else { "box_offset" };
         if self.boundary == Boundary::Open && (self.box_offset.is_some() || self.walls.is_some()) {
             return Err(SettingFault::NeedsBox { key: name });

@@ -9,7 +9,6 @@ use voronudge_geometry::{
 
 use crate::dataset::{Boundary, DataSet};
 use crate::error::{Error, ImageFault, SettingFault};
-use crate::flow::FlowNames;
 use crate::image::{image_error, parse_field_images};
 use crate::image_scale::ImageScale;
 use crate::input::read_input;
@@ -168,12 +167,7 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
     let dataset = &mut import.dataset;
     dataset.positions = positions;
     dataset.labels = (options.extrema == WantedExtrema::Both).then_some(labels);
-    dataset.check_arrays(&ArrayNames {
-        positions: path,
-        velocities: path,
-        labels: path,
-        flow: FlowNames::in_folder(),
-    })?;
+    dataset.check_arrays(&ArrayNames::of_one(path))?;
     dataset.y_axis.turn(&mut dataset.positions);
     dataset.see_within_image(lengths);
     Ok(import)

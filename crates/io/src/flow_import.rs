@@ -141,7 +141,7 @@ pub fn import_flow(files: &[PathBuf], options: &FlowOptions) -> Result<FlowImpor
     dataset.flow = Some(flow);
     if let Some(path) = &options.positions {
         dataset.positions = read_vectors(path, &mut dataset.inputs)?;
-        dataset.check_arrays(&ArrayNames { positions: path, velocities: path, labels: path, flow: names })?;
+        dataset.check_arrays(&ArrayNames { flow: names, ..ArrayNames::of_one(path) })?;
     }
     dataset.y_axis.turn(&mut dataset.positions);
     if let Some(flow) = &mut dataset.flow {

@@ -72,13 +72,10 @@ pub fn import_labels(path: &Path, options: &LabelOptions) -> Result<ShapeImport,
             let found = vec![frames, rows, columns];
             Error::Shape { path: path.to_path_buf(), fault: ShapeFault::Nothing { found, axis: "pixels" } }
         })?;
-        let mut one = look(&mask, options.gap, &mut summary);
-        if one.cells.is_empty() {
+        if pixels.iter().all(|&label| label == 0) {
             return Err(image_error(path, ImageFault::NoCells { frame: index }));
         }
-        if options.border == BorderCells::LeftOut {
-            one.cells.retain(|cell| !cell.is_cut);
-        }
+        let mut one = look(&mask, options, &mut summary);
         let links = match (&before, options.linking) {
             (Some(before), LabelLinking::Overlap) => link_overlapping(before, &pixels).unwrap_or_default(),
             _ => BTreeMap::new(),
@@ -95,11 +92,16 @@ pub fn import_labels(path: &Path, options: &LabelOptions) -> Result<ShapeImport,
     Ok(import)
 }
 
-fn look(mask: &Mask<'_>, gap: usize, summary: &mut ShapeSummary) -> SeenFrame {
-    let cells = mask.cells();
+fn look(mask: &Mask<'_>, options: &LabelOptions, summary: &mut ShapeSummary) -> SeenFrame {
+    let mut cells = mask.cells();
     summary.outlines += cells.len();
     summary.at_border += cells.iter().filter(|cell| cell.at_border).count();
     summary.in_pieces += cells.iter().filter(|cell| cell.pieces > 1).count();
+    if options.border == BorderCells::LeftOut {
+        cells.retain(|cell| !cell.at_border);
+    }
+    // By ascending label.
+    let index = |label| cells.binary_search_by_key(&label, |cell| cell.label).ok();
     let place = |r: Vector<f64>| [r.x, r.y];
     SeenFrame {
         cells: cells
@@ -112,7 +114,8 @@ fn look(mask: &Mask<'_>, gap: usize, summary: &mut ShapeSummary) -> SeenFrame {
                 is_cut: cell.at_border,
             })
             .collect(),
-        contacts: mask.contacts(gap),
+        contacts: mask.contacts(options.gap),
+        interfaces: mask.interfaces(options.gap, index),
         outlines: mask.outlines().into_iter().map(|segment| segment.map(place)).collect(),
         tracks: BTreeMap::new(),
     }

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use voronudge_geometry::{Outline, Vector, outline_contacts};
+use voronudge_geometry::{Outline, Vector, outline_contacts, outline_interfaces};
 
 use crate::dataset::Boundary;
 use crate::error::{Error, ImageFault};
@@ -83,12 +83,14 @@ fn look(
     areas.sort_by(f64::total_cmp);
     let tolerance = SAME_CORNER * areas[areas.len() / 2].sqrt();
     let contacts = outline_contacts(&polygons, tolerance);
+    let interfaces = outline_interfaces(&polygons, tolerance);
     let sides = polygons
         .iter()
         .flat_map(|polygon| (0..polygon.len()).map(|k| [polygon[k], polygon[(k + 1) % polygon.len()]]));
     Ok(SeenFrame {
         contacts: contacts.into_iter().map(|pair| pair.map(|cell| numbers[cell])).collect(),
         outlines: sides.map(|side| side.map(|r| [r.x, r.y])).collect(),
+        interfaces,
         tracks: numbers.iter().map(|number| (*number, tracks[number])).collect(),
         cells,
     })

@@ -10,7 +10,7 @@ use crate::settings::render;
 
 impl DataSet {
     /// Stages `positions.npy`; `velocities.npy`, `flow.npy` with `flow_x.npy` and `flow_y.npy`, and
-    /// `labels.npy` where there are any; and `dataset.toml`.
+    /// `labels.npy` and `position_errors.npy` where there are any; and `dataset.toml`.
     ///
     /// y is written in the direction that `y_axis` states, so loading the directory gives back
     /// this data set, apart from `inputs`.
@@ -29,6 +29,9 @@ impl DataSet {
         }
         if let Some(labels) = &self.labels {
             out.write_integers("labels.npy", labels.view())?;
+        }
+        if let Some(errors) = &self.position_errors {
+            out.write_array("position_errors.npy", errors.view())?;
         }
         self.save_settings(out)
     }

@@ -8,6 +8,7 @@ use toml::de::{DeTable, DeValue};
 use crate::dataset::{Boundary, DataSet, WalledSides, YAxis};
 use crate::error::{Error, SettingFault, TomlFault};
 use crate::field_of_view::SeenArea;
+use crate::measurement::{DeclaredWindow, PositionsAre, WindowKind};
 use crate::noise::Noise;
 use crate::validate;
 
@@ -24,6 +25,9 @@ const KEYS: &[&str] = &[
     "position_noise",
     "velocity_noise",
     "field_of_view",
+    "positions_are",
+    "window",
+    "window_width",
 ];
 
 /// What a `dataset.toml` says; everything is optional.
@@ -42,6 +46,9 @@ pub(crate) struct Settings {
     pub(crate) position_noise: Option<Noise>,
     pub(crate) velocity_noise: Option<Noise>,
     field_of_view: Option<(SeenArea, u64)>,
+    pub(crate) positions_are: Option<PositionsAre>,
+    window: Option<WindowKind>,
+    window_width: Option<(f64, u64)>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -81,7 +88,10 @@ impl Settings {
                 let walls = WalledSides::parse(text("walls", value)?);
                 self.walls = Some(walls.map_err(TomlFault::Setting)?);
             }
-            "frame_interval" => self.frame_interval = Some(interval(value)?),
+            "frame_interval" => {
+                let interval = positive("frame_interval", value, "a number such as 10.0")?;
+                self.frame_interval = Some(interval);
+            }
             "length_unit" => self.length_unit = Some(text("length_unit", value)?.to_owned()),
             "time_unit" => self.time_unit = Some(text("time_unit", value)?.to_owned()),
             "y_axis" => {
@@ -92,6 +102,14 @@ impl Settings {
             "position_noise" => self.position_noise = Some(noise("position_noise", value)?),
             "velocity_noise" => self.velocity_noise = Some(noise("velocity_noise", value)?),
             "field_of_view" => self.field_of_view = Some((SeenArea::parse(value)?, line)),
+            "positions_are" => self.positions_are = Some(positions_are(value)?),
+            "window" => {
+                let window = WindowKind::parse(text("window", value)?);
+                self.window = Some(window.map_err(TomlFault::Setting)?);
+            }
+            "window_width" => {
+                self.window_width = Some((positive("window_width", value, "a length such as 6.5")?, line));
+            }
             _ => {
                 return Err(TomlFault::UnknownKey { key: key.to_owned(), known: KEYS });
             }
@@ -117,6 +135,21 @@ impl Settings {
             },
             (None, None) => Ok(None),
         }
+    }
+
+    /// Puts what is declared of the window together with what is given besides, which wins.
+    pub(crate) fn window(&self, given: DeclaredWindow, boundary: Boundary) -> Result<DeclaredWindow, Error> {
+        let stored = self.window_width.filter(|_| given == DeclaredWindow::default());
+        let kind = given.kind.or(self.window);
+        let width = given.width.or(stored.map(|(width, _)| width));
+        let window = DeclaredWindow { kind, width };
+        window.check(boundary).map_err(|fault| match stored {
+            Some((_, line)) => {
+                Error::Toml { path: self.path.clone(), line: Some(line), fault: TomlFault::Setting(fault) }
+            }
+            None => Error::Setting(fault),
+        })?;
+        Ok(window)
     }
 
     /// Puts `boundary` and `box` together.
@@ -184,6 +217,19 @@ pub(crate) fn render(data: &DataSet) -> String {
         area.turn(data.y_axis);
         lines.push(format!("field_of_view = {}", area.rendered()));
     }
+    match data.positions_are {
+        Some(known @ (PositionsAre::SITES | PositionsAre::CENTROIDS)) => {
+            lines.push(format!("positions_are = \"{known}\""));
+        }
+        Some(between) => lines.push(format!("positions_are = {}", number(between.share()))),
+        None => {}
+    }
+    if let Some(kind) = data.window.kind {
+        lines.push(format!("window = \"{kind}\""));
+    }
+    if let Some(width) = data.window.width {
+        lines.push(format!("window_width = {}", number(width)));
+    }
     lines.push(String::new());
     lines.join("\n")
 }
@@ -231,14 +277,26 @@ fn offsets(value: &DeValue<'_>) -> Result<Vec<f64>, TomlFault> {
         .collect()
 }
 
-fn interval(value: &DeValue<'_>) -> Result<f64, TomlFault> {
-    let interval = number(value).ok_or_else(|| TomlFault::WrongType {
-        key: "frame_interval",
-        found: kind(value),
-        expected: "a number such as 10.0",
-    })?;
-    validate::positive("frame_interval", interval).map_err(TomlFault::Setting)?;
-    Ok(interval)
+fn positive(key: &'static str, value: &DeValue<'_>, expected: &'static str) -> Result<f64, TomlFault> {
+    let wrong = || TomlFault::WrongType { key, found: kind(value), expected };
+    let number = number(value).ok_or_else(wrong)?;
+    validate::positive(key, number).map_err(TomlFault::Setting)?;
+    Ok(number)
+}
+
+fn positions_are(value: &DeValue<'_>) -> Result<PositionsAre, TomlFault> {
+    let read = match (value, number(value)) {
+        (DeValue::String(text), _) => PositionsAre::parse(text),
+        (_, Some(share)) => PositionsAre::checked(share),
+        (_, None) => {
+            return Err(TomlFault::WrongType {
+                key: "positions_are",
+                found: kind(value),
+                expected: "\"sites\", \"centroids\" or a number from 0 to 1",
+            });
+        }
+    };
+    read.map_err(TomlFault::Setting)
 }
 
 fn noise(key: &'static str, value: &DeValue<'_>) -> Result<Noise, TomlFault> {

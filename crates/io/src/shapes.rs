@@ -5,9 +5,10 @@ use std::path::Path;
 
 use ndarray::{Array2, Array3};
 
+use voronudge_geometry::{Interface, Vector};
+
 use crate::dataset::DataSet;
 use crate::error::{Error, ImageFault};
-use crate::flow::FlowNames;
 use crate::image::image_error;
 use crate::output::OutputDirectory;
 use crate::tracks::SIZE_LIMIT;
@@ -42,6 +43,8 @@ pub struct ShapeFrame {
     pub cut: BTreeSet<usize>,
     /// The outlines as straight segments in units of length, y up.
     pub outlines: Vec<[[f64; 2]; 2]>,
+    /// Where cells touch, indices along the axis of cells, in units of length, y up.
+    pub interfaces: Vec<Interface>,
 }
 
 /// What was found and left out.
@@ -72,6 +75,8 @@ pub(crate) struct SeenFrame {
     /// Pairs of numbers.
     pub contacts: BTreeSet<[i64; 2]>,
     pub outlines: Vec<[[f64; 2]; 2]>,
+    /// Where cells touch; indices of `cells`.
+    pub interfaces: Vec<Interface>,
     /// Index along the axis of cells of each number.
     pub tracks: BTreeMap<i64, usize>,
 }
@@ -127,15 +132,21 @@ pub(crate) fn assemble(
             crate::YAxis::Down => -1.0,
         };
         let place = |[x, y]: [f64; 2]| [x * scale, up * y * scale];
+        let turned = |r: Vector<f64>| Vector::from(place([r.x, r.y]));
+        let track = |cell: usize| frame.tracks.get(&frame.cells[cell].number).copied();
+        shape.interfaces = frame
+            .interfaces
+            .iter()
+            .filter_map(|line| {
+                let [Some(a), Some(b)] = line.cells.map(track) else { return None };
+                let (middle, extent) = (turned(line.middle), turned(line.extent));
+                Some(Interface { cells: [a, b], length: line.length * scale, middle, extent })
+            })
+            .collect();
         shape.outlines = frame.outlines.iter().map(|segment| segment.map(place)).collect();
         import.frames.push(shape);
     }
-    dataset.check_arrays(&ArrayNames {
-        positions: path,
-        velocities: path,
-        labels: path,
-        flow: FlowNames::in_folder(),
-    })?;
+    dataset.check_arrays(&ArrayNames::of_one(path))?;
     dataset.y_axis.turn(&mut dataset.positions);
     import.dataset = dataset;
     Ok(import)

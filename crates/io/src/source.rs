@@ -3,14 +3,15 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use ndarray::{Array2, Axis, Ix2};
+use ndarray::{Array2, ArrayD, Axis, Ix2};
 
-use crate::array::{parse_field, parse_integers, parse_row, parse_vectors};
+use crate::array::{parse_field, parse_integers, parse_reals, parse_row, parse_vectors};
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, FileFault, GridFault, SettingFault, ShapeFault};
 use crate::field_of_view::SeenArea;
 use crate::flow::{FlowField, FlowNames, grid_error};
 use crate::input::{InputFile, file_fault, read_input};
+use crate::measurement::{DeclaredWindow, PositionsAre};
 use crate::noise::Noise;
 use crate::settings::Settings;
 use crate::validate::ArrayNames;
@@ -30,7 +31,7 @@ use crate::validate::ArrayNames;
 /// ```
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct Source {
-    /// A folder with `positions.npy` and, each optional, `velocities.npy`, `labels.npy`,
+    /// A folder with `positions.npy` and, each optional, `velocities.npy`, `labels.npy`, `position_errors.npy`,
     /// `dataset.toml`, and `flow.npy` with `flow_x.npy` and `flow_y.npy`.
     pub folder: Option<PathBuf>,
     /// The positions, (cells, 2) or (frames, cells, 2).
@@ -39,6 +40,8 @@ pub struct Source {
     pub velocities: Option<PathBuf>,
     /// The labels, (cells,) or (frames, cells), integers.
     pub labels: Option<PathBuf>,
+    /// Standard deviation of each coordinate of a cell, (cells,) or (frames, cells).
+    pub position_errors: Option<PathBuf>,
     /// Velocities on a grid, (ny, nx, 2) or (frames, ny, nx, 2); needs its coordinates.
     pub flow: Option<PathBuf>,
     /// x of the columns of the grid, (nx,), evenly spaced.
@@ -63,6 +66,10 @@ pub struct Source {
     pub velocity_noise: Option<Noise>,
     /// Where every cell would have been seen, y as in the files.
     pub field_of_view: Option<SeenArea>,
+    /// What of a cell a position is.
+    pub positions_are: Option<PositionsAre>,
+    /// What a grid point of the flow field stands for. A kind given here puts the width of `dataset.toml` out of force.
+    pub window: DeclaredWindow,
 }
 
 impl Source {
@@ -91,14 +98,12 @@ impl Source {
             .ok_or(Error::Setting(SettingFault::MissingPositions))?;
         let velocities_path = self.optional_file(self.velocities.as_ref(), "velocities.npy");
         let labels_path = self.optional_file(self.labels.as_ref(), "labels.npy");
+        let errors_path = self.optional_file(self.position_errors.as_ref(), "position_errors.npy");
         let flow_paths = self.flow_paths()?;
 
         let mut data = DataSet {
-            positions: ndarray::Array3::zeros((0, 0, 2)),
-            velocities: None,
-            flow: None,
-            labels: None,
-            boundary,
+            positions_are: self.positions_are.or(settings.positions_are),
+            window: settings.window(self.window, boundary)?,
             box_offset: settings.box_offset,
             walls: settings.walls,
             frame_interval: self.frame_interval.or(settings.frame_interval).unwrap_or(1.0),
@@ -110,6 +115,7 @@ impl Source {
             velocity_noise: self.velocity_noise.or(settings.velocity_noise),
             field_of_view,
             inputs,
+            ..DataSet::new(ndarray::Array3::zeros((0, 0, 2)), boundary)
         };
         data.check_settings().map_err(Error::Setting)?;
 
@@ -121,13 +127,17 @@ impl Source {
             data.flow = Some(paths.read(&mut data.inputs)?);
         }
         if let Some(path) = &labels_path {
-            data.labels = Some(read_labels(path, &mut data)?);
+            data.labels = Some(read_of_cells(path, &mut data, parse_integers)?);
+        }
+        if let Some(path) = &errors_path {
+            data.position_errors = Some(read_of_cells(path, &mut data, parse_reals)?);
         }
         let unnamed = PathBuf::new();
         data.check_arrays(&ArrayNames {
             positions: &positions_path,
             velocities: velocities_path.as_ref().unwrap_or(&unnamed),
             labels: labels_path.as_ref().unwrap_or(&unnamed),
+            position_errors: errors_path.as_ref().unwrap_or(&unnamed),
             flow: flow_paths.as_ref().map_or_else(FlowNames::in_folder, FlowPaths::names),
         })?;
 
@@ -261,21 +271,25 @@ pub(crate) fn read_vectors(path: &Path, inputs: &mut Vec<InputFile>) -> Result<n
     parse_vectors(path, &bytes)
 }
 
-/// Labels of shape (cells,) hold in every frame.
-fn read_labels(path: &Path, data: &mut DataSet) -> Result<Array2<i64>, Error> {
+/// A number for each cell; one row of shape (cells,) holds in every frame.
+fn read_of_cells<T: Clone>(
+    path: &Path,
+    data: &mut DataSet,
+    parse: impl Fn(&Path, &[u8]) -> Result<ArrayD<T>, Error>,
+) -> Result<Array2<T>, Error> {
     let (bytes, record) = read_input(path)?;
     data.inputs.push(record);
-    let labels = parse_integers(path, &bytes)?;
-    let found = labels.shape().to_vec();
+    let numbers = parse(path, &bytes)?;
+    let found = numbers.shape().to_vec();
     let failure = |fault| Error::Shape { path: path.to_path_buf(), fault };
     let (frames, cells) = (data.frames(), data.cells());
     match found.as_slice() {
         [count] if *count == cells => {
-            let one_row = labels.insert_axis(Axis(0));
+            let one_row = numbers.insert_axis(Axis(0));
             let repeated = one_row.broadcast((frames, cells));
             repeated.map(|view| view.to_owned())
         }
-        [_, _] => labels.into_dimensionality::<Ix2>().ok(),
+        [_, _] => numbers.into_dimensionality::<Ix2>().ok(),
         [_] => {
             return Err(failure(ShapeFault::Mismatch { found, positions: data.positions.shape().to_vec() }));
         }

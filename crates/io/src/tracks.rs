@@ -8,7 +8,6 @@ use ndarray::Array3;
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
 use crate::field_of_view::SeenArea;
-use crate::flow::FlowNames;
 use crate::input::read_input;
 use crate::table::{ColumnNames, Layout, SpotTable, read_spots};
 use crate::validate::{self, ArrayNames, check_seen};
@@ -121,12 +120,7 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     })?;
 
     dataset.positions = tracks.positions * scale;
-    dataset.check_arrays(&ArrayNames {
-        positions: path,
-        velocities: path,
-        labels: path,
-        flow: FlowNames::in_folder(),
-    })?;
+    dataset.check_arrays(&ArrayNames::of_one(path))?;
     dataset.y_axis.turn(&mut dataset.positions);
     if let Some(size) = options.image_size {
         dataset.field_of_view = Some(SeenArea::image(size.map(|length| length * scale), dataset.y_axis));
@@ -149,22 +143,11 @@ pub(crate) fn describe(
         None => "frame",
     };
     DataSet {
-        positions: Array3::zeros((0, 0, 2)),
-        velocities: None,
-        flow: None,
-        labels: None,
-        boundary: boundary.unwrap_or(Boundary::Open),
-        box_offset: None,
-        walls: None,
         frame_interval: frame_interval.unwrap_or(1.0),
         length_unit: length_unit.unwrap_or("length").to_owned(),
         time_unit: time_unit.unwrap_or(default_time).to_owned(),
         y_axis: y_axis.unwrap_or(YAxis::Down),
-        unwrapped: false,
-        position_noise: None,
-        velocity_noise: None,
-        field_of_view: None,
-        inputs: Vec::new(),
+        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary.unwrap_or(Boundary::Open))
     }
 }
 

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use ndarray::{Array3, ArrayView2, Axis};
+use ndarray::{Array2, Array3, ArrayView2, Axis};
 
 use crate::dataset::{Boundary, DataSet};
 use crate::error::{Error, GridFault, SettingFault, ShapeFault, ValueFault};
@@ -19,7 +19,16 @@ pub(crate) struct ArrayNames<'a> {
     pub(crate) positions: &'a Path,
     pub(crate) velocities: &'a Path,
     pub(crate) labels: &'a Path,
+    pub(crate) position_errors: &'a Path,
     pub(crate) flow: FlowNames<'a>,
+}
+
+impl<'a> ArrayNames<'a> {
+    /// All arrays come from one file.
+    pub(crate) fn of_one(path: &'a Path) -> Self {
+        let flow = FlowNames { field: path, x: path, y: path };
+        Self { positions: path, velocities: path, labels: path, position_errors: path, flow }
+    }
 }
 
 impl DataSet {
@@ -49,11 +58,14 @@ impl DataSet {
                 return Err(grid_error(names.flow.field, GridFault::FrameCount { found, positions }));
             }
         }
-        match &self.labels {
-            Some(labels) if labels.dim() != (self.frames(), self.cells()) => {
-                Err(mismatch(names.labels, labels.shape()))
-            }
-            _ => Ok(()),
+        let of_cells = (self.frames(), self.cells());
+        if let Some(labels) = self.labels.as_ref().filter(|labels| labels.dim() != of_cells) {
+            return Err(mismatch(names.labels, labels.shape()));
+        }
+        match &self.position_errors {
+            Some(errors) if errors.dim() != of_cells => Err(mismatch(names.position_errors, errors.shape())),
+            Some(errors) => check_deviations(names.position_errors, errors, &self.positions),
+            None => Ok(()),
         }
     }
 }
@@ -88,6 +100,17 @@ fn check_vectors(path: &Path, vectors: &Array3<f64>) -> Result<(), Error> {
                 continue;
             };
             return Err(value_error(path, fault));
+        }
+    }
+    Ok(())
+}
+
+/// Every cell that is present has a standard deviation above zero.
+fn check_deviations(path: &Path, errors: &Array2<f64>, positions: &Array3<f64>) -> Result<(), Error> {
+    for ((frame, cell), &value) in errors.indexed_iter() {
+        let absent = positions[(frame, cell, 0)].is_nan();
+        if !(absent || value.is_finite() && value > 0.0) {
+            return Err(value_error(path, ValueFault::NoDeviation { frame, cell, value }));
         }
     }
     Ok(())

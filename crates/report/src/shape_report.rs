@@ -35,6 +35,23 @@ pub struct ShapeReport {
     pub in_pieces: usize,
     /// Pixels of background across which cells touch; `null` for outlines.
     pub gap: Option<usize>,
+    /// As `all`, had the positions been the centroids of the outlines.
+    pub of_centroids: AgreementRecord,
+    /// How the positions were found; `null` where they are centroids.
+    pub sites: Option<SiteRecord>,
+}
+
+/// Sites whose Voronoi polygons follow outlines best.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct SiteRecord {
+    /// Root mean square distance of the lines along which cells touch from the bisectors of their centroids.
+    pub misfit_of_centroids: f64,
+    /// The same with the sites.
+    pub misfit: f64,
+    /// Root mean square distance of the sites from the centroids, over cells that do not touch the border of the image.
+    pub offset: f64,
+    /// Median of the standard deviations of coordinates.
+    pub median_error: f64,
 }
 
 /// Agreement in one frame.
@@ -49,7 +66,7 @@ pub struct FrameAgreement {
     pub agreement: AgreementRecord,
 }
 
-/// How well the Voronoi polygons of centroids stand for the true outlines.
+/// How well the Voronoi polygons of positions stand for the true outlines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
 pub struct AgreementRecord {
     /// Cells whose shapes are compared.

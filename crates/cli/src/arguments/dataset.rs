@@ -3,7 +3,9 @@
 use crate::failure::Failure;
 use clap::Args;
 use std::path::{Path, PathBuf};
-use voronudge_io::{Boundary, DataSet, Noise, SeenArea, Source, YAxis};
+use voronudge_io::{
+    Boundary, DataSet, DeclaredWindow, Noise, PositionsAre, SeenArea, Source, WindowKind, YAxis,
+};
 
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Data")]
@@ -20,6 +22,9 @@ pub(crate) struct DataSetArguments {
     /// Labels of the cells (N,) or (frames, N), integers, .npy; -1 for none.
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
+    /// Standard deviation of each coordinate of a cell (N,) or (frames, N), .npy.
+    #[arg(long, value_name = "FILE")]
+    pub position_errors: Option<PathBuf>,
     /// Flow field on a grid (ny, nx, 2) or (frames, ny, nx, 2), .npy.
     #[arg(long, value_name = "FILE")]
     pub flow: Option<PathBuf>,
@@ -60,6 +65,16 @@ pub(crate) struct DataSetArguments {
     /// Standard deviation of a velocity component, in data units or as a percentage of the rms velocity.
     #[arg(long, value_name = "NOISE", allow_hyphen_values = true)]
     pub velocity_noise: Option<Noise>,
+    /// What of a cell a position is: `sites`, `centroids`, or the share of the way from one to the other.
+    #[arg(long, value_name = "sites|centroids|SHARE", allow_negative_numbers = true)]
+    pub positions_are: Option<PositionsAre>,
+    /// What a grid point of the flow field stands for: the average over a `square` in which every point moves with its cell, over
+    /// the centres of cells with `gaussian` weights, or over the plane with such weights, `gaussian-area`.
+    #[arg(long, value_name = "KIND")]
+    pub window: Option<WindowKind>,
+    /// Side of a square window or standard deviation of a Gaussian one, a length.
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    pub window_width: Option<f64>,
 }
 
 impl DataSetArguments {
@@ -76,6 +91,7 @@ impl DataSetArguments {
             positions: None,
             velocities: None,
             labels: None,
+            position_errors: None,
             flow: None,
             flow_x: None,
             flow_y: None,
@@ -99,6 +115,7 @@ impl DataSetArguments {
             positions: self.positions.clone(),
             velocities: self.velocities.clone(),
             labels: self.labels.clone(),
+            position_errors: self.position_errors.clone(),
             flow: self.flow.clone(),
             flow_x: self.flow_x.clone(),
             flow_y: self.flow_y.clone(),
@@ -111,6 +128,8 @@ impl DataSetArguments {
             position_noise: self.position_noise,
             velocity_noise: self.velocity_noise,
             field_of_view: self.field_of_view(),
+            positions_are: self.positions_are,
+            window: DeclaredWindow { kind: self.window, width: self.window_width },
         };
         Ok(source.load()?)
     }

@@ -77,6 +77,7 @@ fn a_voronoi_diagram_agrees_with_itself() {
         [
             "cell_numbers.npy",
             "dataset.toml",
+            "position_errors.npy",
             "positions.npy",
             "report.html",
             "report.json",
@@ -85,8 +86,10 @@ fn a_voronoi_diagram_agrees_with_itself() {
         ]
     );
     assert!(number(&found, "/all/precision") > 0.97 && number(&found, "/all/recall") > 0.97, "{found}");
+    assert!(number(&found, "/all/area_correlation") > 0.97, "{found}");
     // Centroids are not the points that the polygons are made of, and all cells are of nearly one size.
-    assert!(number(&found, "/all/area_correlation") > 0.8, "{found}");
+    assert!(number(&found, "/of_centroids/area_correlation") < 0.95, "{found}");
+    assert!(number(&found, "/sites/misfit") < 0.25 * number(&found, "/sites/misfit_of_centroids"), "{found}");
     // A line of background a pixel wide takes about a seventh of the area.
     assert!((1.05..1.25).contains(&number(&found, "/all/area_ratio")), "{found}");
     assert!((1.03..1.2).contains(&number(&found, "/all/perimeter_ratio")), "{found}");
@@ -94,15 +97,34 @@ fn a_voronoi_diagram_agrees_with_itself() {
     // Pixels of half a micrometre, y as in the image.
     let positions: Array3<f64> = read(&data.file("positions.npy"));
     let numbers: Array2<i64> = read(&data.file("cell_numbers.npy"));
-    let place = centres(0.0)[numbers[[0, 44]] as usize - 1];
-    for axis in 0..2 {
-        assert!((positions[[0, 44, axis]] - 0.5 * place[axis]).abs() < 1.0);
+    let errors: Array2<f64> = read(&data.file("position_errors.npy"));
+    let mut sum = [0.0; 2];
+    for (cell, &number) in numbers.row(0).indexed_iter() {
+        let place = centres(0.0)[number as usize - 1];
+        let inside = (15.0..115.0).contains(&place[0]) && (15.0..97.0).contains(&place[1]);
+        if inside {
+            for axis in 0..2 {
+                let off = (positions[[0, cell, axis]] - 0.5 * place[axis]) / errors[[0, cell]];
+                sum = [sum[0] + off * off, sum[1] + 1.0];
+            }
+            assert!(errors[[0, cell]] < 0.25, "{cell} {}", errors[[0, cell]]);
+        }
     }
+    let ratio = (sum[0] / sum[1]).sqrt();
+    assert!(sum[1] > 60.0 && (0.5..2.0).contains(&ratio), "{sum:?} {ratio}");
     let settings = fs::read_to_string(data.file("dataset.toml")).unwrap();
-    assert!(
-        settings.contains("y_axis = \"down\"") && settings.contains("length_unit = \"um\""),
-        "{settings}"
-    );
+    for line in ["y_axis = \"down\"", "length_unit = \"um\"", "positions_are = \"sites\""] {
+        assert!(settings.contains(line), "{settings}");
+    }
+    let centroids = Folder::new();
+    let flags = format!("import labels {flags} --positions centroids");
+    succeed(&flags, &[("", &source.file("labels.npy")), ("--out", centroids.path())]);
+    let other = report(centroids.path());
+    assert_described(&other, "shapes.schema.json");
+    assert!(other["sites"].is_null() && other["all"] == found["of_centroids"]);
+    assert!(!centroids.names().contains(&"position_errors.npy".to_owned()));
+    let settings = fs::read_to_string(centroids.file("dataset.toml")).unwrap();
+    assert!(settings.contains("positions_are = \"centroids\""), "{settings}");
 }
 
 /// TIFF pages are frames; cells are followed by overlap though their labels change.

@@ -48,6 +48,16 @@ impl<'a> Mask<'a> {
         Ok(Self { labels, columns, rows })
     }
 
+    /// Columns and rows.
+    pub(crate) fn size(&self) -> [usize; 2] {
+        [self.columns, self.rows]
+    }
+
+    /// The label of a pixel.
+    pub(crate) fn label(&self, column: usize, row: usize) -> i64 {
+        self.labels[row * self.columns + column]
+    }
+
     /// The label of a pixel; zero beyond the image.
     #[inline]
     fn at(&self, column: isize, row: isize) -> i64 {

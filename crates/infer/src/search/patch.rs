@@ -64,7 +64,7 @@ impl Patch {
                 let measured = nudged.map(|(r, e)| r - Vector::new(e[0], e[1])).collect();
                 let held = cells.iter().map(|cell| !is_free(*cell)).collect();
                 let target = |cell: &usize| target(cell).filter(|_| within(*cell, FREE + AFFECTED));
-                whole.frame.cut(&cells, measured, cells.iter().map(target).collect(), held)?
+                whole.frame.cut(&cells, whole.nudges, measured, cells.iter().map(target).collect(), held)?
             }
             None => whole.frame.clone(),
         };

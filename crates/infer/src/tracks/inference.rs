@@ -58,7 +58,9 @@ pub fn infer_tracks(
     let variance = levels.velocity.powi(2);
     let (value, expected) = (found.value / variance, objective.expected() / variance);
     let equations = objective.linearise(&found.parameters)?;
-    let estimated = estimates(&equations, &space, request, free, variance * (value / expected).max(1.0))?;
+    let reduced = equations.reduced()?;
+    let variance_of_fit = variance * (value / expected).max(1.0);
+    let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit)?;
     let held_out = match request.cross_validation {
         CrossValidation::Done => cross_validate(&objective, &found.parameters, &measured, &mut watch)?,
         CrossValidation::Skipped => None,

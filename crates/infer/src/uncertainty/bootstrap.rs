@@ -95,11 +95,11 @@ pub(crate) fn synthetic(
     };
     let mut synthetic = Vec::with_capacity(frames.len());
     for (frame, own) in frames.iter().zip(&result.frames) {
-        let positions = own
-            .nudged_positions
-            .iter()
+        let positions = frame
+            .seen_from(&own.tessellation, &own.nudged_positions)
+            .into_iter()
             .enumerate()
-            .map(|(cell, r)| r + (noisy(r, &on_positions) - r) * frame.position_error(cell))
+            .map(|(cell, y)| y + noisy(&Vector::zeros(), &on_positions) * frame.position_error(cell))
             .collect();
         let values: Vec<Option<Vector<f64>>> = own
             .predicted_data
@@ -112,7 +112,7 @@ pub(crate) fn synthetic(
             Velocities::OnGrid(flow) => Velocities::OnGrid(Flow { velocities: values, ..flow.clone() }),
         };
         let all: Vec<usize> = (0..frame.positions.len()).collect();
-        synthetic.push(frame.with_cells(&all, positions, velocities)?);
+        synthetic.push(frame.with_cells(&all, positions, velocities)?.measured_like(frame)?);
     }
     let mut request = Request {
         cross_validation: CrossValidation::Skipped,

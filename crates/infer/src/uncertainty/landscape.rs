@@ -3,6 +3,7 @@
 use super::{Point, with};
 use crate::least_squares::residuals;
 use crate::objective::{Nudged, Objective};
+use crate::position_rows;
 use crate::search::Watch;
 use crate::{Error, Inference, Observation, Progress, Quantity, Request};
 use nalgebra::DVector;
@@ -72,13 +73,15 @@ impl<'a> Slice<'a> {
     fn new(point: &'a Point<'a>) -> Result<Self, Error> {
         let objective = point.objective(&point.space);
         let mut rest = point.nudges.as_slice();
-        let mut nudged = Vec::with_capacity(point.frames.len());
+        let (mut nudged, mut squares) = (Vec::with_capacity(point.frames.len()), 0.0);
         for (index, frame) in point.frames.iter().enumerate() {
             let (own, after) = rest.split_at(2 * frame.positions.len());
             rest = after;
-            nudged.push(objective.place(index, own)?);
+            let placed = objective.place(index, own)?;
+            squares += position_rows::squares(frame, &placed.tessellation, &placed.positions, own);
+            nudged.push(placed);
         }
-        let springs = objective.spring() * point.nudges.iter().map(|e| e * e).sum::<f64>();
+        let springs = objective.spring() * squares;
         Ok(Self { objective, nudged, springs, unit: point.unit })
     }
 

@@ -209,6 +209,18 @@ pub enum ValueFault {
         /// Its y coordinate.
         y: f64,
     },
+    /// A standard deviation that is none.
+    #[error(
+        "frame {frame}, cell {cell}: the standard deviation is {value}, it must be finite and above zero"
+    )]
+    NoDeviation {
+        /// Frame, from zero.
+        frame: usize,
+        /// Index along the cells axis.
+        cell: usize,
+        /// The value.
+        value: f64,
+    },
     /// Two cells in one place.
     #[error("frame {frame}: cells {first} and {second} are both at ({x}, {y})")]
     Duplicate {
@@ -245,6 +257,9 @@ impl ValueFault {
         let text = match self {
             Self::Infinite { .. } => "an absent cell is NaN in both components, never infinite",
             Self::HalfAbsent { .. } => "set both components to NaN where the cell is absent",
+            Self::NoDeviation { .. } => {
+                "give one standard deviation of a coordinate, in the unit of the positions, for each cell that is present"
+            }
             Self::Duplicate { .. } => {
                 "remove one of the two, or set it to NaN in this frame; a double detection is usual"
             }

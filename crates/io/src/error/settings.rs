@@ -79,6 +79,25 @@ pub enum SettingFault {
         /// Number of frames.
         frames: usize,
     },
+    /// A share that is not between 0 and 1.
+    #[error("{key} is {value}, it must lie between 0 and 1")]
+    NoShare {
+        /// Name of the setting.
+        key: &'static str,
+        /// The value given.
+        value: f64,
+    },
+    /// A width without a kind of window.
+    #[error("window_width is given but window is not")]
+    WidthOfNoWindow,
+    /// A window that covers more than all cells there are.
+    #[error("window_width is {width}, but the box is {length} wide")]
+    WindowTooWide {
+        /// The width given.
+        width: f64,
+        /// The shorter side of the box.
+        length: f64,
+    },
     /// No file to import a flow field from.
     #[error("no flow field is given")]
     MissingFlow,
@@ -107,6 +126,15 @@ impl SettingFault {
             Self::NotFinite { .. } => "give a length for each frame",
             Self::OffsetCount { .. } => {
                 "give one number for each frame: how far the image one box above is displaced along x"
+            }
+            Self::NoShare { .. } => {
+                "write 0 for sites, 1 for centroids, or leave it out to have it estimated"
+            }
+            Self::WidthOfNoWindow => {
+                "say of what the width is, window = \"square\", \"gaussian\" or \"gaussian-area\", or leave the width out"
+            }
+            Self::WindowTooWide { .. } => {
+                "give the width in the length unit of the positions, or leave it out to have it estimated"
             }
             Self::MissingFlow => "name the files of the flow, one for each frame",
             Self::MissingPositions => "give a data set folder or --positions FILE",

@@ -2,7 +2,10 @@
 
 use ndarray::{Array, Array2, Array3, Array4, Dimension, array};
 use sha2::{Digest, Sha256};
-use voronudge_io::{Boundary, DataSet, Error, FlowField, Noise, OutputDirectory, Source, YAxis};
+use voronudge_io::{
+    Boundary, DataSet, DeclaredWindow, Error, FlowField, Noise, OutputDirectory, PositionsAre, Source,
+    WindowKind, YAxis,
+};
 
 use crate::{Scratch, assert_told};
 
@@ -47,6 +50,9 @@ fn full_data() -> DataSet {
         velocities: Some(velocities),
         flow: Some(flow()),
         labels: Some(Array2::from_shape_fn((3, 4), |(f, c)| f as i64 - 2 * c as i64)),
+        position_errors: Some(Array2::from_shape_fn((3, 4), |(f, c)| 0.1 / (1 + f + c) as f64)),
+        positions_are: Some(PositionsAre::between(0.1 + 0.2).unwrap()),
+        window: DeclaredWindow { kind: Some(WindowKind::GaussianArea), width: Some(1.0 / 3.0) },
         boundary: Boundary::Periodic { lengths: [10.0, 0.1 + 0.2 + 20.0] },
         box_offset: None,
         walls: None,
@@ -111,6 +117,9 @@ fn saving_and_loading_is_the_identity() {
         velocities: None,
         flow: None,
         labels: None,
+        position_errors: None,
+        positions_are: Some(PositionsAre::CENTROIDS),
+        window: DeclaredWindow::default(),
         boundary: Boundary::Open,
         y_axis: YAxis::Up,
         unwrapped: false,
@@ -334,4 +343,33 @@ fn a_box_that_cannot_be_right_is_told() {
     assert!(load([10.0, 10.0], Some(true)).is_ok());
     // Exactly one and a half lengths is still taken.
     assert!(load([2.0, 16.0 / 1.5], None).is_ok());
+}
+
+#[test]
+fn position_errors_must_be_those_of_the_cells() {
+    let scratch = Scratch::new();
+    let mut positions = three_frames();
+    for axis in 0..2 {
+        positions[[1, 2, axis]] = NAN;
+    }
+    scratch.write_array("positions.npy", &positions);
+    let load = |errors: ndarray::ArrayD<f64>| {
+        scratch.write_array("position_errors.npy", &errors);
+        open_source(&scratch).load()
+    };
+    // One row holds in every frame; cells that are absent need none.
+    let data = load(array![0.1, 0.2, 0.3, 0.4].into_dyn()).unwrap();
+    assert_eq!(data.position_errors.unwrap()[[2, 3]], 0.4);
+    let mut errors = Array2::from_elem((3, 4), 0.2);
+    errors[[1, 2]] = NAN;
+    assert!(load(errors.clone().into_dyn()).is_ok());
+    for (value, fact) in
+        [(0.0, "deviation is 0"), (NAN, "deviation is NaN"), (-1.0, "deviation is -1"), (INF, "is inf")]
+    {
+        errors[[2, 1]] = value;
+        let facts = ["position_errors.npy: frame 2, cell 1: the standard", fact];
+        assert_told(load(errors.clone().into_dyn()), &facts, "each cell that is present");
+    }
+    let facts = ["position_errors.npy: has shape (4, 3)", "(3, 4, 2)"];
+    assert_told(load(Array2::from_elem((4, 3), 1.0).into_dyn()), &facts, "same cell");
 }

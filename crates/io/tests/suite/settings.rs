@@ -1,7 +1,9 @@
 //! `dataset.toml` and flags.
 
 use ndarray::array;
-use voronudge_io::{Boundary, DataSet, Error, Noise, Source, YAxis};
+use voronudge_io::{
+    Boundary, DataSet, DeclaredWindow, Error, Noise, PositionsAre, Source, WindowKind, YAxis,
+};
 
 use crate::{Scratch, assert_told};
 
@@ -25,7 +27,7 @@ fn every_key_is_read() {
     let data = load(
         "boundary = \"periodic\"\nbox = [10, 20.0]\nframe_interval = 5\nlength_unit = \"µm\"\n\
          time_unit = \"min\"\ny_axis = \"down\"\nunwrapped = true\nposition_noise = \"2 %\"\n\
-         velocity_noise = 0.1 # data units\n",
+         velocity_noise = 0.1 # data units\npositions_are = \"centroids\"\nwindow = \"gaussian\"\nwindow_width = 3\n",
     )
     .unwrap();
     assert_eq!(data.boundary, Boundary::Periodic { lengths: LENGTHS });
@@ -34,6 +36,9 @@ fn every_key_is_read() {
     assert_eq!((data.y_axis, data.unwrapped), (YAxis::Down, true));
     assert_eq!(data.position_noise, Some(Noise::Relative(0.02)));
     assert_eq!(data.velocity_noise, Some(Noise::Absolute(0.1)));
+    assert_eq!(data.positions_are, Some(PositionsAre::CENTROIDS));
+    let declared = DeclaredWindow { kind: Some(WindowKind::Gaussian), width: Some(3.0) };
+    assert_eq!(data.window, declared);
 }
 
 #[test]
@@ -43,12 +48,13 @@ fn all_but_the_boundary_has_a_default() {
     assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("length", "time"));
     assert_eq!((data.y_axis, data.unwrapped), (YAxis::Up, false));
     assert_eq!((data.position_noise, data.velocity_noise), (None, None));
+    assert_eq!((data.positions_are, data.window), (None, DeclaredWindow::default()));
 }
 
 #[test]
 fn a_flag_wins_over_the_file() {
     let toml = b"boundary = \"open\"\nframe_interval = 5\nlength_unit = \"um\"\ntime_unit = \"h\"\n\
-        y_axis = \"down\"\nunwrapped = true\nposition_noise = 1\nvelocity_noise = 2";
+        y_axis = \"down\"\nunwrapped = true\nposition_noise = 1\nvelocity_noise = 2\npositions_are = \"sites\"";
     let flags = Source {
         boundary: Some(Boundary::Periodic { lengths: LENGTHS }),
         frame_interval: Some(7.0),
@@ -58,6 +64,7 @@ fn a_flag_wins_over_the_file() {
         unwrapped: Some(false),
         position_noise: Some(Noise::Absolute(3.0)),
         velocity_noise: Some(Noise::Relative(0.5)),
+        positions_are: Some(PositionsAre::CENTROIDS),
         ..Source::default()
     };
     let data = load_with(toml, flags).unwrap();
@@ -67,6 +74,7 @@ fn a_flag_wins_over_the_file() {
     assert_eq!((data.y_axis, data.unwrapped), (YAxis::Up, false));
     assert_eq!(data.position_noise, Some(Noise::Absolute(3.0)));
     assert_eq!(data.velocity_noise, Some(Noise::Relative(0.5)));
+    assert_eq!(data.positions_are, Some(PositionsAre::CENTROIDS));
 }
 
 #[test]
@@ -107,6 +115,9 @@ fn wrong_types_are_told() {
         ("unwrapped = \"yes\"", "unwrapped is a text, expected true or false"),
         ("position_noise = [1]", "position_noise is an array, expected a number"),
         ("velocity_noise = {a = 1}", "velocity_noise is a table"),
+        ("positions_are = true", "positions_are is true or false, expected \"sites\""),
+        ("window = 2", "window is a number, expected a text"),
+        ("window_width = \"2 px\"", "window_width is a text, expected a length"),
     ] {
         assert_told(load(entry), &["dataset.toml, line 1", fact], "quotation marks");
     }
@@ -125,6 +136,9 @@ fn impossible_values_are_told() {
         ("boundary = \"closed\"", ["boundary is \"closed\"", "\"periodic\" or \"open\""]),
         ("y_axis = \"Down\"", ["y_axis is \"Down\"", "\"up\" or \"down\""]),
         ("position_noise = \"two\"", ["position_noise is \"two\"", "\"2 %\""]),
+        ("window_width = -2", ["window_width is -2", positive]),
+        ("window = \"disc\"", ["window is \"disc\"", "\"gaussian-area\""]),
+        ("positions_are = \"nuclei\"", ["positions_are is \"nuclei\"", "\"sites\", \"centroids\""]),
     ] {
         let advice = if facts[1] == positive { "positive number" } else { "as the message says" };
         let facts = ["dataset.toml, line 1", facts[0], facts[1]];
@@ -134,6 +148,37 @@ fn impossible_values_are_told() {
         let facts = ["line 1: velocity_noise is", "must be finite and not negative"];
         assert_told(load(entry), &facts, "leave it out");
     }
+}
+
+#[test]
+fn a_position_is_somewhere_between_site_and_centroid() {
+    let read = |entry: &str| {
+        load(&format!("boundary = \"open\"\npositions_are = {entry}")).map(|data| data.positions_are)
+    };
+    assert_eq!(read("0.25").unwrap(), Some(PositionsAre::between(0.25).unwrap()));
+    assert_eq!(read("1").unwrap(), Some(PositionsAre::CENTROIDS));
+    assert_eq!(read("\"sites\"").unwrap(), Some(PositionsAre::SITES));
+    for wrong in ["-0.1", "1.5", "nan"] {
+        assert_told(read(wrong), &["line 2: positions_are is", "between 0 and 1"], "0 for sites");
+    }
+}
+
+#[test]
+fn a_window_has_a_kind_and_fits_into_the_box() {
+    let settings = |rest: &str| format!("boundary = \"periodic\"\nbox = [9, 8]\n{rest}");
+    assert!(load(&settings("window_width = 8\nwindow = \"square\"")).is_ok());
+    let facts = ["line 4: window_width is 8.5, but the box is 8 wide"];
+    assert_told(load(&settings("window = \"gaussian\"\nwindow_width = 8.5")), &facts, "length unit");
+    let facts = ["line 3: window_width is given but window is not"];
+    assert_told(load(&settings("window_width = 2")), &facts, "gaussian-area");
+    // A flag that names another kind is not about the width of the file.
+    let given = DeclaredWindow { kind: Some(WindowKind::Square), width: None };
+    let toml = settings("window = \"gaussian\"\nwindow_width = 8.5");
+    let data = load_with(toml.as_bytes(), Source { window: given, ..Source::default() }).unwrap();
+    assert_eq!(data.window, given);
+    let wide = DeclaredWindow { width: Some(10.0), ..given };
+    let found = load_with(toml.as_bytes(), Source { window: wide, ..Source::default() });
+    assert_told(found, &["window_width is 10, but the box is 8 wide"], "estimated");
 }
 
 #[test]

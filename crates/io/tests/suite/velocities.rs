@@ -1,28 +1,16 @@
 //! Velocities from tracked positions.
 
 use ndarray::{Array3, array};
-use voronudge_io::{Boundary, DataSet, Difference, YAxis, derive_velocities};
+use voronudge_io::{Boundary, DataSet, Difference, derive_velocities};
 
 use crate::assert_told;
 
 fn movie(positions: Array3<f64>, boundary: Boundary) -> DataSet {
     DataSet {
-        positions,
-        velocities: None,
-        flow: None,
-        labels: None,
-        boundary,
-        box_offset: None,
-        walls: None,
         frame_interval: 0.5,
         length_unit: "length".into(),
         time_unit: "time".into(),
-        y_axis: YAxis::Up,
-        unwrapped: false,
-        position_noise: None,
-        velocity_noise: None,
-        field_of_view: None,
-        inputs: Vec::new(),
+        ..DataSet::new(positions, boundary)
     }
 }
 

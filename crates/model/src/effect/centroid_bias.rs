@@ -2,8 +2,7 @@
 
 use super::{Column, Effect, Kind, Unit};
 use crate::{BlockMatrix, Exactness, Flow, FlowResponse, Linearisation, Parity, RowAssembly, assemble};
-use num_dual::DualSVec64;
-use voronudge_geometry::{CellPolygon, Scalar, Vector, cross};
+use voronudge_geometry::{CellPolygon, Scalar, Vector, centroid_slopes};
 
 /// The change of the velocities when each centre is moved back from its centroid: `−J (centroid − r)`. Cells with an open polygon
 /// are held.
@@ -33,7 +32,7 @@ impl FlowResponse for CentroidBias {
             .map(|cell| match flow.tessellation.is_closed(cell) {
                 true => {
                     polygon.fill(flow.tessellation, flow.positions, cell);
-                    centroid(&polygon)
+                    polygon.centroid()
                 }
                 false => Vector::new(S::constant(0.0), S::constant(0.0)),
             })
@@ -61,39 +60,12 @@ impl FlowResponse for CentroidBias {
     }
 }
 
-/// Centroid of a polygon relative to the cell: `Σ (p + q) (p × q) / (6A)` over the sides from p to q.
-fn centroid<S: Scalar>(polygon: &CellPolygon<S>) -> Vector<S> {
-    let corners = polygon.corners();
-    let zero = S::constant(0.0);
-    let mut sum = Vector::new(zero, zero);
-    for (m, corner) in corners.iter().enumerate() {
-        let next = if m + 1 == corners.len() { 0 } else { m + 1 };
-        let (p, q) = (corner.centre, corners[next].centre);
-        sum += (p + q) * cross(p, q);
-    }
-    sum * (polygon.shape().area * 6.0).recip()
-}
-
 /// Derivative of a cell's centroid, relative to the cell, by all positions.
 fn centroid_row(flow: &Flow<'_, f64>, cell: usize, row: &mut RowAssembly) {
-    type Dual = DualSVec64<2>;
-    let ring: Vec<Vector<f64>> = flow
-        .tessellation
-        .ring(cell)
-        .map(|h| flow.tessellation.displacement(flow.positions, cell, h))
-        .collect();
-    let mut polygon = CellPolygon::default();
-    for (seeded, &j) in flow.tessellation.neighbours(cell).iter().enumerate() {
-        polygon.fill_ring(ring.iter().enumerate().map(|(m, d)| {
-            let (x, y) = (Dual::from_re(d.x), Dual::from_re(d.y));
-            if m == seeded { Vector::new(x.derivative(0), y.derivative(1)) } else { Vector::new(x, y) }
-        }));
-        let at = centroid(&polygon);
-        let slope = |x: Dual| x.eps.0.map_or([0.0; 2], |eps| [eps[0], eps[1]]);
-        let ([xx, xy], [yx, yy]) = (slope(at.x), slope(at.y));
-        row.add(j as usize, &[xx, xy, yx, yy]);
-        row.add(cell, &[-xx, -xy, -yx, -yy]);
-    }
+    centroid_slopes(flow.tessellation, flow.positions, cell, |neighbour, block| {
+        row.add(neighbour, &block);
+        row.add(cell, &block.map(|slope| -slope));
+    });
 }
 
 /// The catalogue's entry.

@@ -1,9 +1,9 @@
 //! How the cells were measured, as far as the results depend on it.
 
-use super::{LatentCells, TracksReport};
+use super::{LatentCells, MeasuredPositions, MeasuredWindow, TracksReport};
 use serde::Serialize;
 
-/// What was seen of the tissue.
+/// What was seen of the tissue, and how.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Measurement {
     /// Where every cell would have been seen; `null` in a periodic box.
@@ -18,6 +18,10 @@ pub struct Measurement {
     pub latent: Option<LatentCells>,
     /// The tracks, where these were fitted themselves.
     pub tracks: Option<TracksReport>,
+    /// What of a cell its position is.
+    pub positions: MeasuredPositions,
+    /// What a grid point of a flow field stands for; `null` for velocities of cells.
+    pub window: Option<MeasuredWindow>,
 }
 
 /// A region where every cell would have been seen.

@@ -6,6 +6,7 @@
 mod constraints;
 mod implied;
 mod latent;
+mod measured;
 mod measurement;
 mod tracks;
 mod uncertainty;
@@ -14,6 +15,7 @@ mod verdict;
 pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
 pub use latent::LatentCells;
+pub use measured::{MeasuredPositions, MeasuredWindow, MeasurementSource, PositionKind, TriedWindow};
 pub use measurement::{Measurement, RegionSource, SeenRegion};
 pub use tracks::TracksReport;
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
@@ -143,18 +145,20 @@ pub struct FlowGrid {
     pub spacing: [f64; 2],
     /// The average over cells that a grid point stands for.
     pub window: FlowWindow,
-    /// Width of a Gaussian window; `null` for others.
-    pub width: Option<f64>,
+    /// Side of a square window, standard deviation of a Gaussian one.
+    pub width: f64,
 }
 
 /// The average over cells that a grid point stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
+#[serde(rename_all = "kebab-case")]
 pub enum FlowWindow {
     /// Over the square around it.
     Square,
     /// Over the centres of the cells, with Gaussian weights.
     Gaussian,
+    /// Over the plane, with Gaussian weights.
+    GaussianArea,
 }
 
 /// One parameter.

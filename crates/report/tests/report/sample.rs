@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use voronudge_report::infer_report::{
     BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid, FlowWindow,
     GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells, MeanRemoved,
-    Measurement, NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, ProfileResult,
-    Quantity, RegionSource, RunRecord, SeenRegion, Transitions, Verdict, VerdictKind,
+    MeasuredPositions, MeasuredWindow, Measurement, MeasurementSource, NaiveParameters, Nmse, Noise,
+    NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, Quantity, RegionSource,
+    RunRecord, SeenRegion, Transitions, TriedWindow, Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -161,6 +162,14 @@ pub fn report() -> InferReport {
             outside: 11,
             latent: Some(LatentCells { inserted: 3, deleted: 1, split: 1, merged: 0, missed_rate: 0.02 }),
             tracks: None,
+            positions: MeasuredPositions {
+                are: PositionKind::Sites,
+                share: 0.0,
+                ci95: Some([0.0, 0.2]),
+                source: MeasurementSource::Estimated,
+                own_errors: false,
+            },
+            window: None,
         },
         flow: None,
         constraints: GivenConstraints {
@@ -258,11 +267,23 @@ pub fn degenerate_report() -> InferReport {
     report.nmse.cross_validated = None;
     report.noise.sigma_r = f64::NAN;
     report.identifiability.clear();
+    report.measurement.window = Some(MeasuredWindow {
+        kind: FlowWindow::Gaussian,
+        width: 6.0,
+        ci95: Some([5.1, f64::INFINITY]),
+        declared: false,
+        tried: vec![TriedWindow {
+            kind: FlowWindow::Gaussian,
+            width: 6.0,
+            rise: 0.0,
+            chiral_coefficient: f64::NAN,
+        }],
+    });
     report.flow = Some(FlowGrid {
         grid_points: [4, 3],
         spacing: [12.0, f64::NAN],
         window: FlowWindow::Gaussian,
-        width: Some(6.0),
+        width: 6.0,
     });
     report.profiles = vec![ProfileResult {
         parameter: "alpha".into(),

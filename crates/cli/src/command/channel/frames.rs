@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use ndarray::Array3;
 use std::fmt::Write as _;
 use voronudge_geometry::Vector;
-use voronudge_io::{Boundary, DataSet, OutputDirectory, WalledSides, YAxis};
+use voronudge_io::{Boundary, DataSet, OutputDirectory, WalledSides};
 use voronudge_report::Units;
 use voronudge_simulate::{ChannelSchedule, LivingTissue, Origin};
 
@@ -120,22 +120,16 @@ impl Frames {
             }
         }
         let data = DataSet {
-            positions,
             velocities: Some(velocities),
-            flow: None,
-            labels: None,
-            boundary: Boundary::Periodic { lengths: tissue.simulation().cell_box().lengths() },
-            box_offset: None,
             walls: tissue.channel().is_walled().then_some(WalledSides::X),
             frame_interval: self.interval,
             length_unit: units.length.clone(),
             time_unit: units.time.clone(),
-            y_axis: YAxis::Up,
             unwrapped: true,
-            position_noise: None,
-            velocity_noise: None,
-            field_of_view: None,
-            inputs: Vec::new(),
+            ..DataSet::new(
+                positions,
+                Boundary::Periodic { lengths: tissue.simulation().cell_box().lengths() },
+            )
         };
         Ok(data.save(out)?)
     }

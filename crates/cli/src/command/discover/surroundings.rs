@@ -8,8 +8,7 @@ use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
 use voronudge_geometry::{Domain, Vector, Visibility};
-use voronudge_infer::Window;
-use voronudge_io::DataSet;
+use voronudge_io::{DataSet, DeclaredWindow};
 use voronudge_model::{Environment, EnvironmentError, VectorMap};
 
 #[derive(Debug, Args)]
@@ -56,7 +55,7 @@ impl FieldArguments {
             .with_hint("give one field for all frames, (ny, nx, 2), or one for each")
             .at(file.display()));
         }
-        Ok(Some(ExternalMap { field: OrderedField::new(&field, Window::Square)?, frames }))
+        Ok(Some(ExternalMap { field: OrderedField::new(&field, DeclaredWindow::default())?, frames }))
     }
 }
 

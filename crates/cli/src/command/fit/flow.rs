@@ -6,8 +6,8 @@ use crate::snapshot::{as_given, y_sign};
 use clap::{Args, ValueEnum};
 use ndarray::{Array4, ArrayD, Axis};
 use voronudge_geometry::{Grid, Vector};
-use voronudge_infer::{Flow, Scale, Window};
-use voronudge_io::{DataSet, FlowField};
+use voronudge_infer::{Flow, Scale, Window, WindowKind};
+use voronudge_io::{DataSet, DeclaredWindow, FlowField};
 use voronudge_report::infer_report::{FlowGrid, FlowWindow};
 
 #[derive(Debug, Clone, Args)]
@@ -17,12 +17,6 @@ pub(crate) struct FlowArguments {
     /// velocities of cells].
     #[arg(long, value_enum)]
     data: Option<Kind>,
-    /// What a grid point of the flow field stands for [default: square].
-    #[arg(long, value_enum)]
-    window: Option<WindowShape>,
-    /// Standard deviation of a Gaussian window, a length [default: half the grid spacing].
-    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
-    window_width: Option<f64>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
@@ -33,14 +27,6 @@ enum Kind {
     Flow,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum WindowShape {
-    /// The average over the square around it, in which every point moves with its cell.
-    Square,
-    /// The average over the centres of cells with Gaussian weights.
-    Gaussian,
-}
-
 impl FlowArguments {
     /// The flow field to explain, if it is one.
     pub fn field(&self, files: &DataSetArguments, data: &DataSet) -> Result<Option<OrderedField>, Failure> {
@@ -49,13 +35,13 @@ impl FlowArguments {
             None => data.flow.is_some() && data.velocities.is_none(),
         };
         match (&data.flow, wanted) {
-            (Some(field), true) => Ok(Some(OrderedField::new(field, self.window(field)?)?)),
+            (Some(field), true) => Ok(Some(OrderedField::new(field, data.window)?)),
             (None, true) => Err(Failure::new("there is no flow field")
                 .with_hint("give --flow with --flow-x and --flow-y, or --data cells")
                 .at(files.flow_file().display())),
             (_, false) => {
                 let unused =
-                    [("--window", self.window.is_some()), ("--window-width", self.window_width.is_some())];
+                    [("--window", files.window.is_some()), ("--window-width", files.window_width.is_some())];
                 match unused.into_iter().find(|(_, given)| *given) {
                     Some((option, _)) => {
                         Err(Failure::new(format!("{option} is for flow fields, but velocities are of cells"))
@@ -66,28 +52,32 @@ impl FlowArguments {
             }
         }
     }
+}
 
-    fn window(&self, field: &FlowField) -> Result<Window, Failure> {
-        match (self.window, self.window_width) {
-            (None | Some(WindowShape::Square), None) => Ok(Window::Square),
-            (None | Some(WindowShape::Square), Some(_)) => Err(Failure::new(
-                "--window-width is for --window gaussian, but the window is a square",
-            )
-            .with_hint(
-                "a square is as wide as the grid spacing; give --window gaussian or leave the width out",
-            )),
-            (Some(WindowShape::Gaussian), None) => {
-                let [dx, dy] = field.spacing();
-                Ok(Window::Gaussian { width: 0.5 * (dx * dy).sqrt() })
-            }
-            (Some(WindowShape::Gaussian), Some(width)) if width.is_finite() && width > 0.0 => {
-                Ok(Window::Gaussian { width })
-            }
-            (Some(WindowShape::Gaussian), Some(width)) => {
-                Err(Failure::new(format!("--window-width is {width}, but it must be finite and above zero"))
-                    .with_hint("leave it out for half the grid spacing"))
-            }
-        }
+/// The kind of window as the fit knows it.
+pub(super) fn kind(declared: voronudge_io::WindowKind) -> WindowKind {
+    match declared {
+        voronudge_io::WindowKind::Square => WindowKind::Square,
+        voronudge_io::WindowKind::Gaussian => WindowKind::Gaussian,
+        voronudge_io::WindowKind::GaussianArea => WindowKind::GaussianArea,
+    }
+}
+
+/// The kind of window as reports name it.
+pub(super) fn told(kind: WindowKind) -> FlowWindow {
+    match kind {
+        WindowKind::Square => FlowWindow::Square,
+        WindowKind::Gaussian => FlowWindow::Gaussian,
+        WindowKind::GaussianArea => FlowWindow::GaussianArea,
+    }
+}
+
+/// The kind of window in words.
+pub(super) fn name(kind: WindowKind) -> &'static str {
+    match kind {
+        WindowKind::Square => "squares",
+        WindowKind::Gaussian => "Gaussians over the centres of cells",
+        WindowKind::GaussianArea => "Gaussians over the plane",
     }
 }
 
@@ -98,12 +88,13 @@ pub(crate) struct OrderedField {
     /// Whether x and y descend in the file.
     descends: [bool; 2],
     grid: Grid,
+    declared: DeclaredWindow,
     window: Window,
 }
 
 impl OrderedField {
-    /// The field with what each of its points stands for.
-    pub fn new(field: &FlowField, window: Window) -> Result<Self, Failure> {
+    /// The field with what is declared of the windows of its points; what is not is as usual.
+    pub fn new(field: &FlowField, declared: DeclaredWindow) -> Result<Self, Failure> {
         let mut velocities = field.velocities.clone();
         let axes = [&field.x, &field.y];
         let descends = axes.map(|coordinates| coordinates.first() > coordinates.last());
@@ -112,7 +103,19 @@ impl OrderedField {
         }
         let origin = axes.map(|coordinates| coordinates.iter().copied().fold(f64::INFINITY, f64::min));
         let grid = Grid::new(origin, field.spacing(), axes.map(Vec::len))?;
-        Ok(Self { velocities, descends, grid, window })
+        let kind = declared.kind.map_or(WindowKind::Square, kind);
+        let window = Window { kind, width: declared.width.unwrap_or_else(|| kind.usual_width(&grid)) };
+        Ok(Self { velocities, descends, grid, declared, window })
+    }
+
+    /// What is declared of the windows.
+    pub fn declared(&self) -> DeclaredWindow {
+        self.declared
+    }
+
+    /// Takes another window for what its points stand for.
+    pub fn take(&mut self, window: Window) {
+        self.window = window;
     }
 
     /// What the model is to explain in one frame.
@@ -159,11 +162,8 @@ impl OrderedField {
 
     /// The grid for the report.
     pub fn described(&self) -> FlowGrid {
-        let (window, width) = match self.window {
-            Window::Square => (FlowWindow::Square, None),
-            Window::Gaussian { width } => (FlowWindow::Gaussian, Some(width)),
-        };
-        FlowGrid { grid_points: self.grid.size(), spacing: self.grid.spacing(), window, width }
+        let Window { kind, width } = self.window;
+        FlowGrid { grid_points: self.grid.size(), spacing: self.grid.spacing(), window: told(kind), width }
     }
 }
 
@@ -174,9 +174,6 @@ pub(crate) fn scaled(flow: &Flow, scale: &Scale) -> Result<Flow, Failure> {
     Ok(Flow {
         grid: Grid::new(lengths([origin.x, origin.y]), lengths(flow.grid.spacing()), flow.grid.size())?,
         velocities: flow.velocities.iter().map(|v| v.map(|v| v / scale.velocity())).collect(),
-        window: match flow.window {
-            Window::Square => Window::Square,
-            Window::Gaussian { width } => Window::Gaussian { width: width / scale.length },
-        },
+        window: Window { width: flow.window.width / scale.length, ..flow.window },
     })
 }

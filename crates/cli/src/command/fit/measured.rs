@@ -76,6 +76,14 @@ impl Measured {
         }
     }
 
+    /// The same, to change it.
+    pub fn flow_mut(&mut self) -> Option<&mut OrderedField> {
+        match self {
+            Self::Flow(field) => Some(field),
+            _ => None,
+        }
+    }
+
     /// The file that holds them.
     pub fn file(&self, arguments: &SnapshotArguments) -> PathBuf {
         match self {

@@ -3,7 +3,7 @@
 //! | file | what |
 //! |---|---|
 //! | `arguments`, `constraints`, `flow`, `search` | options: which data, what is known of the parameters, velocities on a grid, how long to search |
-//! | `measured`, `prepare`, `scaling` | from the data set to the problem in scaled units, and back |
+//! | `measured`, `measurement`, `prepare`, `scaling` | from the data set to the problem in scaled units, and back |
 //! | `tracks` | tracks as a movie, and what came of them |
 //! | `outcome`, `implied`, `words` | a fitted model as reports tell it |
 //! | `arrays`, `views`, `browser` | arrays, frames to be drawn, the page on the screen |
@@ -16,6 +16,7 @@ mod flow;
 pub(crate) mod implied;
 pub(crate) mod latent;
 mod measured;
+pub(crate) mod measurement;
 pub(crate) mod outcome;
 mod prepare;
 pub(crate) mod scaling;

@@ -180,6 +180,8 @@ pub(crate) fn measurement(data: &DataSet, prepared: &Prepared) -> Measurement {
         outside: count(Certainty::Outside),
         latent: prepared.latent_cells(),
         tracks: None,
+        positions: super::measurement::positions(prepared),
+        window: super::measurement::window(prepared),
     }
 }
 

@@ -2,13 +2,14 @@
 
 use super::arguments::{MeanToRemove, SnapshotArguments};
 use super::measured::Measured;
-use super::{flow, scaling};
+use super::{flow, measurement, scaling};
 use crate::failure::Failure;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain};
 use voronudge_geometry::{Domain, PeriodicBox, Vector, Visibility, areas};
 use voronudge_infer::{
-    Completion, Constraints, Error, Inference, KnownNoise, Method, Observation, Request, Scale, Velocities,
+    Completion, Constraints, Error, Inference, KnownMeasurement, KnownNoise, Measurement, Method,
+    Observation, Request, Scale, Velocities,
 };
 use voronudge_io::{DataSet, Noise};
 use voronudge_report::infer_report::{MeanRemoved, NoiseSource, RegionSource};
@@ -45,6 +46,12 @@ pub(crate) struct Prepared {
     pub velocities: Measured,
     /// What is known of the parameters, in the units of the data.
     pub constraints: Constraints,
+    /// What is declared of the measurement, in scaled units.
+    pub known: KnownMeasurement,
+    /// How cells were measured, in scaled units.
+    pub measurement: Measurement,
+    /// Whether cells have position errors of their own.
+    pub own_errors: bool,
 }
 
 impl Prepared {
@@ -156,13 +163,28 @@ impl Question<'_> {
         // The data must have a scale of their own, even if it is not used.
         let own = scale_of(&observations).map_err(|error| faulty_data(error, &velocities, arguments))?;
         let scale = self.scale.unwrap_or(own);
-        let (mut request, stated_noise) = self.request(&scale);
+        let errors: Option<Vec<Vec<f64>>> = snapshots
+            .iter()
+            .zip(&frames)
+            .map(|(snapshot, &frame)| measurement::position_errors(data, snapshot, frame))
+            .collect();
+        let typical_error = errors.as_ref().and_then(|all| measurement::typical(all.iter().flatten()));
+        let (mut request, stated_noise) = self.request(&scale, typical_error);
         request.frame_interval = velocities.derived().map(|_| data.frame_interval / scale.time);
+        let known = measurement::known(data, velocities.flow(), &scale);
         let observations = observations
             .iter()
             .enumerate()
             .map(|(index, observation)| {
-                Ok(scaled(index, observation, &scale)?.with_background(arguments.background))
+                let mut observation = scaled(index, observation, &scale)?;
+                if let (Some(errors), Some(typical)) = (&errors, typical_error) {
+                    let relative: Vec<f64> = errors[index].iter().map(|error| error / typical).collect();
+                    observation = observation.with_position_errors(&relative);
+                }
+                if let Some(share) = known.share.filter(|share| *share > 0.0) {
+                    observation = observation.with_positions_at(share)?;
+                }
+                Ok(observation.with_background(arguments.background))
             })
             .collect::<Result<Vec<_>, Failure>>()?;
         Ok(Prepared {
@@ -182,11 +204,17 @@ impl Question<'_> {
             },
             velocities,
             constraints: self.constraints,
+            known,
+            measurement: Measurement::stated(&known),
+            own_errors: typical_error.is_some(),
         })
     }
 
     /// What is asked of the fit, and where the noise levels come from.
-    fn request(&self, scale: &Scale) -> (Request, NoiseSource) {
+    ///
+    /// Errors of single cells, of which a typical one is given, are those of the positions unless a noise level is stated besides:
+    /// then they say how it is shared out.
+    fn request(&self, scale: &Scale, typical_error: Option<f64>) -> (Request, NoiseSource) {
         let Self { arguments, data, constraints, .. } = self;
         let level = |noise: Option<Noise>, unit: f64| {
             noise.map(|noise| match noise {
@@ -199,7 +227,7 @@ impl Question<'_> {
         (
             Request {
                 noise: KnownNoise {
-                    position: level(data.position_noise, scale.length),
+                    position: level(data.position_noise.or(typical_error.map(Noise::Absolute)), scale.length),
                     velocity: level(data.velocity_noise, scale.velocity()),
                 },
                 method: self.method,

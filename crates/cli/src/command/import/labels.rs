@@ -2,6 +2,7 @@
 
 use super::ImageArguments;
 use super::shapes::{self, Source};
+use super::sites::Positions;
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -25,6 +26,9 @@ pub(super) struct Arguments {
     /// What becomes of cells at the border of the image.
     #[arg(long, value_enum, default_value_t = Border::Keep)]
     border: Border,
+    /// What the positions of the data set are.
+    #[arg(long, value_enum, default_value_t = Positions::Sites)]
+    positions: Positions,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -73,5 +77,6 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if import.frames.len() > 1 && arguments.link == Link::None {
         run.warn("each frame has cells of its own, so nothing moves; --link labels or --link overlap follows cells");
     }
-    shapes::finish(run, out, &Source { file: &arguments.file, gap: Some(arguments.gap) }, &import)
+    let source = Source { file: &arguments.file, gap: Some(arguments.gap), positions: arguments.positions };
+    shapes::finish(run, out, &source, import)
 }

@@ -5,6 +5,7 @@ mod flow;
 mod labels;
 mod outlines;
 mod shapes;
+mod sites;
 mod tracks;
 
 use crate::Answer;

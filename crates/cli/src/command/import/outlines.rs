@@ -2,6 +2,7 @@
 
 use super::ImageArguments;
 use super::shapes::{self, Source};
+use super::sites::Positions;
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -28,6 +29,9 @@ pub(super) struct Arguments {
     /// Name of the column with y.
     #[arg(long, value_name = "NAME")]
     y_column: Option<String>,
+    /// What the positions of the data set are.
+    #[arg(long, value_enum, default_value_t = Positions::Sites)]
+    positions: Positions,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -45,5 +49,6 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         },
     };
     let import = import_outlines(&arguments.file, &options)?;
-    shapes::finish(run, out, &Source { file: &arguments.file, gap: None }, &import)
+    let source = Source { file: &arguments.file, gap: None, positions: arguments.positions };
+    shapes::finish(run, out, &source, import)
 }

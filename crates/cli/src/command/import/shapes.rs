@@ -1,5 +1,6 @@
-//! True outlines beside the Voronoi polygons of the centroids: the comparison, its report and its page.
+//! True outlines beside the Voronoi polygons of the positions: the comparison, its report and its page.
 
+use super::sites::{Positions, place_at_sites};
 use crate::Answer;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
@@ -10,7 +11,7 @@ use std::path::Path;
 use voronudge_geometry::{
     Domain, FieldOfView, MeasuredShape, Seen, Tessellation, agreement, areas, comparable, perimeters,
 };
-use voronudge_io::{OutputDirectory, ShapeImport};
+use voronudge_io::{OutputDirectory, PositionsAre, ShapeImport};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
@@ -38,6 +39,7 @@ const GUIDE: &[[&str; 2]] = &[
 pub(super) struct Source<'a> {
     pub file: &'a Path,
     pub gap: Option<usize>,
+    pub positions: Positions,
 }
 
 /// One frame compared.
@@ -54,13 +56,23 @@ pub(super) fn finish(
     mut run: Run,
     mut out: OutputDirectory,
     source: &Source<'_>,
-    import: &ShapeImport,
+    mut import: ShapeImport,
 ) -> Result<Answer, Failure> {
-    let compared: Vec<Compared> = (0..import.frames.len())
-        .map(|frame| compare(import, frame, source.file))
-        .collect::<Result<_, _>>()?;
-    let records: Vec<AgreementRecord> = compared.iter().map(|one| one.record).collect();
-    let all = AgreementRecord::pooled(&records);
+    let mut compared = compare_all(&import, source.file)?;
+    let of_centroids = pooled(&compared);
+    let sites = match source.positions {
+        Positions::Sites => {
+            let found = place_at_sites(&mut import)?;
+            compared = compare_all(&import, source.file)?;
+            Some(found)
+        }
+        Positions::Centroids => {
+            import.dataset.positions_are = Some(PositionsAre::CENTROIDS);
+            None
+        }
+    };
+    let import = &import;
+    let all = pooled(&compared);
     if all.cells == 0 {
         run.warn(
             "no cell can be compared: all are at the rim, at the border of the image, or next to one that is",
@@ -86,12 +98,23 @@ pub(super) fn finish(
         at_border: import.summary.at_border,
         in_pieces: import.summary.in_pieces,
         gap: source.gap,
+        of_centroids,
+        sites,
     };
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page(source, import, &compared, &report)?)?;
+    let described = sites.map_or(String::new(), |found| {
+        format!(
+            "sites {} {unit} from centroids; outlines {} {unit} from the sides of their polygons, {} with centroids\n",
+            significant(found.offset, 2),
+            significant(found.misfit, 2),
+            significant(found.misfit_of_centroids, 2),
+            unit = data.length_unit
+        )
+    });
     let text = format!(
-        "{} outlines in {} frames, {} cells\n\
+        "{} outlines in {} frames, {} cells\n{described}\
          Voronoi polygons of {} cells against their outlines: precision {}, recall {} of {} contacts; correlation of areas {}, of \
          perimeters {}\nwritten to {}\n",
         report.outlines,
@@ -107,6 +130,14 @@ pub(super) fn finish(
     );
     run.finish(Some(out), &json, &text)?;
     Ok(Answer::Positive)
+}
+
+fn compare_all(import: &ShapeImport, file: &Path) -> Result<Vec<Compared>, Failure> {
+    (0..import.frames.len()).map(|frame| compare(import, frame, file)).collect()
+}
+
+fn pooled(compared: &[Compared]) -> AgreementRecord {
+    AgreementRecord::pooled(&compared.iter().map(|one| one.record).collect::<Vec<_>>())
 }
 
 fn compare(import: &ShapeImport, frame: usize, file: &Path) -> Result<Compared, Failure> {
@@ -169,8 +200,9 @@ fn page(
     let all = &report.all;
     let percent = |share: f64| format!("{} %", significant(100.0 * share, 3));
     let headline = format!(
-        "The Voronoi polygons of the centroids have {} of the true contacts, and {} of theirs are true; their areas correlate with the \
+        "The Voronoi polygons of the {} have {} of the true contacts, and {} of theirs are true; their areas correlate with the \
          true ones by {}.",
+        if report.sites.is_some() { "sites" } else { "centroids" },
         percent(all.recall),
         percent(all.precision),
         significant(all.area_correlation, 2)
@@ -183,6 +215,16 @@ fn page(
         report.at_border,
         report.in_pieces
     )];
+    if let Some(found) = report.sites {
+        let length = |x: f64| format!("{} {}", significant(x, 2), report.units.length);
+        summary.push(format!(
+            "Sites are the points whose Voronoi polygons follow the outlines best. They lie {} from the centroids (root mean square), and \
+             outlines {} from the sides of their polygons; with centroids it would be {}.",
+            length(found.offset),
+            length(found.misfit),
+            length(found.misfit_of_centroids)
+        ));
+    }
     if let Some(gap) = report.gap {
         summary.push(format!(
             "Cells touch if the way from one to the other, from side to side of pixels, crosses at most {gap} pixels of background. \
@@ -218,12 +260,15 @@ fn page(
         .map(|one| row(format!("frame {}", one.frame), one.present.to_string(), &one.agreement))
         .collect();
     rows.push(row("all".into(), report.frames.iter().map(|one| one.present).sum::<usize>().to_string(), all));
+    if report.sites.is_some() {
+        rows.push(row("all, with centroids".into(), String::new(), &report.of_centroids));
+    }
     let header = "|cells|compared|contacts|precision|recall|corr. of areas|corr. of perimeters|area ratio|perimeter ratio";
     let mut figures = Vec::new();
     if let (Some(first), Some(known)) = (compared.first(), import.frames.first()) {
         figures.push(Figure::new(
             outline_map(&first.view, &known.outlines, &report.units),
-            "True outlines over the Voronoi polygons of their centroids, first frame. Cells on grey are not compared.",
+            "True outlines over the Voronoi polygons, first frame. Cells on grey are not compared.",
         ));
     }
     let pooled = |of: fn(&Compared) -> &Vec<[f64; 2]>| -> Vec<[f64; 2]> {

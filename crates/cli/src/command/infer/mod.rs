@@ -100,11 +100,18 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         _ => (question.prepare(velocities, frames, &mut run)?, None),
     };
     let mut progress = Progress::new(arguments.common.verbosity());
-    let completed = match &movie {
-        Some(_) => Ok(()),
-        None => arguments.latent.complete(&mut prepared, &mut progress),
+    // Windows make the data of a flow field; what a position is can be told of complete cells only.
+    let understood = match (&movie, prepared.velocities.flow()) {
+        (Some(_), _) => Ok(()),
+        (None, Some(_)) => prepared
+            .measure(&mut |state| progress.step(state.stage, state.step.0, state.step.1))
+            .and_then(|()| arguments.latent.complete(&mut prepared, &mut progress)),
+        (None, None) => arguments.latent.complete(&mut prepared, &mut progress).and_then(|()| {
+            prepared.measure(&mut |state| progress.step(state.stage, state.step.0, state.step.1))
+        }),
     };
-    let fitted = completed.and_then(|()| {
+    prepared.caution(&mut run);
+    let fitted = understood.and_then(|()| {
         let mut observe =
             |state: voronudge_infer::Progress<'_>| progress.step(state.stage, state.step.0, state.step.1);
         match &movie {

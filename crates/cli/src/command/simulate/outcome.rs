@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::run::Run;
 use ndarray::Array3;
 use voronudge_geometry::{PeriodicBox, areas};
-use voronudge_io::{Boundary, DataSet, YAxis};
+use voronudge_io::{Boundary, DataSet};
 use voronudge_model::stress;
 use voronudge_report::Units;
 use voronudge_simulate::measure::{hexatic_among, shape_indices};
@@ -97,21 +97,10 @@ fn settings(simulation: &Simulation, request: &Request, schedule: &Schedule, uni
     let positions =
         Array3::from_shape_fn((1, cells, 2), |(_, cell, axis)| simulation.positions()[cell][axis]);
     DataSet {
-        positions,
-        velocities: None,
-        flow: None,
-        labels: None,
-        boundary: Boundary::Periodic { lengths: request.box_lengths },
-        box_offset: None,
-        walls: None,
         frame_interval: schedule.frame_interval(),
         length_unit: units.length.clone(),
         time_unit: units.time.clone(),
-        y_axis: YAxis::Up,
         unwrapped: true,
-        position_noise: None,
-        velocity_noise: None,
-        field_of_view: None,
-        inputs: Vec::new(),
+        ..DataSet::new(positions, Boundary::Periodic { lengths: request.box_lengths })
     }
 }

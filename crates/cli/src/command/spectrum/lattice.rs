@@ -4,7 +4,7 @@ use crate::arguments::{ChosenEffects, environment};
 use crate::failure::Failure;
 use ndarray::{Array2, Array3};
 use voronudge_geometry::FieldOfView;
-use voronudge_io::{Boundary, DataSet, OutputDirectory, YAxis};
+use voronudge_io::{Boundary, DataSet, OutputDirectory};
 use voronudge_model::{Model, Parameters};
 use voronudge_report::figure::DispersionPoint;
 use voronudge_spectrum::{Arrangement, Complex64, Honeycomb};
@@ -47,24 +47,14 @@ impl Lattice {
     pub fn data_set(&self) -> DataSet {
         let positions = self.honeycomb.positions();
         DataSet {
-            positions: Array3::from_shape_fn((1, positions.len(), 2), |(_, cell, axis)| {
-                positions[cell][axis]
-            }),
-            velocities: None,
-            flow: None,
-            labels: None,
-            boundary: Boundary::Periodic { lengths: self.honeycomb.lengths() },
-            box_offset: None,
-            walls: None,
             frame_interval: 1.0,
             length_unit: "ℓ₀".into(),
             time_unit: "τ".into(),
-            y_axis: YAxis::Up,
             unwrapped: true,
-            position_noise: None,
-            velocity_noise: None,
-            field_of_view: None,
-            inputs: Vec::new(),
+            ..DataSet::new(
+                Array3::from_shape_fn((1, positions.len(), 2), |(_, cell, axis)| positions[cell][axis]),
+                Boundary::Periodic { lengths: self.honeycomb.lengths() },
+            )
         }
     }
 

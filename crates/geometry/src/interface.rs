@@ -1,0 +1,158 @@
+//! Where outlines of cells touch.
+
+use crate::outline::shared_sides;
+use crate::{Mask, Vector};
+use nalgebra::{Matrix2, SymmetricEigen};
+use std::collections::BTreeMap;
+
+/// The line along which two cells touch, as far as a straight side could follow it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Interface {
+    /// Indices of the two cells.
+    pub cells: [usize; 2],
+    /// Length.
+    pub length: f64,
+    /// Mean of its points.
+    pub middle: Vector<f64>,
+    /// Along the line; its squared length is the variance of the points along the line less that across it.
+    pub extent: Vector<f64>,
+}
+
+/// Moments of the points of a line.
+#[derive(Debug, Clone, Copy, Default)]
+struct Moments {
+    weight: f64,
+    first: Vector<f64>,
+    second: Matrix2<f64>,
+}
+
+impl Moments {
+    /// Adds a straight piece from one end to the other.
+    fn add(&mut self, [from, to]: [Vector<f64>; 2], weight: f64) {
+        let (middle, along) = ((from + to) * 0.5, to - from);
+        self.weight += weight;
+        self.first += middle * weight;
+        self.second += (middle * middle.transpose() + along * along.transpose() / 12.0) * weight;
+    }
+
+    /// The line, its length as found from its direction.
+    fn interface(&self, cells: [usize; 2], length: impl Fn(Vector<f64>) -> f64) -> Option<Interface> {
+        let middle = self.first / self.weight;
+        let spread = SymmetricEigen::new(self.second / self.weight - middle * middle.transpose());
+        let (along, across) = (spread.eigenvalues.imax(), spread.eigenvalues.imin());
+        let direction: Vector<f64> = spread.eigenvectors.column(along).into();
+        let difference = spread.eigenvalues[along] - spread.eigenvalues[across];
+        let extent = direction * difference.max(0.0).sqrt();
+        let length = length(direction);
+        (length > 0.0 && middle.iter().all(|x| x.is_finite())).then_some(Interface {
+            cells,
+            length,
+            middle,
+            extent,
+        })
+    }
+}
+
+impl Mask<'_> {
+    /// Where pairs of labels touch across at most `gap` pixels of background, lengths in pixels; `index` makes cells of labels.
+    ///
+    /// Rows and columns of pixels are followed; where one goes from one label to another, the middle of the pixels between
+    /// them is a point of the line. Rows meet a line of normal n `|n_x|` times for each pixel of its length, columns `|n_y|` times:
+    /// those that meet it more often tell its length.
+    pub fn interfaces(&self, gap: usize, index: impl Fn(i64) -> Option<usize>) -> Vec<Interface> {
+        let mut found: BTreeMap<[i64; 2], (Moments, [f64; 2])> = BTreeMap::new();
+        let mut follow = |lines: usize, places: usize, label: &dyn Fn(usize, usize) -> i64, upright: bool| {
+            for line in 0..lines {
+                let mut last: Option<(usize, i64)> = None;
+                for place in 0..places {
+                    let here = label(line, place);
+                    if here == 0 {
+                        continue;
+                    }
+                    if let Some((before, other)) = last.replace((place, here))
+                        && other != here
+                        && place - before <= gap + 1
+                    {
+                        let (along, line) = (0.5 * (before + place + 1) as f64, line as f64);
+                        let ends = match upright {
+                            true => [Vector::new(line, along), Vector::new(line + 1.0, along)],
+                            false => [Vector::new(along, line), Vector::new(along, line + 1.0)],
+                        };
+                        let (moments, met) = found.entry([other.min(here), other.max(here)]).or_default();
+                        moments.add(ends, 1.0);
+                        met[usize::from(upright)] += 1.0;
+                    }
+                }
+            }
+        };
+        let [columns, rows] = self.size();
+        follow(rows, columns, &|row, column| self.label(column, row), false);
+        follow(columns, rows, &|column, row| self.label(column, row), true);
+        let interfaces = found.into_iter().filter_map(|(labels, (moments, [rows, columns]))| {
+            let [Some(a), Some(b)] = labels.map(&index) else { return None };
+            moments.interface([a, b], |along| match along.x.abs() < along.y.abs() {
+                true => rows / along.y.abs(),
+                false => columns / along.x.abs(),
+            })
+        });
+        interfaces.collect()
+    }
+}
+
+/// Where polygons touch: the sides that two of them have in common, corners within `tolerance` of each other being one. Cells with
+/// several such sides in common have one interface.
+pub fn outline_interfaces(outlines: &[Vec<Vector<f64>>], tolerance: f64) -> Vec<Interface> {
+    let mut found: BTreeMap<[usize; 2], Moments> = BTreeMap::new();
+    for (cells, ends) in shared_sides(outlines, tolerance) {
+        found.entry(cells).or_default().add(ends, (ends[1] - ends[0]).norm());
+    }
+    found.into_iter().filter_map(|(cells, moments)| moments.interface(cells, |_| moments.weight)).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two half-planes parted by a straight line, with and without a line of background between them.
+    #[test]
+    fn a_straight_line_between_two_labels_is_found() {
+        let size = 60_usize;
+        for angle in [0.3, 0.8, 1.2, 2.5] {
+            let normal = Vector::new(f64::cos(angle), f64::sin(angle));
+            for (width, gap) in [(0.0, 0), (1.4, 2)] {
+                let labels: Vec<i64> = (0..size * size)
+                    .map(|k| Vector::new((k % size) as f64 - 29.5, (k / size) as f64 - 29.5))
+                    .map(|r| match normal.dot(&r) + 0.3 {
+                        _ if r.norm() > 20.0 => 0,
+                        across if across.abs() < 0.5 * width => 0,
+                        across if across < 0.0 => 5,
+                        _ => 9,
+                    })
+                    .collect();
+                let mask = Mask::new(&labels, [size, size]).unwrap();
+                let index = |label| [5, 9].iter().position(|known| *known == label);
+                let found = mask.interfaces(gap, index);
+                assert_eq!((found.len(), found[0].cells), (1, [0, 1]));
+                let line = found[0];
+                let off = normal.dot(&(line.middle - Vector::new(30.0, 30.0))) + 0.3;
+                assert!(off.abs() < 0.12, "{angle} {width}: off by {off}");
+                assert!((line.length / 40.0 - 1.0).abs() < 0.1, "{angle} {width}: {}", line.length);
+                assert!((line.extent.norm() / (40.0 / 12f64.sqrt()) - 1.0).abs() < 0.05);
+                assert!(line.extent.normalize().dot(&normal).abs() < 0.02);
+                assert!(mask.interfaces(gap, |_| None).is_empty());
+            }
+        }
+    }
+
+    /// A bent line is one interface.
+    #[test]
+    fn sides_of_two_outlines_are_joined() {
+        let polygon = |top: f64| {
+            [[0.0, 0.0], [1.0, 0.0], [2.0, 0.0], [1.0, top]].map(|[x, y]| Vector::new(x, y)).to_vec()
+        };
+        let found = outline_interfaces(&[polygon(3.0), polygon(-2.0)], 1e-6);
+        assert_eq!(found.len(), 1);
+        assert_eq!((found[0].cells, found[0].length, found[0].middle), ([0, 1], 2.0, Vector::new(1.0, 0.0)));
+        assert!((found[0].extent.x.abs() - 2.0 / 12f64.sqrt()).abs() < 1e-12 && found[0].extent.y == 0.0);
+    }
+}
