@@ -20,6 +20,7 @@ pub(super) enum Positions {
 
 /// Puts positions at the sites and writes down their errors.
 pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<SiteRecord, Failure> {
+    let seen = import.dataset.field_of_view.as_ref().and_then(|area| area.region().ok());
     let mut errors = Array2::from_elem(import.areas.dim(), f64::NAN);
     let (mut length, mut before, mut after, mut offset, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (frame, known) in import.frames.iter().enumerate() {
@@ -54,7 +55,15 @@ pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<SiteRecord, Fai
         for ((&track, (site, error)), cell) in
             tracks.iter().zip(found.positions.iter().zip(&found.errors)).zip(&cells)
         {
-            errors[(frame, track)] = *error;
+            // A cell whose site is beyond the image stays where it is seen.
+            let (site, error) = match &seen {
+                Some(region) if !region.holds(*site) => {
+                    let off = (site - cell.centroid).norm() * std::f64::consts::FRAC_1_SQRT_2;
+                    (cell.centroid, error.hypot(off))
+                }
+                _ => (*site, *error),
+            };
+            errors[(frame, track)] = error;
             for axis in 0..2 {
                 import.dataset.positions[(frame, track, axis)] = site[axis];
             }
