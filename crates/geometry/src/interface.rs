@@ -137,7 +137,8 @@ mod tests {
                 let off = normal.dot(&(line.middle - Vector::new(30.0, 30.0))) + 0.3;
                 assert!(off.abs() < 0.12, "{angle} {width}: off by {off}");
                 assert!((line.length / 40.0 - 1.0).abs() < 0.1, "{angle} {width}: {}", line.length);
-                assert!((line.extent.norm() / (40.0 / 12f64.sqrt()) - 1.0).abs() < 0.05);
+                let extent = line.extent.norm() / (40.0 / 12f64.sqrt());
+                assert!((extent - 1.0).abs() < 0.05, "{angle} {width}: {extent}");
                 assert!(line.extent.normalize().dot(&normal).abs() < 0.02);
                 assert!(mask.interfaces(gap, |_| None).is_empty());
             }

@@ -283,7 +283,7 @@ mod tests {
             window(WindowKind::Square, 1.6),
             window(WindowKind::Square, 0.8),
             // No cell is at the cut.
-            window(WindowKind::Gaussian, 0.51),
+            window(WindowKind::Gaussian, 0.52),
             window(WindowKind::GaussianArea, 0.5),
         ]
     }

@@ -17,6 +17,9 @@ fn declared(line: &str) -> Folder {
 /// Its cells lie within 43.7 … 355.6 along x and 47.6 … 355.9 along y.
 const RECTANGLE: &str = "field_of_view = [40, 44, 360, 360]";
 
+/// One frame with the velocities of its neighbours in time.
+const FRAME: &str = "--frames 2 --difference central";
+
 #[test]
 fn impossible_fields_of_view_are_refused() {
     let cases = [
@@ -25,7 +28,7 @@ fn impossible_fields_of_view_are_refused() {
         ("field_of_view = [40, -360, 360, -44]", vec!["positions.npy", "frame 0, cell 0", "outside"]),
         ("field_of_view = [40, 44, 40, 360]", vec!["dataset.toml, line 6", "no area"]),
         (
-            "field_of_view = [[0, 0], [400, 400], [400, 0], [0, 400]]",
+            "field_of_view = [[0, 0], [400, 400], [400, 0], [0, 300]]",
             vec!["line 6", "sides 0 and 2", "cross"],
         ),
         ("field_of_view = [[0, 0], [400, 400], [0, 400], [inf, 0]]", vec!["line 6", "corner 3"]),
@@ -46,13 +49,13 @@ fn impossible_fields_of_view_are_refused() {
 
 #[test]
 fn a_declared_field_of_view_keeps_more_cells_than_the_hull() {
-    let out = infer(&fixture("open-field"), "--frames 2");
+    let out = infer(&fixture("open-field"), FRAME);
     let hull = report(out.path());
     assert_valid(&hull);
     assert_eq!(hull["measurement"]["field_of_view"]["source"], "hull");
     assert_eq!(hull["measurement"]["field_of_view"]["corners"], json!(null));
     let folder = declared(RECTANGLE);
-    let out = infer(folder.path(), "--frames 2");
+    let out = infer(folder.path(), FRAME);
     let stated = report(out.path());
     assert_valid(&stated);
     let view = &stated["measurement"]["field_of_view"];
@@ -62,7 +65,7 @@ fn a_declared_field_of_view_keeps_more_cells_than_the_hull() {
     assert!(certain(&stated) > certain(&hull), "{} > {}", certain(&stated), certain(&hull));
     assert_eq!(number(&stated, "/cells/used"), certain(&stated));
     // Given on the command line, it wins.
-    let out = infer(folder.path(), "--frames 2 --field-of-view 0 0 400 400");
+    let out = infer(folder.path(), &format!("{FRAME} --field-of-view 0 0 400 400"));
     let given = report(out.path());
     assert_eq!(given["measurement"]["field_of_view"]["source"], "given");
     assert!(certain(&given) > certain(&stated));

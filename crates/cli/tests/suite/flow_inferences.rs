@@ -143,7 +143,7 @@ fn flow_options_without_a_flow_field_are_refused() {
     };
     refused("--data flow", &["flow.npy", "no flow field"]);
     refused("--window gaussian", &["--window is for flow fields"]);
-    refused("--window-width 1", &["--window-width is for flow fields"]);
+    refused("--window-width 1", &["window_width is given but window is not"]);
     refused("--data sound", &["--data", "sound"]);
     let flow = flow_data();
     let path = flow.file("flow.npy");

@@ -43,7 +43,13 @@ fn centroids_give_the_chirality_too() {
     let (error, positions) = off("");
     assert!(error.abs() < 0.03, "{error}");
     assert_eq!((&positions["source"], &positions["are"]), (&"estimated".into(), &"centroids".into()));
-    let (error, _) = off("--positions-are sites --max-steps 20");
+    // A fit that nobody should trust.
+    let out = Folder::new();
+    let flags = format!("infer {NOISE} --positions-are sites --max-steps 20");
+    let answer = answer(&flags, &[("", data.path()), ("--out", out.path())]);
+    let found = report(out.path());
+    assert!(answer.status.code() == Some(1) && found["fit"]["trustworthy"] == false);
+    let error = number(&found, "/parameters/K_P_alpha/value") / truth - 1.0;
     assert!(error.abs() > 0.05, "{error}");
 }
 
