@@ -14,10 +14,27 @@ pub(crate) struct Chosen<'a> {
     pub rows: Vec<usize>,
 }
 
+impl Chosen<'_> {
+    /// These rows alone, their columns ascending.
+    fn sorted(&self) -> BlockMatrix {
+        let mut matrix = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
+        let mut order: Vec<usize> = Vec::new();
+        for &row in &self.rows {
+            order.extend(self.matrix.row_start[row]..self.matrix.row_start[row + 1]);
+            order.sort_unstable_by_key(|at| self.matrix.column[*at]);
+            matrix.column.extend(order.iter().map(|at| self.matrix.column[*at]));
+            matrix.block.extend(order.drain(..).map(|at| self.matrix.block[at]));
+            matrix.row_start.push(matrix.column.len());
+        }
+        matrix
+    }
+}
+
 /// `JᵀJ` over the chosen rows of each of two matrices J with so many block columns: lower triangles with the whole
 /// diagonal, both on the pattern of their sum.
 pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[SymmetricMatrix; 2], Error> {
-    let transposed = chosen.map(|chosen| (chosen.matrix, Transposed::new(&chosen, columns)));
+    let sorted = chosen.map(|chosen| chosen.sorted());
+    let transposed = sorted.each_ref().map(|matrix| (matrix, Transposed::new(matrix, columns)));
     type Part = (Vec<usize>, Vec<usize>, [Vec<f64>; 2]);
     let parts: Vec<Part> = (0..columns.div_ceil(CHUNK))
         .into_par_iter()
@@ -31,7 +48,9 @@ pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[Symmetri
                 for (which, (matrix, transposed)) in transposed.iter().enumerate() {
                     for &(row, at) in transposed.column(column) {
                         let own = &matrix.block[at];
-                        for (other, b) in matrix.row(row).filter(|(other, _)| *other >= column) {
+                        let onwards = at..matrix.row_start[row + 1];
+                        for (other, b) in matrix.column[onwards.clone()].iter().zip(&matrix.block[onwards]) {
+                            let other = *other as usize;
                             // bᵀ · own
                             let product = [
                                 b[0] * own[0] + b[2] * own[2],
@@ -92,10 +111,10 @@ struct Transposed {
 }
 
 impl Transposed {
-    fn new(chosen: &Chosen<'_>, columns: usize) -> Self {
-        let Chosen { matrix, rows } = chosen;
+    fn new(matrix: &BlockMatrix, columns: usize) -> Self {
+        let rows = 0..matrix.row_start.len() - 1;
         let mut start = vec![0; columns + 1];
-        for &row in rows {
+        for row in rows.clone() {
             for (column, _) in matrix.row(row) {
                 start[column + 1] += 1;
             }
@@ -104,7 +123,7 @@ impl Transposed {
             start[column + 1] += start[column];
         }
         let (mut next, mut entry) = (start.clone(), vec![(0, 0); start[columns]]);
-        for &row in rows {
+        for row in rows {
             for (at, (column, _)) in (matrix.row_start[row]..).zip(matrix.row(row)) {
                 entry[next[column]] = (row, at);
                 next[column] += 1;

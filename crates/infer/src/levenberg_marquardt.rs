@@ -55,6 +55,16 @@ impl<'o> LevenbergMarquardt<'o> {
             interrupted: false,
         }
     }
+
+    /// Starts from a point where the problem is linearised already.
+    pub fn knowing(self, linearised: Option<NormalEquations>) -> Self {
+        Self { linearised, ..self }
+    }
+
+    /// The problem linearised at the last point.
+    pub fn into_linearised(self) -> Option<NormalEquations> {
+        self.linearised
+    }
 }
 
 impl<O> Solver<O, FitState> for LevenbergMarquardt<'_>
@@ -72,7 +82,9 @@ where
     ) -> Result<(FitState, Option<KV>), ArgminError> {
         let start = state.take_param().ok_or_else(|| Error::Optimiser("no starting point".into()))?;
         let cost = problem.cost(&start)?;
-        self.linearised = Some(problem.jacobian(&start)?);
+        if self.linearised.is_none() {
+            self.linearised = Some(problem.jacobian(&start)?);
+        }
         Ok((state.param(start).cost(cost), None))
     }
 

@@ -44,6 +44,8 @@ pub(crate) struct Local<'a> {
     pub floor: Vec<f64>,
     /// Number of free coefficients.
     pub free: usize,
+    /// Where the coordinates belong, two after the other; those of `None` are coupled to all others.
+    pub places: Vec<Option<[f64; 3]>>,
 }
 
 /// One frame's part of a step before the coefficients' part is known.
@@ -124,13 +126,13 @@ impl Eliminated {
 
 impl Linearisation {
     pub fn new(local: &Local<'_>) -> Result<Self, Error> {
-        let Local { velocities, positions, nudges, floor, free } = local;
+        let Local { velocities, positions, nudges, floor, free, places } = local;
         let chosen = [velocities, positions].map(|group| Chosen {
             matrix: group.jacobian,
             rows: group.rows.iter().map(|row| row.0).collect(),
         });
         let [of_velocities, of_positions] = grams(chosen, nudges.len() / 2)?;
-        let pattern = CholeskyPattern::new(&of_velocities)?;
+        let pattern = CholeskyPattern::dissected(&of_velocities, places)?;
         Ok(Self {
             velocities: Group::new(velocities, of_velocities, nudges, *free),
             positions: Group::new(positions, of_positions, nudges, *free),
@@ -296,6 +298,7 @@ mod tests {
             nudges: &nudges,
             floor: (0..2 * cells).map(|i| if i / 2 == unseen { floor } else { 0.0 }).collect(),
             free,
+            places: (0..cells).map(|i| Some([(i % 5) as f64, (i / 5) as f64, 0.0])).collect(),
         };
         let springs = |spring: f64| {
             let of = |i: usize| if i / 2 == unseen { floor } else { spring * stiffness(i / 2) };

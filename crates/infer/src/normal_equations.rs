@@ -99,6 +99,11 @@ impl NormalEquations {
         }
     }
 
+    /// The same problem at other noise levels.
+    pub fn at_levels(self, levels: NoiseLevels) -> Self {
+        Self::new(&self.space, levels, self.free.as_slice(), self.frames)
+    }
+
     /// Number of free coefficients.
     pub fn dimension(&self) -> usize {
         self.free.len()

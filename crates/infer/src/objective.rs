@@ -269,6 +269,7 @@ impl<'a> Objective<'a> {
                         _ => (0..nudges.len()).map(|i| of_cell(i / 2)).collect(),
                     },
                     free: p,
+                    places: nudged.positions.iter().map(|r| Some([r[0], r[1], 0.0])).collect(),
                 })
             })
             .collect::<Result<Vec<_>, _>>()?;

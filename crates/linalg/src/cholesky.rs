@@ -1,114 +1,28 @@
 //! Sparse Cholesky factorisation of symmetric positive definite matrices.
 
 use crate::Error;
+use crate::SymmetricMatrix;
+use crate::dissection::Dissection;
+use crate::graph::Graph;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::LltError;
+use faer::perm::PermRef;
+use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
 use faer::sparse::linalg::cholesky::supernodal::SupernodalLltRef;
 use faer::sparse::linalg::cholesky::{
     CholeskySymbolicParams, LltRef, SymbolicCholesky, SymbolicCholeskyRaw, SymmetricOrdering,
     factorize_symbolic_cholesky,
 };
-use faer::sparse::{SparseColMatRef, SymbolicSparseColMatRef};
 use faer::{Conj, MatMut, Par, Side};
 use std::sync::Arc;
 
-/// Results must not depend on the number of threads.
+/// Solutions are few and quick.
 const SEQUENTIAL: Par = Par::Seq;
 
-/// The lower triangle of a sparse symmetric matrix, in compressed columns. Matrices made from one another share their
-/// pattern.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SymmetricMatrix {
-    places: Arc<Places>,
-    value: Vec<f64>,
-}
-
-/// Where entries are.
-#[derive(Debug, PartialEq)]
-struct Places {
-    column_start: Vec<usize>,
-    row: Vec<usize>,
-}
-
-impl SymmetricMatrix {
-    /// A matrix of order `column_start.len() − 1`. Every column holds its diagonal entry first, then the entries below
-    /// in ascending rows.
-    ///
-    /// # Errors
-    /// [`Error::Malformed`] if the arrays do not fit together.
-    pub fn new(column_start: Vec<usize>, row: Vec<usize>, value: Vec<f64>) -> Result<Self, Error> {
-        let order = column_start.len().checked_sub(1).ok_or(Error::Malformed("no column starts"))?;
-        if row.len() != value.len() || column_start[0] != 0 || column_start[order] != row.len() {
-            return Err(Error::Malformed("array lengths differ"));
-        }
-        for (column, range) in column_start.windows(2).enumerate() {
-            let rows = row.get(range[0]..range[1]).ok_or(Error::Malformed("column starts descend"))?;
-            let sound = rows.first() == Some(&column)
-                && rows.windows(2).all(|pair| pair[0] < pair[1])
-                && rows.last().is_some_and(|&last| last < order);
-            if !sound {
-                return Err(Error::Malformed("a column does not start at its diagonal and ascend"));
-            }
-        }
-        Ok(Self { places: Arc::new(Places { column_start, row }), value })
-    }
-
-    /// A matrix with the same pattern and other values, in the same order.
-    ///
-    /// # Errors
-    /// [`Error::Malformed`] if there are not as many.
-    pub fn with_values(&self, value: Vec<f64>) -> Result<Self, Error> {
-        if value.len() != self.value.len() {
-            return Err(Error::Malformed("array lengths differ"));
-        }
-        Ok(Self { places: Arc::clone(&self.places), value })
-    }
-
-    /// Whether entries are at the same places as those of another matrix.
-    pub fn has_pattern_of(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.places, &other.places) || self.places == other.places
-    }
-
-    /// This matrix plus `factor` times another one of the same pattern.
-    ///
-    /// # Errors
-    /// [`Error::Malformed`] if the patterns differ.
-    pub fn plus(&self, factor: f64, other: &Self) -> Result<Self, Error> {
-        if !self.has_pattern_of(other) {
-            return Err(Error::Malformed("the patterns of two matrices differ"));
-        }
-        let value = self.value.iter().zip(&other.value).map(|(a, b)| a + factor * b).collect();
-        Ok(Self { places: Arc::clone(&self.places), value })
-    }
-
-    /// Number of rows.
-    pub fn order(&self) -> usize {
-        self.places.column_start.len() - 1
-    }
-
-    /// The diagonal.
-    pub fn diagonal(&self) -> impl Iterator<Item = f64> {
-        self.places.column_start[..self.order()].iter().map(|&start| self.value[start])
-    }
-
-    /// Adds `shift` to every diagonal entry.
-    pub fn shift_diagonal(&mut self, shift: f64) {
-        self.add_to_diagonal(std::iter::repeat(shift));
-    }
-
-    /// Adds one value after another to the diagonal.
-    pub fn add_to_diagonal(&mut self, shifts: impl IntoIterator<Item = f64>) {
-        for (start, shift) in self.places.column_start[..self.order()].iter().zip(shifts) {
-            self.value[*start] += shift;
-        }
-    }
-
-    fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
-        let Places { column_start, row } = &*self.places;
-        SymbolicSparseColMatRef::new_checked(self.order(), self.order(), column_start, None, row)
-    }
-}
+/// Entries of a factor from which on it is worth while to share its dense blocks out to several tasks, and into how many.
+const LARGE: usize = 2_000_000;
+const TASKS: usize = 2;
 
 /// The fill-reducing order of a sparsity pattern: reusable for matrices that differ in their values only.
 #[derive(Debug, Clone)]
@@ -117,22 +31,56 @@ pub struct CholeskyPattern {
 }
 
 impl CholeskyPattern {
-    /// Analyses the pattern of a matrix.
+    /// Analyses the pattern of a matrix; the order is that of approximate minimum degree.
     ///
     /// # Errors
     /// [`Error::OutOfMemory`].
     pub fn new(matrix: &SymmetricMatrix) -> Result<Self, Error> {
-        Self::with_threshold(matrix, SupernodalThreshold::AUTO)
+        Self::with_threshold(matrix, SupernodalThreshold::AUTO, SymmetricOrdering::Amd)
+    }
+
+    /// Analyses the pattern of a matrix whose unknowns belong, in groups of one size that follow each other, to places in the plane or
+    /// in space and time; those of a place that is `None` are coupled to all. The order is that of nested dissection by planes.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if unknowns cannot be shared out evenly, [`Error::OutOfMemory`].
+    pub fn dissected(matrix: &SymmetricMatrix, places: &[Option<[f64; 3]>]) -> Result<Self, Error> {
+        let order = matrix.order();
+        if places.is_empty() || order % places.len() != 0 {
+            return Err(Error::Malformed("places and unknowns do not fit together"));
+        }
+        let group = order / places.len();
+        let (column_start, row) = matrix.places();
+        let nodes = Dissection::order(&Graph::of_lower_triangle(column_start, row, group), places);
+        let forward: Vec<usize> =
+            nodes.iter().flat_map(|&node| (0..group).map(move |k| group * node as usize + k)).collect();
+        let mut inverse = vec![0; order];
+        forward.iter().enumerate().for_each(|(position, &unknown)| inverse[unknown] = position);
+        let order = SymmetricOrdering::Custom(PermRef::new_checked(&forward, &inverse, order));
+        Self::with_threshold(matrix, SupernodalThreshold::AUTO, order)
     }
 
     /// Above the threshold of operations per entry, columns of the factor are taken together as dense blocks.
-    fn with_threshold(matrix: &SymmetricMatrix, threshold: SupernodalThreshold) -> Result<Self, Error> {
+    fn with_threshold(
+        matrix: &SymmetricMatrix,
+        threshold: SupernodalThreshold,
+        order: SymmetricOrdering<'_, usize>,
+    ) -> Result<Self, Error> {
         let parameters =
             CholeskySymbolicParams { supernodal_flop_ratio_threshold: threshold, ..Default::default() };
-        let symbolic =
-            factorize_symbolic_cholesky(matrix.pattern(), Side::Lower, SymmetricOrdering::Amd, parameters)
-                .map_err(|_| Error::OutOfMemory { order: matrix.order() })?;
+        let symbolic = factorize_symbolic_cholesky(matrix.pattern(), Side::Lower, order, parameters)
+            .map_err(|_| Error::OutOfMemory { order: matrix.order() })?;
         Ok(Self { symbolic: Arc::new(symbolic) })
+    }
+
+    /// Number of entries of the factor.
+    pub fn entries(&self) -> usize {
+        self.symbolic.len_val()
+    }
+
+    /// How the work on a factor is shared out: the same for any number of threads, so that results are.
+    fn tasks(&self) -> Par {
+        if self.entries() < LARGE { Par::Seq } else { Par::rayon(TASKS) }
     }
 
     /// Factorises a matrix of this pattern.
@@ -141,18 +89,18 @@ impl CholeskyPattern {
     /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`].
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, Error> {
         let out_of_memory = || Error::OutOfMemory { order: matrix.order() };
-        let symbolic = &self.symbolic;
+        let (symbolic, tasks) = (&self.symbolic, self.tasks());
         let mut values = Vec::new();
         values.try_reserve_exact(symbolic.len_val()).map_err(|_| out_of_memory())?;
         values.resize(symbolic.len_val(), 0.0);
-        let room = symbolic.factorize_numeric_llt_scratch::<f64>(SEQUENTIAL, Default::default());
+        let room = symbolic.factorize_numeric_llt_scratch::<f64>(tasks, Default::default());
         let mut scratch = MemBuffer::try_new(room).map_err(|_| out_of_memory())?;
         let outcome = symbolic.factorize_numeric_llt(
             &mut values,
-            SparseColMatRef::new(matrix.pattern(), &matrix.value),
+            SparseColMatRef::new(matrix.pattern(), matrix.values()),
             Side::Lower,
             Default::default(),
-            SEQUENTIAL,
+            tasks,
             MemStack::new(&mut scratch),
             Default::default(),
         );
@@ -231,26 +179,6 @@ mod tests {
         assert_eq!(Cholesky::new(&matrix).unwrap_err(), Error::NotPositiveDefinite);
     }
 
-    #[test]
-    fn malformed_arrays_are_refused() {
-        assert!(SymmetricMatrix::new(vec![0, 2, 3], vec![1, 0, 1], vec![1.0; 3]).is_err());
-        assert!(SymmetricMatrix::new(vec![0, 2], vec![0, 1], vec![1.0; 2]).is_err());
-        assert!(SymmetricMatrix::new(vec![], vec![], vec![]).is_err());
-    }
-
-    #[test]
-    fn sums_need_one_pattern() {
-        let one = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![4.0, 1.0, 3.0]).unwrap();
-        let sum = one.plus(2.0, &one.with_values(vec![1.0, 0.5, 0.25]).unwrap()).unwrap();
-        assert_eq!(sum.value, [6.0, 2.0, 3.5]);
-        let mut shifted = sum.clone();
-        shifted.add_to_diagonal([1.0, -0.5]);
-        assert_eq!(shifted.diagonal().collect::<Vec<_>>(), [7.0, 3.0]);
-        assert!(one.with_values(vec![1.0; 2]).is_err());
-        let other = SymmetricMatrix::new(vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
-        assert!(one.plus(1.0, &other).is_err());
-    }
-
     const FORMS: [SupernodalThreshold; 3] = [
         SupernodalThreshold::AUTO,
         SupernodalThreshold::FORCE_SIMPLICIAL,
@@ -281,10 +209,10 @@ mod tests {
     fn times(matrix: &SymmetricMatrix, x: &[f64]) -> Vec<f64> {
         let mut product = vec![0.0; x.len()];
         for column in 0..x.len() {
-            for k in matrix.places.column_start[column]..matrix.places.column_start[column + 1] {
-                product[matrix.places.row[k]] += matrix.value[k] * x[column];
-                if matrix.places.row[k] != column {
-                    product[column] += matrix.value[k] * x[matrix.places.row[k]];
+            for k in matrix.places().0[column]..matrix.places().0[column + 1] {
+                product[matrix.places().1[k]] += matrix.values()[k] * x[column];
+                if matrix.places().1[k] != column {
+                    product[column] += matrix.values()[k] * x[matrix.places().1[k]];
                 }
             }
         }
@@ -299,7 +227,11 @@ mod tests {
         let given: Vec<f64> = (0..2 * n).map(|i| (i as f64).sin()).collect();
         for form in FORMS {
             let mut x = given.clone();
-            CholeskyPattern::with_threshold(&matrix, form).unwrap().factor(&matrix).unwrap().solve(&mut x);
+            CholeskyPattern::with_threshold(&matrix, form, SymmetricOrdering::Amd)
+                .unwrap()
+                .factor(&matrix)
+                .unwrap()
+                .solve(&mut x);
             for (x, b) in x.chunks(n).zip(given.chunks(n)) {
                 let worst = times(&matrix, x).iter().zip(b).map(|(p, b)| (p - b).abs()).fold(0.0, f64::max);
                 assert!(worst < 1e-13, "{worst:e}");
@@ -316,12 +248,31 @@ mod tests {
         let expected: f64 =
             (1..=side).flat_map(|j| (1..=side).map(move |k| (shift + wave(j) + wave(k)).ln())).sum();
         for form in FORMS {
-            let pattern = CholeskyPattern::with_threshold(&matrix, form).unwrap();
+            let pattern = CholeskyPattern::with_threshold(&matrix, form, SymmetricOrdering::Amd).unwrap();
             let simplicial = matches!(pattern.symbolic.raw(), SymbolicCholeskyRaw::Simplicial(_));
             assert!(form == SupernodalThreshold::AUTO || simplicial == (form == FORMS[1]));
             let found = pattern.factor(&matrix).unwrap().log_determinant();
             assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
         }
+    }
+
+    /// Another order is another way to the same numbers; a node that is coupled to all may have no place.
+    #[test]
+    fn a_dissected_matrix_has_the_same_factor_but_for_the_order() {
+        let (side, shift) = (30, 0.1);
+        let matrix = laplacian(side, shift);
+        let places: Vec<Option<[f64; 3]>> = (0..side * side)
+            .map(|i| (i != 17).then_some([(i % side) as f64, (i / side) as f64, 0.0]))
+            .collect();
+        let usual = Cholesky::new(&matrix).unwrap();
+        let dissected = CholeskyPattern::dissected(&matrix, &places).unwrap().factor(&matrix).unwrap();
+        assert!((usual.log_determinant() - dissected.log_determinant()).abs() < 1e-10);
+        let given: Vec<f64> = (0..matrix.order()).map(|i| (i as f64).sin()).collect();
+        let [mut x, mut y] = [given.clone(), given];
+        usual.solve(&mut x);
+        dissected.solve(&mut y);
+        assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-12));
+        assert!(CholeskyPattern::dissected(&matrix, &places[..7]).is_err());
     }
 
     /// Bands with pseudo-random entries; one pattern serves matrices of other values.
@@ -338,12 +289,13 @@ mod tests {
             let value: Vec<f64> = (0..row.len()).map(|k| (7.0 * k as f64).sin()).collect();
             let mut matrix = SymmetricMatrix::new(start, row, value).unwrap();
             matrix.shift_diagonal(2.0 * band as f64 + 1.5);
-            let patterns = FORMS.map(|form| CholeskyPattern::with_threshold(&matrix, form).unwrap());
+            let patterns = FORMS
+                .map(|form| CholeskyPattern::with_threshold(&matrix, form, SymmetricOrdering::Amd).unwrap());
             for _ in 0..2 {
                 let mut dense = DMatrix::zeros(order, order);
                 for column in 0..order {
-                    for k in matrix.places.column_start[column]..matrix.places.column_start[column + 1] {
-                        dense[(matrix.places.row[k], column)] = matrix.value[k];
+                    for k in matrix.places().0[column]..matrix.places().0[column + 1] {
+                        dense[(matrix.places().1[k], column)] = matrix.values()[k];
                     }
                 }
                 let lower = dense.cholesky().unwrap().unpack();

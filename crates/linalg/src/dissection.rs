@@ -1,6 +1,6 @@
-//! Nested dissection by places in the plane: an order of elimination with little fill.
+//! Nested dissection by places in the plane or in space and time: an order of elimination with little fill.
 
-use crate::BlockSparse;
+use crate::graph::Graph;
 
 /// Nodes that are not cut any further.
 const LEAF: usize = 24;
@@ -41,45 +41,54 @@ pub(crate) struct Dissection {
     pub roots: Vec<usize>,
 }
 
+/// Where a node is; a node without a place is coupled to too much to be on one side of a cut, and is eliminated at the end.
+pub(crate) type Place = Option<[f64; 3]>;
+
 impl Dissection {
-    /// Cuts the graph of a matrix and its transpose along straight lines through the places of its block rows.
-    pub fn new(matrix: &BlockSparse, transposed: &BlockSparse, places: &[[f64; 2]]) -> Self {
-        let rows = matrix.rows();
-        let mut cut = Cut {
-            matrix,
-            transposed,
-            places,
-            right: vec![false; rows],
-            made: Self {
-                fronts: Vec::new(),
-                order: Vec::with_capacity(rows),
-                position: vec![0; rows],
-                roots: Vec::new(),
-            },
-        };
-        cut.made.roots = cut.divide((0..rows as u32).collect());
-        let mut made = cut.made;
+    /// Cuts a graph along straight lines or planes through the places of its nodes.
+    pub fn new(graph: &Graph, places: &[Place]) -> Self {
+        let mut made = Self::ordered(graph, places);
         for (position, &node) in made.order.iter().enumerate() {
             made.position[node as usize] = position as u32;
         }
         for index in 0..made.fronts.len() {
-            made.find_boundary(index, matrix, transposed);
+            made.find_boundary(index, graph);
         }
         made
     }
 
-    fn find_boundary(&mut self, index: usize, matrix: &BlockSparse, transposed: &BlockSparse) {
+    /// The order alone.
+    pub fn order(graph: &Graph, places: &[Place]) -> Vec<u32> {
+        Self::ordered(graph, places).order
+    }
+
+    /// The fronts without their boundaries, in their order.
+    fn ordered(graph: &Graph, places: &[Place]) -> Self {
+        let nodes = graph.nodes();
+        let (near, last): (Vec<u32>, Vec<u32>) =
+            (0..nodes as u32).partition(|&node| places[node as usize].is_some());
+        let mut cut = Cut {
+            graph,
+            places: places.iter().map(|place| place.unwrap_or_default()).collect(),
+            far: vec![false; nodes],
+            made: Self {
+                fronts: Vec::new(),
+                order: Vec::with_capacity(nodes),
+                position: vec![0; nodes],
+                roots: Vec::new(),
+            },
+        };
+        let children = cut.divide(near);
+        cut.made.roots = if last.is_empty() { children } else { vec![cut.front(last, children)] };
+        cut.made
+    }
+
+    fn find_boundary(&mut self, index: usize, graph: &Graph) {
         let Front { first, own, ref children, .. } = self.fronts[index];
         let behind = (first + own) as u32;
-        let coupled = self.order[first..first + own].iter().flat_map(|&node| {
-            let neighbours = |matrix: &BlockSparse| {
-                let node = node as usize;
-                matrix.column[matrix.row_start[node]..matrix.row_start[node + 1]].to_vec()
-            };
-            [neighbours(matrix), neighbours(transposed)].into_iter().flatten()
-        });
+        let coupled = self.order[first..first + own].iter().flat_map(|&node| graph.neighbours(node));
         let mut boundary: Vec<u32> = coupled
-            .map(|node| self.position[node as usize])
+            .map(|&node| self.position[node as usize])
             .chain(children.iter().flat_map(|&child| self.fronts[child].boundary.iter().copied()))
             .filter(|&position| position >= behind)
             .collect();
@@ -97,53 +106,83 @@ impl Dissection {
 
 /// A dissection in the making.
 struct Cut<'a> {
-    matrix: &'a BlockSparse,
-    transposed: &'a BlockSparse,
-    places: &'a [[f64; 2]],
-    /// Nodes on the far side of the line at hand.
-    right: Vec<bool>,
+    graph: &'a Graph,
+    places: Vec<[f64; 3]>,
+    /// Nodes on the far side of the cut at hand.
+    far: Vec<bool>,
     made: Dissection,
+}
+
+/// Nodes on both sides of a cut, and those between that keep them apart.
+struct Halves {
+    sides: [Vec<u32>; 2],
+    separator: Vec<u32>,
 }
 
 impl Cut<'_> {
     /// Orders some nodes; tells the fronts at the top.
-    fn divide(&mut self, mut nodes: Vec<u32>) -> Vec<usize> {
+    fn divide(&mut self, nodes: Vec<u32>) -> Vec<usize> {
         if nodes.is_empty() {
             return Vec::new();
         }
         if nodes.len() <= LEAF {
             return vec![self.front(nodes, Vec::new())];
         }
-        let axis = self.longer_axis(&nodes);
-        let middle = nodes.len() / 2;
-        let places = self.places;
-        let key = |node: &u32| (places[*node as usize][axis], *node);
-        nodes.select_nth_unstable_by(middle, |a, b| {
-            let (a, b) = (key(a), key(b));
-            a.0.total_cmp(&b.0).then(a.1.cmp(&b.1))
-        });
-        let far = nodes.split_off(middle);
-        far.iter().for_each(|&node| self.right[node as usize] = true);
-        let (separator, near): (Vec<u32>, Vec<u32>) = nodes.into_iter().partition(|&node| self.crosses(node));
-        far.iter().for_each(|&node| self.right[node as usize] = false);
-        let mut children = self.divide(near);
-        children.extend(self.divide(far));
+        let extents = [0, 1, 2].map(|axis| self.extent(&nodes, axis));
+        let axes = (0..3).filter(|axis| extents[*axis] > 0.0);
+        let best = axes.map(|axis| self.halve(&nodes, axis)).min_by_key(|halves| halves.separator.len());
+        let Halves { sides, separator } = match best {
+            Some(halves) => halves,
+            None => self.halve(&nodes, 0),
+        };
+        drop(nodes);
+        let mut children = Vec::new();
+        for side in sides {
+            children.extend(self.divide(side));
+        }
         if separator.is_empty() { children } else { vec![self.front(separator, children)] }
     }
 
-    fn crosses(&self, node: u32) -> bool {
-        [self.matrix, self.transposed].iter().any(|matrix| {
-            let range = matrix.row_start[node as usize]..matrix.row_start[node as usize + 1];
-            matrix.column[range].iter().any(|&other| self.right[other as usize])
-        })
+    /// Cuts nodes across an axis; the nodes next to the cut on one of its sides are the separator, whichever are fewer.
+    fn halve(&mut self, nodes: &[u32], axis: usize) -> Halves {
+        let mut near = nodes.to_vec();
+        let middle = near.len() / 2;
+        let places = &self.places;
+        let along = |node: &u32| places[*node as usize][axis];
+        near.select_nth_unstable_by(middle, |a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
+        let far = near.split_off(middle);
+        far.iter().for_each(|&node| self.far[node as usize] = true);
+        let next_to_far: Vec<bool> = near.iter().map(|&node| self.touches_far(node)).collect();
+        near.iter().for_each(|&node| self.far[node as usize] = true);
+        far.iter().for_each(|&node| self.far[node as usize] = false);
+        let next_to_near: Vec<bool> = far.iter().map(|&node| self.touches_far(node)).collect();
+        near.iter().for_each(|&node| self.far[node as usize] = false);
+        let count = |marks: &[bool]| marks.iter().filter(|mark| **mark).count();
+        let split = |nodes: Vec<u32>, marks: Vec<bool>| -> (Vec<u32>, Vec<u32>) {
+            let (apart, rest): (Vec<_>, Vec<_>) = nodes.into_iter().zip(marks).partition(|(_, mark)| *mark);
+            let only = |pairs: Vec<(u32, bool)>| pairs.into_iter().map(|(node, _)| node).collect();
+            (only(apart), only(rest))
+        };
+        match count(&next_to_far) <= count(&next_to_near) {
+            true => {
+                let (separator, near) = split(near, next_to_far);
+                Halves { sides: [near, far], separator }
+            }
+            false => {
+                let (separator, far) = split(far, next_to_near);
+                Halves { sides: [near, far], separator }
+            }
+        }
     }
 
-    fn longer_axis(&self, nodes: &[u32]) -> usize {
-        let extent = |axis: usize| {
-            let along = || nodes.iter().map(|&node| self.places[node as usize][axis]);
-            along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
-        };
-        usize::from(extent(1) > extent(0))
+    /// Whether a node has a neighbour on the far side.
+    fn touches_far(&self, node: u32) -> bool {
+        self.graph.neighbours(node).iter().any(|&other| self.far[other as usize])
+    }
+
+    fn extent(&self, nodes: &[u32], axis: usize) -> f64 {
+        let along = || nodes.iter().map(|&node| self.places[node as usize][axis]);
+        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
     }
 
     fn front(&mut self, nodes: Vec<u32>, children: Vec<usize>) -> usize {
@@ -159,12 +198,16 @@ mod tests {
     use super::*;
     use crate::sample;
 
+    fn places(side: usize) -> Vec<Place> {
+        sample::places(side).into_iter().map(|[x, y]| Some([x, y, 0.0])).collect()
+    }
+
     #[test]
     fn every_node_is_eliminated_once_and_knows_what_it_couples_to() {
         let side = 23;
         let matrix = sample::lattice(side, 0.2);
         let transposed = matrix.transposed();
-        let dissection = Dissection::new(&matrix, &transposed, &sample::places(side));
+        let dissection = Dissection::new(&Graph::of_blocks(&matrix, &transposed), &places(side));
         let mut seen = dissection.order.clone();
         seen.sort_unstable();
         assert!(seen.iter().enumerate().all(|(i, &node)| i == node as usize) && seen.len() == side * side);
@@ -188,7 +231,8 @@ mod tests {
     #[test]
     fn coinciding_places_are_no_obstacle() {
         let matrix = sample::lattice(9, 0.2);
-        let dissection = Dissection::new(&matrix, &matrix.transposed(), &[[0.0; 2]; 81]);
+        let graph = Graph::of_blocks(&matrix, &matrix.transposed());
+        let dissection = Dissection::new(&graph, &[Some([0.0; 3]); 81]);
         assert_eq!(dissection.order.len(), 81);
     }
 }

@@ -18,17 +18,20 @@ mod dense_eigen;
 mod dissection;
 mod eigenpairs;
 mod error;
+mod graph;
 mod linear_system;
 mod partial_eigen;
 #[cfg(test)]
 mod sample;
 mod sparse_lu;
+mod symmetric_matrix;
 
 pub use block_sparse::BlockSparse;
-pub use cholesky::{Cholesky, CholeskyPattern, SymmetricMatrix};
+pub use cholesky::{Cholesky, CholeskyPattern};
 pub use dense_eigen::{Wanted, eigen};
 pub use eigenpairs::Eigenpairs;
 pub use error::Error;
 pub use linear_system::LinearSystem;
 pub use num_complex::Complex64;
 pub use partial_eigen::{PartialEigenpairs, Progress, RESIDUAL_LIMIT, nearest, rightmost};
+pub use symmetric_matrix::SymmetricMatrix;

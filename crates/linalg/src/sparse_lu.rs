@@ -1,6 +1,7 @@
 //! Sparse LU factorisation of `A − σ 1` by fronts (multifrontal, nested dissection).
 
-use crate::dissection::{Dissection, Front};
+use crate::dissection::{Dissection, Front, Place};
+use crate::graph::Graph;
 use crate::{BlockSparse, Error};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::lu::partial_pivoting::factor::{lu_in_place, lu_in_place_scratch};
@@ -88,7 +89,8 @@ impl<T: Number> SparseLu<T> {
             return Err(Error::Malformed("one place is needed for each block row"));
         }
         let transposed = matrix.transposed();
-        let dissection = Dissection::new(matrix, &transposed, places);
+        let places: Vec<Place> = places.iter().map(|&[x, y]| Some([x, y, 0.0])).collect();
+        let dissection = Dissection::new(&Graph::of_blocks(matrix, &transposed), &places);
         let factors: Vec<_> = dissection.fronts.iter().map(|_| OnceLock::new()).collect();
         let job = Job {
             matrix,

@@ -8,7 +8,7 @@
 //! the length of a step follows from backtracking to a sufficient decrease, and coefficients are scaled by the norms of
 //! their columns. At the end the coefficients are those that fit best at the nudged positions.
 
-use super::{Found, Optimum, Watch, own_error};
+use super::{Found, Watch, own_error};
 use crate::least_squares::{fit_at, free_rows, residuals};
 use crate::objective::{Nudged, Objective};
 use crate::{Error, Loss, Status};
@@ -80,7 +80,7 @@ pub(crate) fn descend(
     refit(objective, &mut parameters)?;
     let value = objective.value(&parameters);
     trace.push(value);
-    Ok(Optimum { parameters, value, status, steps }.found(trace))
+    Ok(Found::by(parameters, value, status, steps, trace))
 }
 
 /// The best coefficients at the nudged positions.

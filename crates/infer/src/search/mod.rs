@@ -17,7 +17,9 @@ use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
 use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
 use crate::{Error, Progress, Status};
-use argmin::core::{CostFunction, Executor, Jacobian, TerminationReason, TerminationStatus};
+use argmin::core::{
+    CostFunction, Executor, Jacobian, OptimizationResult, TerminationReason, TerminationStatus,
+};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -100,6 +102,8 @@ pub(crate) fn improve(
 /// One optimisation at fixed noise levels.
 pub(crate) struct Optimum {
     pub parameters: Vec<f64>,
+    /// The problem linearised there.
+    pub equations: NormalEquations,
     pub value: f64,
     pub status: Status,
     pub steps: u64,
@@ -108,12 +112,19 @@ pub(crate) struct Optimum {
 impl Optimum {
     /// As the result of a search.
     pub fn found(self, trace: Vec<f64>) -> Found {
-        Found {
-            starts: vec![self.value],
-            parameters: self.parameters,
-            value: self.value,
-            status: self.status,
-            steps: self.steps,
+        Found::by(self.parameters, self.value, self.status, self.steps, trace)
+    }
+}
+
+impl Found {
+    /// The end of one way from one start, no transitions tried.
+    fn by(parameters: Vec<f64>, value: f64, status: Status, steps: u64, trace: Vec<f64>) -> Self {
+        Self {
+            starts: vec![value],
+            parameters,
+            value,
+            status,
+            steps,
             trace,
             transitions_tried: 0,
             transitions_made: 0,
@@ -132,11 +143,25 @@ pub(crate) fn optimise<P>(
 where
     P: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
 {
-    let solver = LevenbergMarquardt::new(tolerance, observer);
+    optimise_knowing(objective, (start, None), max_steps, tolerance, observer)
+}
+
+/// As [`optimise`], from a point where the problem may be linearised already.
+pub(crate) fn optimise_knowing<P>(
+    objective: P,
+    (start, linearised): (Vec<f64>, Option<NormalEquations>),
+    max_steps: u64,
+    tolerance: f64,
+    observer: Observer<'_>,
+) -> Result<Optimum, Error>
+where
+    P: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
+{
+    let solver = LevenbergMarquardt::new(tolerance, observer).knowing(linearised);
     let executor = Executor::new(objective, solver)
         .configure(|state| state.param(start).max_iters(max_steps))
         .ctrlc(false);
-    let mut state = executor.run().map_err(own_error)?.state;
+    let OptimizationResult { solver, mut state, .. } = executor.run().map_err(own_error)?;
     let status = match &state.termination_status {
         TerminationStatus::Terminated(TerminationReason::Interrupt) => return Err(Error::Interrupted),
         TerminationStatus::Terminated(TerminationReason::SolverConverged) => Status::Converged,
@@ -145,7 +170,9 @@ where
     };
     let value = state.best_cost;
     let parameters = state.take_best_param().ok_or_else(|| Error::Optimiser("no best point".into()))?;
-    Ok(Optimum { parameters, value, status, steps: state.iter })
+    let equations =
+        solver.into_linearised().ok_or_else(|| Error::Optimiser("no linearised problem".into()))?;
+    Ok(Optimum { parameters, equations, value, status, steps: state.iter })
 }
 
 /// The same without telling of progress.

@@ -1,17 +1,17 @@
 //! Coefficients, trajectories and noise levels together, on ever finer instants.
 
+use super::finer::{Added, transfer};
 use super::movie::Movie;
-use super::objective::{MovieObjective, Placed};
+use super::objective::MovieObjective;
 use super::rule::Rule;
-use super::states::{Place, States};
+use super::states::States;
 use crate::least_squares::{invert, within_bounds};
 use crate::noise::{FIRST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
-use crate::search::{Watch, optimise};
+use crate::normal_equations::NormalEquations;
+use crate::search::{Optimum, Watch, optimise_knowing};
 use crate::{CoefficientSpace, Error, KnownNoise, Method, NoiseLevels, Request, Status};
 use nalgebra::{DMatrix, DVector};
-use std::collections::HashMap;
 use std::ops::ControlFlow;
-use voronudge_geometry::Vector;
 
 /// A finer rule must change the coefficients by less than this share of their standard errors.
 const UNCHANGED: f64 = 0.2;
@@ -22,17 +22,24 @@ const FIRST_VELOCITY_NOISE: f64 = 0.3;
 /// By what factor the error of the dynamics falls from one round to the next at most.
 const FALL: f64 = 0.4;
 
-/// Rounds of fit and noise levels.
-const ROUNDS: usize = 8;
+/// How far fit and noise levels are brought together.
+#[derive(Debug, Clone, Copy)]
+struct Settling {
+    /// Rounds of both at most.
+    rounds: u64,
+    /// Steps of the optimiser in a round.
+    steps: u64,
+    /// Change of log σ that counts as none.
+    enough: f64,
+}
 
-/// Steps of the optimiser in a round.
-const STEPS: u64 = 2;
+/// With the first rule, whose errors the noise levels take up; with a finer one on the way; at the end.
+const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7 };
+const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY };
+const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
 
 /// Relative decrease of the objective that counts as none.
 const TOLERANCE: f64 = 5e-5;
-
-/// Change of log σ that counts as none where the rule may be too coarse, and where it is fine enough.
-const SETTLED: [f64; 2] = [0.3, 0.06];
 
 /// Gauss–Newton steps of the first coefficients, which are linear but for responses.
 const FIRST_STEPS: usize = 4;
@@ -40,8 +47,8 @@ const FIRST_STEPS: usize = 4;
 /// Spacing of log k at which the likelihood is looked at.
 const SPACING: f64 = 1.0;
 
-/// Operations of one factorisation beyond which no finer rule is tried.
-const LARGEST_WORK: f64 = 2e11;
+/// Fits with what finer steps add at the fit before.
+const CORRECTIONS: usize = 3;
 
 /// A fitted movie.
 pub(super) struct Fit {
@@ -54,9 +61,14 @@ pub(super) struct Fit {
     pub steps: u64,
     /// Φ / σ_v² after each round.
     pub trace: Vec<f64>,
+    /// Steps of the integration from one frame to the next.
+    pub substeps: usize,
     /// By how much a finer rule would change the coefficients, the largest change in standard errors.
     pub error: f64,
 }
+
+/// A point, and perhaps the problem linearised there.
+type Start = (Vec<f64>, Option<NormalEquations>);
 
 /// A fit on its way.
 struct Course<'a, 'w> {
@@ -98,22 +110,27 @@ pub(super) fn fit(
     let mut states = States::new(movie, Rule::TRAPEZOID)?;
     let naive = first_coefficients(&course.objective(&states))?;
     let mut at = course.objective(&states).start(&naive);
-    let mut error = f64::INFINITY;
-    at = course.settle(&states, at, SETTLED[0])?;
+    at = course.settle(&states, at, ROUGH)?;
+    let (mut substeps, mut error) = (1, f64::INFINITY);
     for rule in &Rule::LADDER[1..] {
-        let next = States::new(movie, *rule)?;
-        let (start, change) = course.refine(&states, &next, &at)?;
-        error = change;
-        if error < UNCHANGED || work(&next) > LARGEST_WORK {
+        let added = Added::new(&course.objective(&states), &at, *rule)?;
+        error = course.change(&states, &at, &added)?;
+        if error < UNCHANGED {
             break;
         }
-        states = next;
-        at = course.settle(&states, start, SETTLED[0])?;
+        if rule.steps == 1 {
+            let next = States::new(movie, *rule)?;
+            at = transfer(&course.objective(&states), &next, &at)?;
+            states = next;
+            at = course.settle(&states, at, PASSING)?;
+        } else {
+            substeps = rule.steps;
+            at = course.correct(&mut states, at, added)?;
+        }
     }
-    at = course.settle(&states, at, SETTLED[1])?;
     at = course.finish(&states, at)?;
     let Course { levels, value, status, steps, trace, .. } = course;
-    Ok(Fit { states, parameters: at, levels, naive, value, status, steps, trace, error })
+    Ok(Fit { states, parameters: at, levels, naive, value, status, steps, trace, substeps, error })
 }
 
 impl<'a> Course<'a, '_> {
@@ -130,109 +147,107 @@ impl<'a> Course<'a, '_> {
         }
     }
 
-    /// Fit and noise levels in turn until these change by no more than `enough`.
-    fn settle(&mut self, states: &States, mut at: Vec<f64>, enough: f64) -> Result<Vec<f64>, Error> {
-        for round in 0..ROUNDS {
-            at = self.optimise(states, at, STEPS, round)?;
-            let next = self.next_levels(&self.objective(states), &at)?;
+    /// Fit and noise levels in turn.
+    fn settle(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Vec<f64>, Error> {
+        Ok(self.settled(states, at, how)?.0)
+    }
+
+    /// Fit and noise levels in turn; the problem is linearised at the end.
+    fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
+        let mut start = (at, None);
+        for round in 0..how.rounds {
+            let optimum = self.optimise(states, start, how.steps, (round, how.rounds))?;
+            let next = self.next_levels(&self.objective(states), &optimum.equations)?;
             let change = (next.position / self.levels.position).ln().abs()
                 + (next.velocity / self.levels.velocity).ln().abs();
             self.levels = next;
-            if change < enough {
+            start = (optimum.parameters, Some(optimum.equations.at_levels(next)));
+            if change < how.enough {
                 break;
             }
         }
-        Ok(at)
+        Ok(start)
     }
 
-    /// The minimum at the present levels.
+    /// Noise levels, and the minimum at these.
     fn finish(&mut self, states: &States, at: Vec<f64>) -> Result<Vec<f64>, Error> {
+        let start = self.settled(states, at, FINAL)?;
         let most = match self.request.method {
             Method::Search { max_steps, .. } | Method::Descent { max_steps, .. } => max_steps,
         };
-        self.optimise(states, at, most, ROUNDS)
+        Ok(self.optimise(states, start, most, (1, 1))?.parameters)
     }
 
     fn optimise(
         &mut self,
         states: &States,
-        at: Vec<f64>,
+        start: Start,
         most: u64,
-        round: usize,
-    ) -> Result<Vec<f64>, Error> {
+        round: (u64, u64),
+    ) -> Result<Optimum, Error> {
         let objective = self.objective(states);
         let expected = objective.expected();
         let watch = &mut *self.watch;
-        let mut observer = |_: u64, value: f64| match watch.tell(
-            "tracks",
-            (round as u64, ROUNDS as u64),
-            value / expected,
-        ) {
+        let mut observer = |_: u64, value: f64| match watch.tell("tracks", round, value / expected) {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         };
-        let optimum = optimise(&objective, at, most, TOLERANCE, &mut observer)?;
+        let optimum = optimise_knowing(&objective, start, most, TOLERANCE, &mut observer)?;
         self.steps += optimum.steps;
         self.trace.push(optimum.value / self.levels.velocity.powi(2));
         (self.value, self.status) = (optimum.value, optimum.status);
-        Ok(optimum.parameters)
+        Ok(optimum)
     }
 
     /// The levels of the next round: more likely ones, the dynamics tightened step by step.
-    fn next_levels(&self, objective: &MovieObjective<'_>, at: &[f64]) -> Result<NoiseLevels, Error> {
+    fn next_levels(
+        &self,
+        objective: &MovieObjective<'_>,
+        equations: &NormalEquations,
+    ) -> Result<NoiseLevels, Error> {
         let wanted = match self.request.noise {
             KnownNoise { position: Some(position), velocity: Some(velocity) } => {
                 NoiseLevels { position, velocity }
             }
             known => {
-                let equations = objective.linearise(at)?;
                 let components = objective.components() as f64;
-                Restricted { equations: &equations, components, known }.towards(self.levels, SPACING)?
+                Restricted { equations, components, known }.towards(self.levels, SPACING)?
             }
         };
         Ok(NoiseLevels { velocity: wanted.velocity.max(FALL * self.levels.velocity), ..wanted })
     }
 
-    /// The point on finer instants, and by how much these would change the coefficients: the largest change in standard errors.
-    fn refine(&self, states: &States, finer: &States, at: &[f64]) -> Result<(Vec<f64>, f64), Error> {
+    /// Fits with what a finer rule adds to the displacements, found at one fit and put into the next. Derivatives are those of the coarse
+    /// rule: they weigh the residuals, whose expected value at the truth is zero for any weights.
+    fn correct(
+        &mut self,
+        states: &mut States,
+        mut at: Vec<f64>,
+        mut added: Added,
+    ) -> Result<Vec<f64>, Error> {
+        for _ in 0..CORRECTIONS {
+            states.motions.iter_mut().zip(&added.displacements).for_each(|(motion, add)| motion.added = *add);
+            at = self.settle(states, at, PASSING)?;
+            added = Added::new(&self.objective(states), &at, added.rule)?;
+        }
+        Ok(at)
+    }
+
+    /// By how much what a finer rule adds would change the coefficients: the largest change in standard errors.
+    fn change(&self, states: &States, at: &[f64], added: &Added) -> Result<f64, Error> {
         let objective = self.objective(states);
-        let placed = objective.place(at)?;
-        let start = transfer(states, &placed, finer, at, self.space.dimension());
-        let fine = MovieObjective { states: finer, ..objective };
-        let left = |objective: &MovieObjective<'_>, residuals: Vec<Vector<f64>>| {
-            let steps = objective.states.rule.steps;
-            let motions = objective.states.motions.iter().zip(residuals.chunks_exact(steps));
-            motions
-                .map(|(motion, rests)| {
-                    // Displacements, as the residuals of one step.
-                    let all: Vector<f64> = rests.iter().sum();
-                    ((motion.interval, motion.track), all / objective.unit(motion.interval))
-                })
-                .collect::<HashMap<_, _>>()
-        };
-        let with_fine = left(&fine, fine.residuals(&fine.place(&start)?, &start));
-        let residuals = objective.residuals(&placed, at);
-        let coarse = left(&objective, residuals);
         let steps = states.rule.steps;
-        let change = states.motions.iter().flat_map(|motion| {
-            let key = (motion.interval, motion.track);
-            let changed = with_fine.get(&key).map_or_else(Vector::zeros, |fine| fine - coarse[&key]);
-            let each = changed * objective.unit(motion.interval) / steps as f64;
+        let of_rows = states.motions.iter().zip(&added.displacements).flat_map(|(motion, all)| {
+            let each = (motion.added - all) * objective.unit(motion.interval) / steps as f64;
             std::iter::repeat_n(each, steps)
         });
-        let reduced = objective.response(at, change.collect())?;
+        let reduced = objective.response(at, of_rows.collect())?;
         let covariance = invert(reduced.information.clone())?;
         let response = &covariance * &reduced.gradient;
         let covariance = covariance * self.levels.velocity.powi(2);
         let in_errors = response.iter().enumerate().map(|(k, d)| d.abs() / covariance[(k, k)].sqrt());
-        Ok((start, in_errors.fold(0.0, f64::max)))
+        Ok(in_errors.fold(0.0, f64::max))
     }
-}
-
-/// About how many operations it takes to factorise the normal equations instant by instant.
-fn work(states: &States) -> f64 {
-    let unknowns = states.instants.iter().map(|instant| 2.0 * instant.tracks.len() as f64);
-    unknowns.map(|n| 7.0 / 3.0 * n.powi(3)).sum()
 }
 
 /// The coefficients by regression of the displacements on the mean of the forces at both ends.
@@ -252,37 +267,4 @@ fn first_coefficients(objective: &MovieObjective<'_>) -> Result<Vec<f64>, Error>
         free = within_bounds(objective.space, free + newton, normal)?;
     }
     Ok(free.as_slice().to_vec())
-}
-
-/// A point on instants that are the same or twice as many: the new ones are where the middles were.
-fn transfer(from: &States, placed: &Placed<'_>, to: &States, at: &[f64], p: usize) -> Vec<f64> {
-    let (free, displacements) = at.split_at(p);
-    let ratio = to.rule.steps / from.rule.steps;
-    let mut next = free.to_vec();
-    next.resize(p + 2 * to.blocks(), 0.0);
-    for (index, instant) in to.instants.iter().enumerate() {
-        let (before, is_new) = (index / ratio, index % ratio > 0);
-        let known: HashMap<u32, Vector<f64>> = match is_new {
-            false => {
-                let positions = &placed.instants[before].0.positions;
-                from.instants[before].tracks.iter().copied().zip(positions.iter().copied()).collect()
-            }
-            true => {
-                let tracks = from.middles[before]
-                    .ends
-                    .iter()
-                    .map(|ends| from.instants[before].tracks[ends[0] as usize]);
-                tracks.zip(placed.middles[before].0.positions.iter().copied()).collect()
-            }
-        };
-        for (track, place) in instant.tracks.iter().zip(&instant.place) {
-            let (Place::Own(own), Some(r)) = (place, known.get(track)) else { continue };
-            let displacement = r - to.start[*own as usize];
-            let block = p + 2 * *own as usize;
-            next[block..block + 2].copy_from_slice(displacement.as_slice());
-        }
-    }
-    let [old, new] = [from, to].map(|states| 2 * states.drifts.0);
-    next[p + new..].copy_from_slice(&displacements[old..]);
-    next
 }

@@ -187,11 +187,7 @@ fn tracked(objective: &MovieObjective<'_>, found: &Fit) -> Tracked {
     Tracked {
         trajectories,
         drifts: (0..movie.frames() - 1).map(|interval| objective.drift(interval, displacements)).collect(),
-        integration: Integration {
-            substeps: states.rule.steps,
-            order: states.rule.order(),
-            error: found.error,
-        },
+        integration: Integration { substeps: found.substeps, order: states.rule.order(), error: found.error },
     }
 }
 

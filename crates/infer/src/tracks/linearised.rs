@@ -70,6 +70,7 @@ impl MovieObjective<'_> {
             nudges: displacements,
             floor: (0..displacements.len()).map(|i| of_block(i / 2)).collect(),
             free: p,
+            places: self.states.where_and_when(),
         })?;
         Ok(NormalEquations::new(self.space, self.levels, free, vec![linearised]))
     }

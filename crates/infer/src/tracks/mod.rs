@@ -8,6 +8,7 @@
 //! is the integral of the model's velocities by a collocation rule, so that no velocity is ever derived from positions. The
 //! problem has the form of the nudged fit of snapshots and is solved by the same means.
 
+mod finer;
 mod fit;
 mod held_out;
 mod inference;

@@ -144,7 +144,7 @@ impl<'a> MovieObjective<'a> {
         middle.ends.iter().zip(&middle.led).map(place).collect()
     }
 
-    /// The mean velocity of a motion over one of its steps.
+    /// The mean velocity of a motion over one of its steps, with what finer steps add.
     pub fn mean_velocity(&self, placed: &Placed<'_>, motion: &Motion, step: usize) -> Vector<f64> {
         let index = motion.interval * self.states.rule.steps + step;
         let (of_ends, of_middle) = self.states.rule.weights();
@@ -153,7 +153,8 @@ impl<'a> MovieObjective<'a> {
         };
         let middle =
             motion.middles.get(step).map(|cell| placed.middles[index].1.of_cells[*cell as usize] * of_middle);
-        at_end(0) + at_end(1) + middle.unwrap_or_else(Vector::zeros)
+        let added = motion.added / (self.states.rule.steps as f64 * self.length(motion.interval));
+        at_end(0) + at_end(1) + middle.unwrap_or_else(Vector::zeros) + added
     }
 
     /// What the model leaves of each step of each motion, over √(T h): motion by motion, step by step.

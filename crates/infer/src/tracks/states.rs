@@ -66,6 +66,8 @@ pub(crate) struct Motion {
     pub cells: Vec<u32>,
     /// Index among the cells in the middle of each step; empty for a rule without middles.
     pub middles: Vec<u32>,
+    /// What finer steps add to the displacement.
+    pub added: Vector<f64>,
 }
 
 /// The unknowns of a movie and the motions that are explained.
@@ -171,6 +173,20 @@ impl States {
     /// The two unknowns of one block.
     pub fn vector(displacements: &[f64], block: usize) -> Vector<f64> {
         Vector::new(displacements[2 * block], displacements[2 * block + 1])
+    }
+
+    /// Place and time of each block before any fit; translations have none.
+    pub fn where_and_when(&self) -> Vec<Option<[f64; 3]>> {
+        let mut places = vec![None; self.blocks()];
+        for instant in &self.instants {
+            for place in &instant.place {
+                if let Place::Own(own) = place {
+                    let r = self.start[*own as usize];
+                    places[*own as usize] = Some([r[0], r[1], instant.time]);
+                }
+            }
+        }
+        places
     }
 
     /// Where a cell is at an instant.
@@ -301,7 +317,7 @@ fn motions(movie: &Movie, interval: usize, instants: &[Instant], middles: &[Midd
         .map(|track| {
             let mut cells: Vec<u32> = index.iter().map(|own| own[track as usize]).collect();
             let middles = cells.split_off(instants.len());
-            Motion { interval, track, cells, middles }
+            Motion { interval, track, cells, middles, added: Vector::zeros() }
         })
         .collect()
 }

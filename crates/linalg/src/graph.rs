@@ -1,0 +1,67 @@
+//! Which unknowns of a sparse matrix are coupled.
+
+use crate::BlockSparse;
+
+/// A graph without directions: nodes and those they are coupled to, themselves perhaps among them.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub(crate) struct Graph {
+    start: Vec<usize>,
+    neighbour: Vec<u32>,
+}
+
+impl Graph {
+    /// The block rows of a matrix, coupled where it or its transpose has a block.
+    pub fn of_blocks(matrix: &BlockSparse, transposed: &BlockSparse) -> Self {
+        let mut graph = Self { start: vec![0], neighbour: Vec::new() };
+        for node in 0..matrix.rows() {
+            let both = matrix.row(node).chain(transposed.row(node));
+            graph.neighbour.extend(both.map(|(other, _)| other as u32));
+            graph.start.push(graph.neighbour.len());
+        }
+        graph
+    }
+
+    /// Groups of so many unknowns each, coupled where the lower triangle of a symmetric matrix, in compressed columns, has an entry.
+    pub fn of_lower_triangle(column_start: &[usize], row: &[usize], group: usize) -> Self {
+        let groups = (column_start.len() - 1) / group;
+        // One column of each group tells: entries below come in whole blocks, those of the block on the diagonal couple the group to itself.
+        let below = |node: usize| {
+            let rows = &row[column_start[node * group]..column_start[node * group + 1]];
+            rows.iter().map(move |row| row / group).filter(move |other| *other > node)
+        };
+        let mut start = vec![0; groups + 1];
+        let mut last = vec![usize::MAX; groups];
+        let mut edges = Vec::new();
+        for node in 0..groups {
+            for other in below(node) {
+                if last[other] != node {
+                    last[other] = node;
+                    edges.push((node as u32, other as u32));
+                    start[node + 1] += 1;
+                    start[other + 1] += 1;
+                }
+            }
+        }
+        for node in 0..groups {
+            start[node + 1] += start[node];
+        }
+        let (mut next, mut neighbour) = (start.clone(), vec![0; 2 * edges.len()]);
+        for (a, b) in edges {
+            for (from, to) in [(a, b), (b, a)] {
+                neighbour[next[from as usize]] = to;
+                next[from as usize] += 1;
+            }
+        }
+        Self { start, neighbour }
+    }
+
+    /// Number of nodes.
+    pub fn nodes(&self) -> usize {
+        self.start.len() - 1
+    }
+
+    /// What a node is coupled to.
+    pub fn neighbours(&self, node: u32) -> &[u32] {
+        &self.neighbour[self.start[node as usize]..self.start[node as usize + 1]]
+    }
+}

@@ -1,0 +1,134 @@
+//! Sparse symmetric matrices.
+
+use crate::Error;
+use faer::sparse::SymbolicSparseColMatRef;
+use std::sync::Arc;
+
+/// The lower triangle of a sparse symmetric matrix, in compressed columns. Matrices made from one another share their
+/// pattern.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SymmetricMatrix {
+    places: Arc<Places>,
+    value: Vec<f64>,
+}
+
+/// Where entries are.
+#[derive(Debug, PartialEq)]
+struct Places {
+    column_start: Vec<usize>,
+    row: Vec<usize>,
+}
+
+impl SymmetricMatrix {
+    /// A matrix of order `column_start.len() − 1`. Every column holds its diagonal entry first, then the entries below
+    /// in ascending rows.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if the arrays do not fit together.
+    pub fn new(column_start: Vec<usize>, row: Vec<usize>, value: Vec<f64>) -> Result<Self, Error> {
+        let order = column_start.len().checked_sub(1).ok_or(Error::Malformed("no column starts"))?;
+        if row.len() != value.len() || column_start[0] != 0 || column_start[order] != row.len() {
+            return Err(Error::Malformed("array lengths differ"));
+        }
+        for (column, range) in column_start.windows(2).enumerate() {
+            let rows = row.get(range[0]..range[1]).ok_or(Error::Malformed("column starts descend"))?;
+            let sound = rows.first() == Some(&column)
+                && rows.windows(2).all(|pair| pair[0] < pair[1])
+                && rows.last().is_some_and(|&last| last < order);
+            if !sound {
+                return Err(Error::Malformed("a column does not start at its diagonal and ascend"));
+            }
+        }
+        Ok(Self { places: Arc::new(Places { column_start, row }), value })
+    }
+
+    /// A matrix with the same pattern and other values, in the same order.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if there are not as many.
+    pub fn with_values(&self, value: Vec<f64>) -> Result<Self, Error> {
+        if value.len() != self.value.len() {
+            return Err(Error::Malformed("array lengths differ"));
+        }
+        Ok(Self { places: Arc::clone(&self.places), value })
+    }
+
+    /// Whether entries are at the same places as those of another matrix.
+    pub fn has_pattern_of(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.places, &other.places) || self.places == other.places
+    }
+
+    /// This matrix plus `factor` times another one of the same pattern.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if the patterns differ.
+    pub fn plus(&self, factor: f64, other: &Self) -> Result<Self, Error> {
+        if !self.has_pattern_of(other) {
+            return Err(Error::Malformed("the patterns of two matrices differ"));
+        }
+        let value = self.value.iter().zip(&other.value).map(|(a, b)| a + factor * b).collect();
+        Ok(Self { places: Arc::clone(&self.places), value })
+    }
+
+    /// Number of rows.
+    pub fn order(&self) -> usize {
+        self.places.column_start.len() - 1
+    }
+
+    /// The diagonal.
+    pub fn diagonal(&self) -> impl Iterator<Item = f64> {
+        self.places.column_start[..self.order()].iter().map(|&start| self.value[start])
+    }
+
+    /// Adds `shift` to every diagonal entry.
+    pub fn shift_diagonal(&mut self, shift: f64) {
+        self.add_to_diagonal(std::iter::repeat(shift));
+    }
+
+    /// Adds one value after another to the diagonal.
+    pub fn add_to_diagonal(&mut self, shifts: impl IntoIterator<Item = f64>) {
+        for (start, shift) in self.places.column_start[..self.order()].iter().zip(shifts) {
+            self.value[*start] += shift;
+        }
+    }
+
+    /// Column starts and rows.
+    pub(crate) fn places(&self) -> (&[usize], &[usize]) {
+        (&self.places.column_start, &self.places.row)
+    }
+
+    /// Entries, column by column.
+    pub(crate) fn values(&self) -> &[f64] {
+        &self.value
+    }
+
+    pub(crate) fn pattern(&self) -> SymbolicSparseColMatRef<'_, usize> {
+        let Places { column_start, row } = &*self.places;
+        SymbolicSparseColMatRef::new_checked(self.order(), self.order(), column_start, None, row)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn malformed_arrays_are_refused() {
+        assert!(SymmetricMatrix::new(vec![0, 2, 3], vec![1, 0, 1], vec![1.0; 3]).is_err());
+        assert!(SymmetricMatrix::new(vec![0, 2], vec![0, 1], vec![1.0; 2]).is_err());
+        assert!(SymmetricMatrix::new(vec![], vec![], vec![]).is_err());
+    }
+
+    #[test]
+    fn sums_need_one_pattern() {
+        let one = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![4.0, 1.0, 3.0]).unwrap();
+        let sum = one.plus(2.0, &one.with_values(vec![1.0, 0.5, 0.25]).unwrap()).unwrap();
+        assert_eq!(sum.value, [6.0, 2.0, 3.5]);
+        let mut shifted = sum.clone();
+        shifted.add_to_diagonal([1.0, -0.5]);
+        assert_eq!(shifted.diagonal().collect::<Vec<_>>(), [7.0, 3.0]);
+        assert!(one.with_values(vec![1.0; 2]).is_err());
+        let other = SymmetricMatrix::new(vec![0, 1, 2], vec![0, 1], vec![1.0; 2]).unwrap();
+        assert!(one.plus(1.0, &other).is_err());
+    }
+}
