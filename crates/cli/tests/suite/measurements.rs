@@ -1,10 +1,11 @@
 //! What a data set says of how its cells were measured.
 
 use crate::inferences::infer;
-use crate::program::fixture;
+use crate::program::{fixture, voronudge};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
 use ndarray::Array2;
+use std::ffi::OsStr;
 use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, Tessellation, Vector};
 
 /// The clean chiral liquid with centroids for positions.
@@ -45,10 +46,12 @@ fn centroids_give_the_chirality_too() {
     assert_eq!((&positions["source"], &positions["are"]), (&"estimated".into(), &"centroids".into()));
     // A fit that nobody should trust.
     let out = Folder::new();
-    let flags = format!("infer {NOISE} --positions-are sites --max-steps 20");
-    let answer = answer(&flags, &[("", data.path()), ("--out", out.path())]);
+    let line = format!("infer {NOISE} --positions-are sites --max-steps 20");
+    let mut arguments: Vec<&OsStr> = line.split_whitespace().map(OsStr::new).collect();
+    arguments.extend([data.path().as_os_str(), "--out".as_ref(), out.path().as_os_str()]);
+    assert_eq!(voronudge(arguments).code, Some(1));
     let found = report(out.path());
-    assert!(answer.status.code() == Some(1) && found["fit"]["trustworthy"] == false);
+    assert_eq!(found["fit"]["trustworthy"], false);
     let error = number(&found, "/parameters/K_P_alpha/value") / truth - 1.0;
     assert!(error.abs() > 0.05, "{error}");
 }

@@ -158,7 +158,7 @@ fn cells_are_followed_over_the_pages_of_a_tiff() {
     }
     assert!(errors.len() > 30);
     let rms = (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt();
-    assert!(rms < 0.25 && errors.iter().all(|e| e.abs() < 4.0 * rms), "{rms} {errors:?}");
+    assert!(rms < 0.35 && errors.iter().all(|e| e.abs() < 4.0 * rms), "{rms} {errors:?}");
     // The same labels mean other cells in the second frame, and the same again in the third.
     let (same, _) = imported("--link labels");
     let moved =
