@@ -45,11 +45,19 @@ pub(crate) fn gaussian_area<S: Scalar>(vertices: impl Iterator<Item = Vector<f64
     sum
 }
 
+/// u below which `1 − e⁻ᵘ` loses digits, and above which it is one.
+const SMALL: f64 = 1e-2;
+const LARGE: f64 = 37.0;
+
 /// `(1 − e⁻ᵘ)/2u`
 fn share<S: Scalar>(u: S) -> S {
-    match u.real() < 1e-3 {
-        true => u * (u * (u * (-1.0 / 24.0) + 1.0 / 6.0) - 0.5) * 0.5 + 0.5,
-        false => (-(-u).exp_m1()) / (u * 2.0),
+    match u.real() {
+        small if small < SMALL => {
+            let series = [1.0 / 720.0, -1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0];
+            series.into_iter().fold(S::constant(-1.0 / 5040.0), |sum, next| sum * u + next) * -0.5
+        }
+        large if large > LARGE => (u * 2.0).recip(),
+        _ => (S::constant(1.0) - (-u).exp()) / (u * 2.0),
     }
 }
 
@@ -94,6 +102,16 @@ mod tests {
         assert!((found.re - expected).abs() < 1e-4, "{} {expected}", found.re);
         let [above, below] = [1e-5, -1e-5].map(|step| gaussian_area(triangle.into_iter(), width + step));
         assert!((found.eps - (above - below) / 2e-5).abs() < 1e-8);
+    }
+
+    #[test]
+    fn shares_join_smoothly() {
+        for u in [1e-9, 1e-4, 9.999e-3, 1.0001e-2, 0.3, 5.0, 36.9, 37.1, 400.0] {
+            let found = share(Dual64::from_re(u).derivative());
+            let expected = -f64::exp_m1(-u) / (2.0 * u);
+            let slope = if u < 1e-3 { -0.25 + u / 6.0 } else { ((-u).exp() / 2.0 - expected) / u };
+            assert!((found.re / expected - 1.0).abs() < 1e-13 && (found.eps - slope).abs() < 1e-8, "{u}");
+        }
     }
 
     #[test]

@@ -37,7 +37,7 @@ impl Outline {
     }
 }
 
-/// Pairs of polygons, the lower index first, with a side in common ([`shared_sides`]).
+/// Pairs of polygons, the lower index first, with a side in common.
 pub fn outline_contacts(outlines: &[Vec<Vector<f64>>], tolerance: f64) -> BTreeSet<[usize; 2]> {
     shared_sides(outlines, tolerance).into_iter().map(|(pair, _)| pair).collect()
 }

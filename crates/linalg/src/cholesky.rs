@@ -46,7 +46,7 @@ impl CholeskyPattern {
     /// [`Error::Malformed`] if unknowns cannot be shared out evenly, [`Error::OutOfMemory`].
     pub fn dissected(matrix: &SymmetricMatrix, places: &[Option<[f64; 3]>]) -> Result<Self, Error> {
         let order = matrix.order();
-        if places.is_empty() || order % places.len() != 0 {
+        if places.is_empty() || !order.is_multiple_of(places.len()) {
             return Err(Error::Malformed("places and unknowns do not fit together"));
         }
         let group = order / places.len();
