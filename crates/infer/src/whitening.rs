@@ -1,7 +1,8 @@
 //! Residuals without the correlations that errors of the positions make.
 
 use crate::least_squares::residuals;
-use crate::objective::Objective;
+use crate::objective::{Nudged, Objective};
+use crate::position_rows::PositionRows;
 use crate::rows::linearised_back;
 use crate::uncertainty::nudges;
 use crate::{Error, Inference, Observation, Request};
@@ -38,9 +39,13 @@ pub(crate) fn whitened_residuals(
         let placed = objective.place(index, nudges)?;
         let evaluated = placed.evaluate(coefficients);
         let jacobian = placed.jacobian(coefficients, &evaluated);
+        let back = match frames[index].share() {
+            0.0 => nudges.to_vec(),
+            _ => misplacements(&frames[index], &placed, nudges),
+        };
         let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
             .into_iter()
-            .map(|own| (own.0, linearised_back(&jacobian, own, nudges)))
+            .map(|own| (own.0, linearised_back(&jacobian, own, &back)))
             .unzip();
         let springs: Vec<f64> = (0..frames[index].positions.len())
             .map(|cell| objective.spring() * frames[index].stiffness(cell).max(SOFTEST))
@@ -48,6 +53,21 @@ pub(crate) fn whitened_residuals(
         fields.push(whitened(&jacobian, &springs, &rows, &y, levels.velocity));
     }
     Ok(fields)
+}
+
+/// By how much the places where cells would be seen, centroids for one, are off from where they were seen, x and y of one cell after the
+/// other. The places of the cells themselves are off by about as much.
+fn misplacements(frame: &Observation, placed: &Nudged<'_>, nudges: &[f64]) -> Vec<f64> {
+    let rows = PositionRows::new(frame, &placed.tessellation, &placed.positions, nudges, 0, None);
+    let mut off = vec![0.0; nudges.len()];
+    for (cell, rest, _) in rows.rows().rows {
+        let root = frame.stiffness(*cell).sqrt();
+        if root > 0.0 {
+            off[2 * cell] = -rest.x / root;
+            off[2 * cell + 1] = -rest.y / root;
+        }
+    }
+    off
 }
 
 /// `W^{−1/2} y / σ_v` with `W = I + J K⁻¹ Jᵀ`, by the Lanczos method: of unit variance and without correlations if y has the

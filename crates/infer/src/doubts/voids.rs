@@ -6,7 +6,7 @@
 //! move.
 
 use super::LEVEL;
-use crate::Observation;
+use crate::{Observation, Velocities};
 use statrs::distribution::{ContinuousCDF, DiscreteCDF, Normal, Poisson};
 use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
 
@@ -83,12 +83,16 @@ fn separate(circles: &[Circle], domain: Domain, radius: f64) -> usize {
     kept.len()
 }
 
-/// The circles at the vertices of polygons that are certain.
+/// The circles at the vertices of polygons that are certain, next to cells whose velocities are explained.
 fn circles(frame: &Observation) -> Vec<Circle> {
     let tessellation = &frame.tessellation;
     let is_certain = |cell: usize| {
         use Visibility::{Counted, NextToUncertain, TooLarge};
         matches!(frame.visibility[cell], Counted | NextToUncertain | TooLarge)
+    };
+    let is_explained = |cell: usize| match &frame.velocities {
+        Velocities::OfCells(velocities) => velocities[cell].is_some(),
+        Velocities::OnGrid(_) => true,
     };
     let mut polygon = CellPolygon::default();
     let mut circles = Vec::new();
@@ -97,8 +101,9 @@ fn circles(frame: &Observation) -> Vec<Circle> {
         let ring = tessellation.neighbours(cell);
         for (m, corner) in polygon.vertices().enumerate() {
             let others = [ring[m], ring[(m + 1) % ring.len()]];
-            // Each triangle once, from the lowest of its cells.
-            if others.iter().all(|other| *other as usize > cell || !is_certain(*other as usize)) {
+            // Each triangle once, from the lowest of its cells; and where nothing is explained nothing is spoilt.
+            let is_first = others.iter().all(|other| *other as usize > cell || !is_certain(*other as usize));
+            if is_first && (is_explained(cell) || others.iter().any(|other| is_explained(*other as usize))) {
                 circles.push(Circle { centre: frame.positions[cell] + corner, radius: corner.norm() });
             }
         }
@@ -127,8 +132,8 @@ mod tests {
             positions.swap_remove(generator.random_range(0..positions.len()));
         }
         let domain = Domain::Periodic(PeriodicBox::new([16.0, 16.0]).unwrap());
-        let unknown = vec![None; positions.len()];
-        Observation::new(0, positions, unknown, domain, FieldOfView::default()).unwrap()
+        let still = vec![Some(Vector::zeros()); positions.len()];
+        Observation::new(0, positions, still, domain, FieldOfView::default()).unwrap()
     }
 
     #[test]
