@@ -112,7 +112,6 @@ impl PositionRows {
     }
 
     /// Places with their stiffness m, measured as they are, whose displacements from where they were seen are the nudges.
-    #[allow(dead_code)]
     pub fn of_sites(stiffness: impl Iterator<Item = f64>, nudges: &[f64], p: usize) -> Self {
         let mut rows = Rowed::new(p);
         for (place, (m, e)) in stiffness.zip(nudges.chunks_exact(2)).enumerate() {
