@@ -68,8 +68,8 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
     let boundary = match prepared.observations.first().map(|o| o.tessellation.domain()) {
         Some(Domain::Periodic(_)) => "The box is periodic.",
         _ => {
-            "The field of view is open: only cells count whose polygon and whose neighbours' polygons are closed and of \
-             plausible size and reach."
+            "The field of view is open: only cells count whose polygon and whose neighbours' polygons no cell outside it could \
+             change, and that are not at a hole."
         }
     };
     let mut paragraphs = vec![format!("{source}; {mean}. {boundary}")];
