@@ -67,3 +67,16 @@ fn cargo(root: &Path, arguments: &str, environment: &[(&str, &str)]) -> Outcome 
 fn report(violations: &[String]) -> Outcome {
     if violations.is_empty() { Ok(()) } else { Err(violations.join("\n").into()) }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_workspace_keeps_its_layers_and_is_tidy() {
+        let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("..");
+        for check in [Check::Layers, Check::Tidy] {
+            check.run(&root).unwrap();
+        }
+    }
+}

@@ -3,6 +3,7 @@
 use super::record::{Fit, Record};
 use super::trial::{self, Program};
 use claims::measured::{CLASSES, Class};
+use rayon::prelude::*;
 
 /// Of tissues this small.
 const CELLS: usize = 100;
@@ -38,13 +39,13 @@ fn fit(class: &Class) -> Fit {
 
 #[test]
 fn small_sets_of_every_class() {
-    for class in CLASSES {
-        let fit = fit(&class);
-        let Held::Right { deviation, share } = held(&class) else { continue };
+    CLASSES.par_iter().for_each(|class| {
+        let fit = fit(class);
+        let Held::Right { deviation, share } = held(class) else { return };
         let (chiral, perimeter) = (fit.k_p_alpha, fit.p_0);
         let told = format!("{}: {chiral:?} {perimeter:?}", class.name);
         assert!(chiral.deviation() < deviation && perimeter.deviation() < deviation, "{told}");
         assert!(chiral.error().abs() < share, "{told}");
         assert!(fit.trustworthy, "{told}: {:?}", fit.doubts);
-    }
+    });
 }
