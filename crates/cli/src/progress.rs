@@ -58,6 +58,11 @@ impl Progress {
         }
     }
 
+    /// Reports how far a fit has come; tells whether to go on.
+    pub fn tell(&mut self, state: voronudge_infer::Progress<'_>) -> ControlFlow<()> {
+        self.step(state.stage, state.step.0, state.step.1)
+    }
+
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.finish_and_clear();

@@ -12,8 +12,7 @@ use crate::robust::reweighed;
 use crate::search::Watch;
 use crate::{
     CoefficientSpace, CrossValidation, Direction, Doubt, Error, Estimate, Examination, FrameResult,
-    Inference, KnownNoise, Nmse, NoiseLevels, NoiseSource, Observation, ParameterEstimates, Progress,
-    Request, Status,
+    Inference, KnownNoise, Nmse, NoiseLevels, Observation, ParameterEstimates, Progress, Request, Status,
 };
 use nalgebra::DVector;
 use std::ops::ControlFlow;
@@ -119,10 +118,7 @@ pub fn infer(
         },
         coefficients,
         noise: levels,
-        noise_source: match (request.noise.position, request.noise.velocity) {
-            (Some(_), Some(_)) => NoiseSource::Given,
-            _ => NoiseSource::Estimated,
-        },
+        noise_source: request.noise.source(),
         degrees_of_freedom: equations.degrees_of_freedom()?,
         nudge_rms: (parts.nudges / cells as f64).sqrt(),
         contribution_ratio: objective.spring() * parts.nudges / parts.residual,

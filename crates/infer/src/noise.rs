@@ -51,6 +51,14 @@ pub struct KnownNoise {
 }
 
 impl KnownNoise {
+    /// Whether nothing is left to estimate.
+    pub(crate) fn source(&self) -> NoiseSource {
+        match (self.position, self.velocity) {
+            (Some(_), Some(_)) => NoiseSource::Given,
+            _ => NoiseSource::Estimated,
+        }
+    }
+
     /// Refuses levels that are none.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (name, value) in [("position", self.position), ("velocity", self.velocity)] {

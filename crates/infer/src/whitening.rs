@@ -39,13 +39,10 @@ pub(crate) fn whitened_residuals(
         let placed = objective.place(index, nudges)?;
         let evaluated = placed.evaluate(coefficients);
         let jacobian = placed.jacobian(coefficients, &evaluated);
-        let back = match frames[index].share() {
-            0.0 => nudges.to_vec(),
-            _ => misplacements(&frames[index], &placed, nudges),
-        };
+        let off = misplacements(&frames[index], &placed, nudges);
         let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
             .into_iter()
-            .map(|own| (own.0, linearised_back(&jacobian, own, &back)))
+            .map(|own| (own.0, linearised_back(&jacobian, own, &off)))
             .unzip();
         let springs: Vec<f64> = (0..frames[index].positions.len())
             .map(|cell| objective.spring() * frames[index].stiffness(cell).max(SOFTEST))
@@ -55,11 +52,11 @@ pub(crate) fn whitened_residuals(
     Ok(fields)
 }
 
-/// By how much the places where cells would be seen, centroids for one, are off from where they were seen, x and y of one cell after the
-/// other. The places of the cells themselves are off by about as much.
+/// By how much the places where cells would be seen are off from where they were seen, x and y of one cell after the other: the nudges, for
+/// cells seen at their sites or not at all. Sites of cells that were seen at their centroids are off by about as much.
 fn misplacements(frame: &Observation, placed: &Nudged<'_>, nudges: &[f64]) -> Vec<f64> {
     let rows = PositionRows::new(frame, &placed.tessellation, &placed.positions, nudges, 0, None);
-    let mut off = vec![0.0; nudges.len()];
+    let mut off = nudges.to_vec();
     for (cell, rest, _) in rows.rows().rows {
         let root = frame.stiffness(*cell).sqrt();
         if root > 0.0 {

@@ -73,14 +73,9 @@ impl CholeskyPattern {
         Ok(Self { symbolic: Arc::new(symbolic) })
     }
 
-    /// Number of entries of the factor.
-    pub fn entries(&self) -> usize {
-        self.symbolic.len_val()
-    }
-
     /// How the work on a factor is shared out: the same for any number of threads, so that results are.
     fn tasks(&self) -> Par {
-        if self.entries() < LARGE { Par::Seq } else { Par::rayon(TASKS) }
+        if self.symbolic.len_val() < LARGE { Par::Seq } else { Par::rayon(TASKS) }
     }
 
     /// Factorises a matrix of this pattern.

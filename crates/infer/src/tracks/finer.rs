@@ -4,8 +4,7 @@
 //! has the places and velocities of both, and are moved to where the misfit of each motion is shared out evenly over its steps. What the finer
 //! rule then says of the displacements, less what the coarser one says, is put into the next fit (deferred correction).
 
-use super::objective::MovieObjective;
-use super::rule::Rule;
+use super::objective::{MovieObjective, Placed};
 use super::states::{Motion, Place, States};
 use crate::Error;
 use std::collections::HashMap;
@@ -17,41 +16,51 @@ const EVENINGS: usize = 6;
 /// Unevenness that counts as none, in units of ℓ₀.
 const EVEN: f64 = 1e-6;
 
-/// Displacements that a rule adds to those of a coarser one, for each motion.
-pub(super) struct Added {
-    pub rule: Rule,
-    pub displacements: Vec<Vector<f64>>,
+/// A point as a finer rule sees it.
+pub(super) struct Finer {
+    /// The point on the instants of that rule.
+    pub at: Vec<f64>,
+    /// What that rule adds to the displacement of each motion by the rule at hand.
+    pub added: Vec<Vector<f64>>,
 }
 
-impl Added {
-    /// What a finer rule adds to the displacement of each motion by the rule at hand, at a point.
-    pub(super) fn new(objective: &MovieObjective<'_>, at: &[f64], rule: Rule) -> Result<Self, Error> {
-        let (states, finer) = (objective.states, States::new(objective.movie, rule)?);
-        let mut between = transfer(objective, &finer, at)?;
-        let fine = MovieObjective { states: &finer, ..*objective };
+impl Finer {
+    /// A point by the rule whose states are given.
+    pub fn new(objective: &MovieObjective<'_>, at: &[f64], finer: &States) -> Result<Self, Error> {
+        let placed = objective.place(at)?;
+        let mut between = transfer(objective, &placed, finer, at);
+        let fine = MovieObjective { states: finer, ..*objective };
         let mut rests = fine.residuals(&fine.place(&between)?, &between);
         for _ in 0..EVENINGS {
-            if rule.steps == 1 || share_out(&fine, &rests, &mut between) < EVEN {
+            if finer.rule.steps == 1 || share_out(&fine, &rests, &mut between) < EVEN {
                 break;
             }
             rests = fine.residuals(&fine.place(&between)?, &between);
         }
-        let misfit = |objective: &MovieObjective<'_>, rests: &[Vector<f64>]| -> HashMap<_, _> {
-            let each = objective.states.motions.iter().zip(rests.chunks_exact(objective.states.rule.steps));
-            each.map(|(motion, rests)| {
-                let all: Vector<f64> = rests.iter().sum();
-                ((motion.interval, motion.track), all / objective.unit(motion.interval))
-            })
-            .collect()
+        let with_finer: HashMap<_, _> = misfits(&fine, &rests)
+            .map(|(motion, misfit)| ((motion.interval, motion.track), misfit))
+            .collect();
+        let coarse = objective.residuals(&placed, at);
+        let more = |(motion, misfit): (&Motion, Vector<f64>)| {
+            let finer = with_finer.get(&(motion.interval, motion.track));
+            motion.added + finer.map_or_else(Vector::zeros, |finer| misfit - finer)
         };
-        let with_finer = misfit(&fine, &rests);
-        let coarse = misfit(objective, &objective.residuals(&objective.place(at)?, at));
-        let more = |motion: &Motion| {
-            let key = (motion.interval, motion.track);
-            motion.added + with_finer.get(&key).map_or_else(Vector::zeros, |finer| coarse[&key] - finer)
-        };
-        Ok(Self { rule, displacements: states.motions.iter().map(more).collect() })
+        let added = misfits(objective, &coarse).map(more).collect();
+        Ok(Self { at: between, added })
     }
+}
+
+/// What is left of the displacement of each motion over all its steps.
+fn misfits<'a>(
+    objective: &MovieObjective<'a>,
+    rests: &'a [Vector<f64>],
+) -> impl Iterator<Item = (&'a Motion, Vector<f64>)> {
+    let objective = *objective;
+    let MovieObjective { states, .. } = objective;
+    states.motions.iter().zip(rests.chunks_exact(states.rule.steps)).map(move |(motion, rests)| {
+        let all: Vector<f64> = rests.iter().sum();
+        (motion, all / objective.unit(motion.interval))
+    })
 }
 
 /// Moves the places within intervals such that the misfit of each motion is the same in all its steps, if forces stay as they are; tells
@@ -79,9 +88,8 @@ fn share_out(fine: &MovieObjective<'_>, rests: &[Vector<f64>], at: &mut [f64]) -
 }
 
 /// A point on the instants of a finer rule: those between two frames are on the cubic that has the places and velocities of both.
-pub(super) fn transfer(objective: &MovieObjective<'_>, to: &States, at: &[f64]) -> Result<Vec<f64>, Error> {
+fn transfer(objective: &MovieObjective<'_>, placed: &Placed<'_>, to: &States, at: &[f64]) -> Vec<f64> {
     let (from, movie) = (objective.states, objective.movie);
-    let placed = objective.place(at)?;
     let (free, displacements) = objective.split(at);
     let mut next = free.to_vec();
     next.resize(free.len() + 2 * to.blocks(), 0.0);
@@ -114,7 +122,7 @@ pub(super) fn transfer(objective: &MovieObjective<'_>, to: &States, at: &[f64]) 
     }
     let [old, new] = [from, to].map(|states| 2 * states.drifts.0);
     next[free.len() + new..].copy_from_slice(&displacements[old..]);
-    Ok(next)
+    next
 }
 
 /// The cubic with these places and slopes at 0 and 1.

@@ -1,6 +1,6 @@
 //! Coefficients, trajectories and noise levels together, on ever finer instants.
 
-use super::finer::{Added, transfer};
+use super::finer::Finer;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
@@ -12,6 +12,7 @@ use crate::search::{Optimum, Watch, optimise_knowing};
 use crate::{CoefficientSpace, Error, KnownNoise, Method, NoiseLevels, Request, Status};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
+use voronudge_geometry::Vector;
 
 /// A finer rule must change the coefficients by less than this share of their standard errors.
 const UNCHANGED: f64 = 0.2;
@@ -117,19 +118,18 @@ pub(super) fn fit(
     at = course.settle(&states, at, ROUGH)?;
     let (mut substeps, mut error) = (1, f64::INFINITY);
     for rule in &Rule::LADDER[1..] {
-        let added = Added::new(&course.objective(&states), &at, *rule)?;
-        error = course.change(&states, &at, &added)?;
+        let next = States::new(movie, *rule)?;
+        let finer = Finer::new(&course.objective(&states), &at, &next)?;
+        error = course.change(&states, &at, &finer.added)?;
         if error < UNCHANGED {
             break;
         }
         if rule.steps == 1 {
-            let next = States::new(movie, *rule)?;
-            at = transfer(&course.objective(&states), &next, &at)?;
             states = next;
-            at = course.settle(&states, at, PASSING)?;
+            at = course.settle(&states, finer.at, PASSING)?;
         } else {
             substeps = rule.steps;
-            at = course.correct(&mut states, at, added)?;
+            at = course.correct(&mut states, at, &next, finer)?;
         }
     }
     at = course.finish(&states, at)?;
@@ -237,21 +237,24 @@ impl<'a> Course<'a, '_> {
         &mut self,
         states: &mut States,
         mut at: Vec<f64>,
-        mut added: Added,
+        next: &States,
+        mut finer: Finer,
     ) -> Result<Vec<f64>, Error> {
-        for _ in 0..CORRECTIONS {
-            states.motions.iter_mut().zip(&added.displacements).for_each(|(motion, add)| motion.added = *add);
+        for correction in 0..CORRECTIONS {
+            if correction > 0 {
+                finer = Finer::new(&self.objective(states), &at, next)?;
+            }
+            states.motions.iter_mut().zip(&finer.added).for_each(|(motion, added)| motion.added = *added);
             at = self.settle(states, at, PASSING)?;
-            added = Added::new(&self.objective(states), &at, added.rule)?;
         }
         Ok(at)
     }
 
     /// By how much what a finer rule adds would change the coefficients: the largest change in standard errors.
-    fn change(&self, states: &States, at: &[f64], added: &Added) -> Result<f64, Error> {
+    fn change(&self, states: &States, at: &[f64], added: &[Vector<f64>]) -> Result<f64, Error> {
         let objective = self.objective(states);
         let steps = states.rule.steps;
-        let of_rows = states.motions.iter().zip(&added.displacements).flat_map(|(motion, all)| {
+        let of_rows = states.motions.iter().zip(added).flat_map(|(motion, all)| {
             let each = (motion.added - all) * objective.unit(motion.interval) / steps as f64;
             std::iter::repeat_n(each, steps)
         });

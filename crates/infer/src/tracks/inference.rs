@@ -12,7 +12,7 @@ use crate::doubts::voids;
 use crate::inference::{changed_edges, doubts, estimates};
 use crate::noisy_fit::at_limit;
 use crate::search::Watch;
-use crate::{CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, NoiseSource, Progress, Request};
+use crate::{CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, Progress, Request};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
@@ -96,10 +96,7 @@ pub fn infer_tracks(
         },
         coefficients,
         noise: levels,
-        noise_source: match (request.noise.position, request.noise.velocity) {
-            (Some(_), Some(_)) => NoiseSource::Given,
-            _ => NoiseSource::Estimated,
-        },
+        noise_source: request.noise.source(),
         degrees_of_freedom: equations.degrees_of_freedom()?,
         nudge_rms: (parts.nudges / found.states.anchors.len().max(1) as f64).sqrt(),
         contribution_ratio: levels.spring() * parts.nudges / parts.residual,
@@ -114,7 +111,7 @@ pub fn infer_tracks(
         doubts: doubts(value, expected, &levels, &request.noise, found.status)
             .into_iter()
             .chain((found.error > ACCEPTED_ERROR).then_some(Doubt::Integration(found.error)))
-            .chain(voids(&movie.observations()?).map(Doubt::Voids))
+            .chain(voids(&movie.seen_by(coarse.clone())).map(Doubt::Voids))
             .collect(),
         used,
         total,

@@ -265,22 +265,25 @@ mod tests {
             .unwrap()
     }
 
+    fn objective<'a>(
+        movie: &'a Movie,
+        states: &'a States,
+        structure: &'a Structure,
+        space: &'a CoefficientSpace,
+    ) -> MovieObjective<'a> {
+        let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
+        MovieObjective { movie, states, structure, space, levels }
+    }
+
     /// Every rule's rows against differences of the residuals, along a direction in all unknowns.
     #[test]
     fn rows_are_the_derivatives_of_the_residuals() {
         let movie = open_movie(Vector::zeros());
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
         let structure = Structure::base(1.0);
-        let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
         for rule in Rule::LADDER.into_iter().take(3) {
             let states = States::new(&movie, rule).unwrap();
-            let objective = MovieObjective {
-                movie: &movie,
-                states: &states,
-                structure: &structure,
-                space: &space,
-                levels,
-            };
+            let objective = objective(&movie, &states, &structure, &space);
             assert!(states.motions.len() > 20 && states.drifts.1 == 2);
             let p = space.dimension();
             let at = |step: f64| -> Vec<f64> {
@@ -322,17 +325,10 @@ mod tests {
     fn a_jump_of_the_stage_is_no_motion() {
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
         let structure = Structure::base(1.0);
-        let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
         let [still, jumped] = [Vector::zeros(), Vector::new(0.3, -0.2)].map(|jump| {
             let movie = open_movie(jump);
             let states = States::new(&movie, Rule::LADDER[1]).unwrap();
-            let objective = MovieObjective {
-                movie: &movie,
-                states: &states,
-                structure: &structure,
-                space: &space,
-                levels,
-            };
+            let objective = objective(&movie, &states, &structure, &space);
             objective.value(&objective.start(&[0.1, 2.0, 0.5, 1.0]))
         });
         assert!((still - jumped).abs() < 1e-9 * still, "{still} {jumped}");

@@ -167,7 +167,11 @@ impl Movie {
     /// # Errors
     /// [`Error::Geometry`].
     pub fn observations(&self) -> Result<Vec<Observation>, Error> {
-        let states = States::new(self, Rule::TRAPEZOID)?;
+        Ok(self.seen_by(States::new(self, Rule::TRAPEZOID)?))
+    }
+
+    /// The same from states without instants between frames.
+    pub(super) fn seen_by(&self, states: States) -> Vec<Observation> {
         let mut velocities: Vec<Vec<Option<Vector<f64>>>> =
             states.instants.iter().map(|instant| vec![None; instant.tracks.len()]).collect();
         for motion in &states.motions {
@@ -179,7 +183,7 @@ impl Movie {
             }
         }
         let frames = states.instants.into_iter().zip(velocities);
-        Ok(frames.map(|(instant, velocities)| instant.cells.with_velocities(velocities)).collect())
+        frames.map(|(instant, velocities)| instant.cells.with_velocities(velocities)).collect()
     }
 
     /// The tracks of the cells of [`observations`](Self::observations) in a frame.

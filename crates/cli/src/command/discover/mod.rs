@@ -77,9 +77,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let others = arguments.predictions.load(&asked, (&mut data, &prepared), &mut run)?;
     let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
     let mut progress = Progress::new(arguments.common.verbosity());
-    let searched = discover(&prepared.observations, &search, &mut |state| {
-        progress.step(state.stage, state.step.0, state.step.1)
-    });
+    let searched = discover(&prepared.observations, &search, &mut |state| progress.tell(state));
     progress.finish();
     let discovery = searched.map_err(|error| prepared.place(error, snapshots))?;
     let last = &discovery.after.inference;

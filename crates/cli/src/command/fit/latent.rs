@@ -43,7 +43,7 @@ impl LatentArguments {
         }
         let completion =
             complete(&prepared.observations, &prepared.request, self.missed_rate, &mut |state| {
-                progress.step(state.stage, state.step.0, state.step.1)
+                progress.tell(state)
             })?;
         prepared.observations = completion.frames.iter().map(|frame| frame.observation.clone()).collect();
         prepared.completion = Some(completion);

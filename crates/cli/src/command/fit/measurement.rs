@@ -3,12 +3,10 @@
 use super::flow::OrderedField;
 use super::prepare::Prepared;
 use super::scaling::factor;
+use crate::progress::Progress;
 use crate::run::Run;
 use crate::snapshot::Snapshot;
-use std::ops::ControlFlow;
-use voronudge_infer::{
-    Determined, Error, KnownMeasurement, Measurement, Progress, Quantity, Scale, Window, measure,
-};
+use voronudge_infer::{Determined, Error, KnownMeasurement, Measurement, Quantity, Scale, Window, measure};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{self as told, MeasurementSource, PositionKind};
 use voronudge_report::numbers::significant;
@@ -40,8 +38,10 @@ pub(super) fn known(data: &DataSet, field: Option<&OrderedField>, scale: &Scale)
 
 impl Prepared {
     /// Determines what is not declared of the measurement.
-    pub fn measure(&mut self, observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>) -> Result<(), Error> {
-        let (observations, measurement) = measure(&self.observations, &self.request, &self.known, observe)?;
+    pub fn measure(&mut self, progress: &mut Progress) -> Result<(), Error> {
+        let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
+        let (observations, measurement) =
+            measure(&self.observations, &self.request, &self.known, &mut observe)?;
         if let (Some(kind), Some(width), Some(field)) =
             (measurement.kind, measurement.width, self.velocities.flow_mut())
         {

@@ -104,16 +104,16 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let understood = match (&movie, prepared.velocities.flow()) {
         (Some(_), _) => Ok(()),
         (None, Some(_)) => prepared
-            .measure(&mut |state| progress.step(state.stage, state.step.0, state.step.1))
+            .measure(&mut progress)
             .and_then(|()| arguments.latent.complete(&mut prepared, &mut progress)),
-        (None, None) => arguments.latent.complete(&mut prepared, &mut progress).and_then(|()| {
-            prepared.measure(&mut |state| progress.step(state.stage, state.step.0, state.step.1))
-        }),
+        (None, None) => arguments
+            .latent
+            .complete(&mut prepared, &mut progress)
+            .and_then(|()| prepared.measure(&mut progress)),
     };
     prepared.caution(&mut run);
     let fitted = understood.and_then(|()| {
-        let mut observe =
-            |state: voronudge_infer::Progress<'_>| progress.step(state.stage, state.step.0, state.step.1);
+        let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
         match &movie {
             Some(tracks) => infer_tracks(&tracks.movie, &prepared.request, &mut observe)
                 .map(|(result, tracked)| (result, Some((tracks, tracked)))),

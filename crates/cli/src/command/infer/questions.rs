@@ -120,9 +120,7 @@ impl UncertaintyArguments {
         }
         let bootstrap = match self.bootstrap {
             0 => None,
-            count => Some(bootstrap(frames, request, result, count, &mut |state| {
-                progress.step(state.stage, state.step.0, state.step.1)
-            })?),
+            count => Some(bootstrap(frames, request, result, count, &mut |state| progress.tell(state))?),
         };
         Ok(Answers { profiles, landscapes, bootstrap })
     }
