@@ -72,6 +72,9 @@ pub use request::{CrossValidation, Examination, Loss, Method, Request};
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;
 pub use sites::{Outlined, Sites, sites};
-pub use tracks::{Drift, Integration, Movie, Track, Tracked, infer_tracks};
+pub use tracks::{
+    Drift, Integration, Latent, Movie, Sighting, Track, Tracked, complete_tracks, infer_tracks,
+    measure_tracks,
+};
 pub use uncertainty::{Bootstrap, Landscape, Profile, bootstrap, landscape, profile};
 pub use verdict::Verdict;

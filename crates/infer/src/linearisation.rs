@@ -257,8 +257,9 @@ fn product(left: &[f64], right: &[f64], n: usize, a: usize, b: usize) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Observation;
     use crate::position_rows::PositionRows;
-    use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
+    use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
     use voronudge_model::{Model, Parameters, jacobian};
 
     /// The eliminated step solves the full dense system. One position is measured better than the others, one not at all.
@@ -290,8 +291,12 @@ mod tests {
         let nudges: Vec<f64> = (0..cells).flat_map(|i| [0.01 * i as f64, -0.02]).collect();
         let (unseen, floor) = (7, 0.04);
         let stiffness =
-            |cell: usize| [1.0, 4.0, 0.0][usize::from(cell == 3) + 2 * usize::from(cell == unseen)];
-        let positions = PositionRows::of_sites((0..cells).map(stiffness), &nudges, free);
+            |cell: usize| [1.0_f64, 4.0, 0.0][usize::from(cell == 3) + 2 * usize::from(cell == unseen)];
+        let errors: Vec<f64> = (0..cells).map(|cell| stiffness(cell).powf(-0.5)).collect();
+        let frame = Observation::new(0, positions.clone(), vec![None; cells], domain, FieldOfView::default())
+            .unwrap();
+        let frame = frame.with_position_errors(&errors);
+        let positions = PositionRows::new(&frame, &tessellation, &positions, &nudges, free, None);
         let local = Local {
             velocities: Rows { jacobian: &jacobian, rows: &rows },
             positions: positions.rows(),

@@ -82,6 +82,13 @@ impl Measurement {
     }
 }
 
+/// The shares of the way to the centroids that detections and segmentations give.
+pub(crate) const SITES: f64 = 0.0;
+pub(crate) const CENTROIDS: f64 = 1.0;
+
+/// How far beyond its interval the share may be from these: cells that were not detected shift it by as much.
+const TOLERANCE: f64 = 0.1;
+
 /// Half-width of a 95 % interval in standard errors.
 const NORMAL_95: f64 = 1.959_963_984_540_054;
 
@@ -108,7 +115,8 @@ struct Settled {
 
 /// Determines what is not known of the measurement of some frames by quick fits, without flips of contacts.
 ///
-/// Positions are taken for sites, or for centroids, where that is within the interval: it is what segmentations give.
+/// Positions are taken for sites, or for centroids, where that is within the interval or nearly so: it is what detections and segmentations
+/// give.
 ///
 /// # Errors
 /// As [`infer`](crate::infer).
@@ -142,30 +150,36 @@ pub fn measure(
             Err(Error::Degenerate) => return Ok((frames, measurement)),
             other => other?,
         };
-        if !within(&best, 0.0) {
-            let other = settle(at(&frames, 1.0)?, request, &unknowns, &mut watch)?;
+        if usual_share(best.found[0][0], best.found[0][1]) != Some(SITES) {
+            let other = settle(at(&frames, CENTROIDS)?, request, &unknowns, &mut watch)?;
             if other.criterion < best.criterion {
                 best = other;
             }
         }
         let [value, error] = best.found[0];
-        let interval = [value - NORMAL_95 * error, value + NORMAL_95 * error].map(|end| end.clamp(0.0, 1.0));
-        let usual = [0.0, 1.0].into_iter().find(|usual| within(&best, *usual));
-        measurement.share = Determined { value: usual.unwrap_or(value), interval: Some(interval) };
+        measurement.share = determined_share(value, error);
         if measurement.share.value != 0.0 {
             frames = at(&frames, measurement.share.value)?;
         }
-        if usual.is_none() {
+        if usual_share(value, error).is_none() {
             frames = frames.into_iter().map(|frame| frame.with_unknown(Unknown::Share)).collect();
         }
     }
     Ok((frames, measurement))
 }
 
-/// Whether a value is in the interval of the first unknown.
-fn within(settled: &Settled, value: f64) -> bool {
-    let [found, error] = settled.found[0];
-    (found - value).abs() <= NORMAL_95 * error
+/// Sites or centroids, where the share is about that of either.
+pub(crate) fn usual_share(value: f64, error: f64) -> Option<f64> {
+    [SITES, CENTROIDS].into_iter().find(|usual| (value - usual).abs() <= NORMAL_95 * error + TOLERANCE)
+}
+
+/// A share that was estimated: the usual one where it is about that.
+pub(crate) fn determined_share(value: f64, error: f64) -> Determined {
+    let interval = [value - NORMAL_95 * error, value + NORMAL_95 * error];
+    Determined {
+        value: usual_share(value, error).unwrap_or(value.clamp(SITES, CENTROIDS)),
+        interval: Some(interval.map(|end| end.clamp(SITES, CENTROIDS))),
+    }
 }
 
 /// Determines the windows of a flow field.

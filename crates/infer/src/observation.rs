@@ -58,6 +58,9 @@ pub enum Velocities {
     OnGrid(Flow),
 }
 
+/// How far centroids are from sites, in units of σ_r: what the position of a cell is uncertain by if its polygon is not known.
+const OFF_CENTRE: f64 = 4.0;
+
 impl From<Vec<Option<Vector<f64>>>> for Velocities {
     fn from(velocities: Vec<Option<Vector<f64>>>) -> Self {
         Self::OfCells(velocities)
@@ -227,7 +230,11 @@ impl Observation {
 
     /// `(σ_r / σ_i)²` of a cell; zero if it was not seen.
     pub(crate) fn stiffness(&self, cell: usize) -> f64 {
-        self.stiffness.get(cell).copied().unwrap_or(1.0)
+        let own = self.stiffness.get(cell).copied().unwrap_or(1.0);
+        match self.share != 0.0 && !self.has_polygon(cell) {
+            true => own / (1.0 + (self.share * OFF_CENTRE).powi(2)),
+            false => own,
+        }
     }
 
     /// `σ_i / σ_r` of a cell; zero if it was not seen, so that it stays where it is put.

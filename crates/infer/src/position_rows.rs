@@ -14,21 +14,6 @@ use nalgebra::DMatrix;
 use voronudge_geometry::{CellPolygon, Tessellation, Vector, centroid_slopes};
 use voronudge_model::BlockMatrix;
 
-/// Measured positions of places that are somewhere near them.
-pub(crate) struct Anchors<'a> {
-    /// Stiffness m of each place.
-    pub stiffness: &'a dyn Fn(usize) -> f64,
-    /// What a place is measured to be displaced from where it is now: y − r.
-    pub aim: &'a dyn Fn(usize) -> Vector<f64>,
-    /// c
-    pub share: f64,
-    /// Whether the polygon of a place is that of a cell.
-    pub has_polygon: &'a dyn Fn(usize) -> bool,
-    /// Whether a place cannot move.
-    pub is_held: &'a dyn Fn(usize) -> bool,
-    pub places: usize,
-}
-
 /// The rows of the measured positions of one frame.
 pub(crate) struct PositionRows {
     jacobian: BlockMatrix,
@@ -46,41 +31,25 @@ impl PositionRows {
         p: usize,
         of_share: Option<usize>,
     ) -> Self {
-        let anchors = Anchors {
-            stiffness: &|cell| frame.stiffness(cell),
-            aim: &|cell| frame.aim(cell) - Vector::new(nudges[2 * cell], nudges[2 * cell + 1]),
-            share: frame.share(),
-            has_polygon: &|cell| frame.has_polygon(cell) && tessellation.is_closed(cell),
-            is_held: &|cell| frame.is_held(cell),
-            places: positions.len(),
-        };
-        Self::of(&anchors, tessellation, positions, p, of_share)
-    }
-
-    /// The same for any places.
-    pub fn of(
-        anchors: &Anchors<'_>,
-        tessellation: &Tessellation,
-        positions: &[Vector<f64>],
-        p: usize,
-        of_share: Option<usize>,
-    ) -> Self {
+        let share = frame.share();
         let mut rows = Rowed::new(p);
         let mut polygon = CellPolygon::default();
         let mut pinned = Vec::new();
-        for place in 0..anchors.places {
-            let root = (anchors.stiffness)(place).sqrt();
+        for place in 0..positions.len() {
+            let root = frame.stiffness(place).sqrt();
             if root > 0.0 {
-                let held = (anchors.is_held)(place);
-                let polygonal = (anchors.share != 0.0 || of_share.is_some()) && (anchors.has_polygon)(place);
+                let held = frame.is_held(place);
+                let polygonal = (share != 0.0 || of_share.is_some())
+                    && frame.has_polygon(place)
+                    && tessellation.is_closed(place);
                 let mut offset = Vector::zeros();
                 if polygonal {
                     polygon.fill(tessellation, positions, place);
                     offset = polygon.centroid();
-                    if anchors.share != 0.0 {
+                    if share != 0.0 {
                         centroid_slopes(tessellation, positions, place, |neighbour, block| {
-                            let block = block.map(|slope| anchors.share * root * slope);
-                            if !(anchors.is_held)(neighbour) {
+                            let block = block.map(|slope| share * root * slope);
+                            if !frame.is_held(neighbour) {
                                 rows.add(neighbour, block);
                             }
                             if !held {
@@ -96,7 +65,8 @@ impl PositionRows {
                 }
                 // A place that cannot move is a datum if one that it sees can.
                 if !held || rows.is_begun() {
-                    let rest = ((anchors.aim)(place) - offset * anchors.share) * root;
+                    let nudge = Vector::new(nudges[2 * place], nudges[2 * place + 1]);
+                    let rest = (frame.aim(place) - nudge - offset * share) * root;
                     rows.end(place, rest, of_share.map(|k| (k, offset * root)));
                     continue;
                 }
@@ -107,21 +77,6 @@ impl PositionRows {
             rows.add(place, [1.0, 0.0, 0.0, 1.0]);
             let row = rows.jacobian.row_start.len() - 1;
             rows.end(row, Vector::zeros(), None);
-        }
-        Self { jacobian: rows.jacobian, rows: rows.rows }
-    }
-
-    /// Places with their stiffness m, measured as they are, whose displacements from where they were seen are the nudges.
-    pub fn of_sites(stiffness: impl Iterator<Item = f64>, nudges: &[f64], p: usize) -> Self {
-        let mut rows = Rowed::new(p);
-        for (place, (m, e)) in stiffness.zip(nudges.chunks_exact(2)).enumerate() {
-            if m > 0.0 {
-                let root = m.sqrt();
-                rows.add(place, [root, 0.0, 0.0, root]);
-                rows.end(place, Vector::new(-root * e[0], -root * e[1]), None);
-            } else {
-                rows.skip();
-            }
         }
         Self { jacobian: rows.jacobian, rows: rows.rows }
     }

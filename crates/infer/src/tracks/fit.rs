@@ -76,7 +76,7 @@ pub(super) struct Fit {
 type Start = (Vec<f64>, Option<NormalEquations>);
 
 /// A fit on its way.
-struct Course<'a, 'w> {
+pub(super) struct Course<'a, 'w> {
     movie: &'a Movie,
     request: &'a Request,
     space: &'a CoefficientSpace,
@@ -95,27 +95,7 @@ pub(super) fn fit(
     space: &CoefficientSpace,
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
-    request.noise.check()?;
-    let KnownNoise { position, velocity } = request.noise;
-    let first = NoiseLevels {
-        position: position.unwrap_or(FIRST_POSITION_NOISE),
-        velocity: FIRST_VELOCITY_NOISE.max(velocity.unwrap_or(SMALLEST_VELOCITY_NOISE)),
-    };
-    let mut course = Course {
-        movie,
-        request,
-        space,
-        watch,
-        levels: first,
-        value: f64::INFINITY,
-        status: Status::StepLimit,
-        steps: 0,
-        trace: Vec::new(),
-    };
-    let mut states = States::new(movie, Rule::TRAPEZOID)?;
-    let naive = first_coefficients(&course.objective(&states))?;
-    let mut at = course.objective(&states).start(&naive);
-    at = course.settle(&states, at, ROUGH)?;
+    let Begun { mut course, mut states, mut at, naive } = Begun::new(movie, request, space, watch)?;
     let (mut substeps, mut error) = (1, f64::INFINITY);
     for rule in &Rule::LADDER[1..] {
         let next = States::new(movie, *rule)?;
@@ -126,7 +106,7 @@ pub(super) fn fit(
         }
         if rule.steps == 1 {
             states = next;
-            at = course.settle(&states, finer.at, PASSING)?;
+            at = course.pass(&states, finer.at)?;
         } else {
             substeps = rule.steps;
             at = course.correct(&mut states, at, &next, finer)?;
@@ -137,8 +117,49 @@ pub(super) fn fit(
     Ok(Fit { states, parameters: at, levels, naive, value, status, steps, trace, substeps, error })
 }
 
+/// A fit with the first rule.
+pub(super) struct Begun<'a, 'w> {
+    pub course: Course<'a, 'w>,
+    pub states: States,
+    pub at: Vec<f64>,
+    /// The first coefficients.
+    naive: Vec<f64>,
+}
+
+impl<'a, 'w> Begun<'a, 'w> {
+    pub fn new(
+        movie: &'a Movie,
+        request: &'a Request,
+        space: &'a CoefficientSpace,
+        watch: &'a mut Watch<'w>,
+    ) -> Result<Self, Error> {
+        request.noise.check()?;
+        let KnownNoise { position, velocity } = request.noise;
+        let first = NoiseLevels {
+            position: position.unwrap_or(FIRST_POSITION_NOISE),
+            velocity: FIRST_VELOCITY_NOISE.max(velocity.unwrap_or(SMALLEST_VELOCITY_NOISE)),
+        };
+        let mut course = Course {
+            movie,
+            request,
+            space,
+            watch,
+            levels: first,
+            value: f64::INFINITY,
+            status: Status::StepLimit,
+            steps: 0,
+            trace: Vec::new(),
+        };
+        let states = States::new(movie, Rule::TRAPEZOID)?;
+        let naive = first_coefficients(&course.objective(&states))?;
+        let mut at = course.objective(&states).start(&naive);
+        at = course.settle(&states, at, ROUGH)?;
+        Ok(Self { course, states, at, naive })
+    }
+}
+
 impl<'a> Course<'a, '_> {
-    fn objective<'s>(&self, states: &'s States) -> MovieObjective<'s>
+    pub fn objective<'s>(&self, states: &'s States) -> MovieObjective<'s>
     where
         'a: 's,
     {
@@ -149,6 +170,11 @@ impl<'a> Course<'a, '_> {
             space: self.space,
             levels: self.levels,
         }
+    }
+
+    /// A fit on the way to a better one.
+    pub fn pass(&mut self, states: &States, at: Vec<f64>) -> Result<Vec<f64>, Error> {
+        self.settle(states, at, PASSING)
     }
 
     /// Fit and noise levels in turn.
@@ -245,7 +271,7 @@ impl<'a> Course<'a, '_> {
                 finer = Finer::new(&self.objective(states), &at, next)?;
             }
             states.motions.iter_mut().zip(&finer.added).for_each(|(motion, added)| motion.added = *added);
-            at = self.settle(states, at, PASSING)?;
+            at = self.pass(states, at)?;
         }
         Ok(at)
     }

@@ -1,12 +1,13 @@
 //! The objective of a movie linearised: a row for each step of each motion.
 
+use super::anchors::{Anchors, Share};
 use super::objective::{MovieObjective, Moving, Placed};
+use super::row_builder::RowBuilder;
 use super::states::{Motion, Place};
 use crate::Error;
 use crate::least_squares::combined;
 use crate::linearisation::{Linearisation, Local};
 use crate::normal_equations::{NormalEquations, Reduced};
-use crate::position_rows::PositionRows;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -26,16 +27,24 @@ struct Jacobians {
 impl MovieObjective<'_> {
     /// The problem linearised about a point.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
+        self.linearise_with(parameters, Share::Known)
+    }
+
+    /// The same, perhaps with the share of the way to the centroids as a further coefficient, after all others.
+    pub(super) fn linearise_with(&self, parameters: &[f64], share: Share) -> Result<NormalEquations, Error> {
         let placed = self.place(parameters)?;
         let residuals = self.residuals(&placed, parameters);
-        self.equations(parameters, &placed, residuals, self.split(parameters).1)
+        let displacements = self.split(parameters).1;
+        let anchors = Anchors::new(self, &placed, displacements, share);
+        self.equations(parameters, &placed, residuals, &anchors, displacements)
     }
 
     /// The problem in β alone about a minimum whose residuals have changed by so much.
     pub fn response(&self, parameters: &[f64], residuals: Vec<Vector<f64>>) -> Result<Reduced, Error> {
         let placed = self.place(parameters)?;
-        let nothing = vec![0.0; self.split(parameters).1.len()];
-        self.equations(parameters, &placed, residuals, &nothing)?.reduced()
+        let displacements = self.split(parameters).1;
+        let anchors = Anchors::new(self, &placed, displacements, Share::Known).without_rests();
+        self.equations(parameters, &placed, residuals, &anchors, &vec![0.0; displacements.len()])?.reduced()
     }
 
     /// The equations for some residuals and displacements, with the derivatives at a point.
@@ -44,6 +53,7 @@ impl MovieObjective<'_> {
         parameters: &[f64],
         placed: &Placed<'_>,
         residuals: Vec<Vector<f64>>,
+        anchors: &Anchors,
         displacements: &[f64],
     ) -> Result<NormalEquations, Error> {
         let (free, _) = self.split(parameters);
@@ -57,22 +67,27 @@ impl MovieObjective<'_> {
         let jacobian = self.rows(&jacobians);
         let columns = self.columns(placed, &jacobians);
         drop(jacobians);
+        let p = anchors.dimension;
+        let row = |(row, (rest, x)): (usize, (Vector<f64>, DMatrix<f64>))| {
+            (row, rest, x.resize_horizontally(p, 0.0))
+        };
         let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> =
-            residuals.into_iter().zip(columns).enumerate().map(|(row, (rest, x))| (row, rest, x)).collect();
+            residuals.into_iter().zip(columns).enumerate().map(row).collect();
         let anchored = self.anchored();
-        let stiffness = anchored.iter().map(|anchored| if *anchored { 1.0 } else { 0.0 });
         let floor = self.floor();
         let of_block = |block: usize| if anchored[block] { 0.0 } else { floor };
-        let p = self.space.dimension();
         let linearised = Linearisation::new(&Local {
             velocities: Rows { jacobian: &jacobian, rows: &rows },
-            positions: PositionRows::of_sites(stiffness, displacements, p).rows(),
+            positions: anchors.rows(),
             nudges: displacements,
             floor: (0..displacements.len()).map(|i| of_block(i / 2)).collect(),
             free: p,
             places: self.states.where_and_when(),
         })?;
-        Ok(NormalEquations::new(self.space, self.levels, free, vec![linearised]))
+        let mut free = free.to_vec();
+        let further = p - free.len();
+        free.resize(p, 0.0);
+        Ok(NormalEquations::new(&self.space.widened(further), self.levels, &free, vec![linearised]))
     }
 
     /// The derivatives of all rows by the unknowns, with the sign of a prediction: less that of the residual.
@@ -193,45 +208,6 @@ fn product(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
         a[2] * b[0] + a[3] * b[2],
         a[2] * b[1] + a[3] * b[3],
     ]
-}
-
-/// Builds rows of blocks whose columns come in any order, some of them several times.
-struct RowBuilder {
-    matrix: BlockMatrix,
-    /// Where each column stands in the row at hand.
-    at: Vec<u32>,
-}
-
-/// A column that the row at hand does not have.
-const NONE: u32 = u32::MAX;
-
-impl RowBuilder {
-    fn new(columns: usize) -> Self {
-        let matrix = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
-        Self { matrix, at: vec![NONE; columns] }
-    }
-
-    /// Adds a factor times a block in the columns of a place.
-    fn add(&mut self, place: Place, factor: f64, block: &[f64; 4]) {
-        for (column, share) in place.shares() {
-            let at = &mut self.at[column];
-            if *at == NONE {
-                *at = self.matrix.column.len() as u32;
-                self.matrix.column.push(column as u32);
-                self.matrix.block.push([0.0; 4]);
-            }
-            let sum = &mut self.matrix.block[*at as usize];
-            sum.iter_mut().zip(block).for_each(|(s, b)| *s += factor * share * b);
-        }
-    }
-
-    fn end(&mut self) {
-        let begin = self.matrix.row_start.last().copied().unwrap_or(0);
-        for column in &self.matrix.column[begin..] {
-            self.at[*column as usize] = NONE;
-        }
-        self.matrix.row_start.push(self.matrix.column.len());
-    }
 }
 
 #[cfg(test)]

@@ -8,15 +8,20 @@
 //! is the integral of the model's velocities by a collocation rule, so that no velocity is ever derived from positions. The
 //! problem has the form of the nudged fit of snapshots and is solved by the same means.
 
+mod anchors;
 mod finer;
 mod fit;
 mod held_out;
 mod inference;
 mod join;
 mod linearised;
+mod measurement;
+mod missed;
 mod movie;
+mod neighbours;
 mod objective;
 mod result;
+mod row_builder;
 mod rule;
 #[cfg(test)]
 mod sample;
@@ -25,5 +30,7 @@ mod states;
 mod tests;
 
 pub use inference::infer_tracks;
-pub use movie::{Drift, Movie, Track};
+pub use measurement::measure_tracks;
+pub use missed::{Latent, complete_tracks};
+pub use movie::{Drift, Movie, Sighting, Track};
 pub use result::{Integration, Tracked};

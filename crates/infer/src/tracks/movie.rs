@@ -6,15 +6,25 @@ use super::states::States;
 use crate::{Error, Observation};
 use voronudge_geometry::{Domain, FieldOfView, Vector};
 
+/// Where a cell was seen in a frame, or is thought to be.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sighting {
+    /// The position.
+    pub position: Vector<f64>,
+    /// Standard deviation of each of its coordinates, in units of that of the noise levels: infinite if the cell was not detected.
+    pub error: f64,
+}
+
 /// One cell while it is followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
     /// First frame in which the cell was seen.
     pub first: usize,
-    /// Where it was seen from then on, up to the last frame in which it was; `None` in a gap. In a periodic box positions go
+    /// Where it was seen from then on, or is thought to be, up to the last frame; `None` in a gap. In a periodic box positions go
     /// on beyond its sides, so that two that follow each other are less than half a box apart.
-    pub seen: Vec<Option<Vector<f64>>>,
-    /// Its names, each with the frame from which on it bears it: its number in the frames that the movie was made from.
+    pub seen: Vec<Option<Sighting>>,
+    /// Its names, each with the frame from which on it bears it: its number in the frames that the movie was made from. None for a cell that
+    /// was never detected.
     pub names: Vec<(usize, usize)>,
 }
 
@@ -26,18 +36,52 @@ impl Track {
 
     /// Where the cell was seen in a frame.
     pub fn at(&self, frame: usize) -> Option<Vector<f64>> {
+        self.sighting(frame).filter(|sighting| sighting.error.is_finite()).map(|sighting| sighting.position)
+    }
+
+    /// Where the cell was seen in a frame, or is thought to be.
+    pub(super) fn thought_at(&self, frame: usize) -> Option<Vector<f64>> {
+        self.sighting(frame).map(|sighting| sighting.position)
+    }
+
+    /// Standard deviation of each coordinate of its position in a frame, in units of that of the noise levels: infinite if it was not seen.
+    pub(super) fn error(&self, frame: usize) -> f64 {
+        self.sighting(frame).map_or(f64::INFINITY, |sighting| sighting.error)
+    }
+
+    fn sighting(&self, frame: usize) -> Option<Sighting> {
         self.seen.get(frame.checked_sub(self.first)?).copied().flatten()
     }
 
-    /// The name that it bears in a frame.
-    pub fn name(&self, frame: usize) -> usize {
+    /// The name that it bears in a frame, if it has one.
+    pub fn name(&self, frame: usize) -> Option<usize> {
         let later = self.names.partition_point(|(from, _)| *from <= frame);
-        self.names[later.saturating_sub(1)].1
+        self.names.get(later.saturating_sub(1)).map(|name| name.1)
+    }
+
+    /// Goes on with what was seen from a frame on, perhaps at other images of a periodic box.
+    pub(super) fn go_on(
+        &mut self,
+        domain: Domain,
+        frame: usize,
+        seen: impl Iterator<Item = Option<Sighting>> + Clone,
+    ) {
+        if self.seen.is_empty() {
+            self.first = frame;
+        }
+        self.seen.resize(frame - self.first, None);
+        let before = self.seen.iter().rev().flatten().next().map(|sighting| sighting.position);
+        let image = match (before, seen.clone().flatten().next()) {
+            (Some(from), Some(to)) => domain.shortest(to.position - from) - (to.position - from),
+            _ => Vector::zeros(),
+        };
+        let moved = |seen: Sighting| Sighting { position: seen.position + image, ..seen };
+        self.seen.extend(seen.map(|seen| seen.map(moved)));
     }
 
     /// Number of frames within the track in which the cell was not seen.
     pub fn gaps(&self) -> usize {
-        self.seen.iter().filter(|place| place.is_none()).count()
+        (self.first..self.end()).filter(|frame| self.at(*frame).is_none()).count()
     }
 }
 
@@ -63,6 +107,8 @@ pub struct Movie {
     pub field_of_view: FieldOfView,
     /// What moves all cells alike.
     pub drift: Drift,
+    /// The share c of the way from a cell's site to its centroid at which its position is measured.
+    share: f64,
     /// The usual time between two frames.
     usual: f64,
     /// How far the stage had moved in each frame, as far as the increments tell.
@@ -95,11 +141,54 @@ impl Movie {
         lengths.sort_unstable_by(f64::total_cmp);
         let usual = lengths[lengths.len() / 2];
         let stage = vec![Vector::zeros(); times.len()];
-        let mut movie = Self { times, tracks, domain, field_of_view, drift, usual, stage };
+        let mut movie = Self { times, tracks, domain, field_of_view, drift, share: 0.0, usual, stage };
         for frame in 1..movie.frames() {
             movie.stage[frame] = movie.stage[frame - 1] + movie.median_step(frame - 1);
         }
         Ok(movie)
+    }
+
+    /// Lets positions have errors of their own: standard deviations in units of that of the noise levels, for each frame of each cell that the
+    /// movie was made from. Tracks must not be joined yet.
+    #[must_use]
+    pub fn with_position_errors(mut self, relative: &[Vec<f64>]) -> Self {
+        for track in &mut self.tracks {
+            for (frame, sighting) in (track.first..).zip(&mut track.seen) {
+                let name = track.names.first().map_or(usize::MAX, |name| name.1);
+                let error = relative.get(frame).and_then(|of_frame| of_frame.get(name));
+                if let (Some(sighting), Some(error)) = (sighting, error) {
+                    sighting.error = *error;
+                }
+            }
+        }
+        self
+    }
+
+    /// Takes positions for points at a share c of the way from the sites to the centroids of cells.
+    #[must_use]
+    pub fn with_positions_at(self, share: f64) -> Self {
+        Self { share, ..self }
+    }
+
+    /// The share c of the way from a cell's site to its centroid at which its position is measured.
+    pub fn share(&self) -> f64 {
+        self.share
+    }
+
+    /// The first frames alone.
+    pub(super) fn beginning(&self, frames: usize) -> Self {
+        let part = |track: &Track| {
+            let seen = &track.seen[..track.seen.len().min(frames.checked_sub(track.first)?)];
+            let last = seen.iter().rposition(Option::is_some)?;
+            Some(Track { seen: seen[..=last].to_vec(), ..track.clone() })
+        };
+        let frames = frames.min(self.frames());
+        Self {
+            times: self.times[..frames].to_vec(),
+            tracks: self.tracks.iter().filter_map(part).collect(),
+            stage: self.stage[..frames].to_vec(),
+            ..self.clone()
+        }
     }
 
     /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.
@@ -127,18 +216,27 @@ impl Movie {
         self.tracks.iter().enumerate().filter_map(seen)
     }
 
-    /// Where a cell was seen in a frame, or, in a gap, on the straight line between the frames before and after in which it was, drift of
+    /// Where a cell was seen in a frame, or is thought to be, or, in a gap, on the straight line between the frames before and after in which it was, drift of
     /// the stage apart; `None` before the first and after the last.
     pub fn near(&self, track: usize, frame: usize) -> Option<Vector<f64>> {
         let track = &self.tracks[track];
-        if let Some(place) = track.at(frame) {
+        if let Some(place) = track.thought_at(frame) {
             return Some(place);
         }
-        let seen = |f: usize| Some((f, track.at(f)? - self.stage[f]));
+        let seen = |f: usize| Some((f, track.thought_at(f)? - self.stage[f]));
         let before = (track.first..frame).rev().find_map(seen)?;
         let after = (frame + 1..track.end()).find_map(seen)?;
         let share = (self.times[frame] - self.times[before.0]) / (self.times[after.0] - self.times[before.0]);
         Some(before.1 + (after.1 - before.1) * share + self.stage[frame])
+    }
+
+    /// The cell nearest to a place in a frame, and its distance.
+    pub(super) fn nearest(&self, frame: usize, place: Vector<f64>) -> Option<(f64, usize)> {
+        let distance = |track: usize| {
+            let there = self.near(track, frame)?;
+            Some((self.domain.shortest(there - place).norm(), track))
+        };
+        self.present(frame).filter_map(distance).min_by(|a, b| a.0.total_cmp(&b.0))
     }
 
     /// What moves all cells alike in an interval, as far as the increments tell before any fit: their median, which a few fast
@@ -176,10 +274,12 @@ impl Movie {
             states.instants.iter().map(|instant| vec![None; instant.tracks.len()]).collect();
         for motion in &states.motions {
             let (frame, track) = (motion.interval, &self.tracks[motion.track as usize]);
-            if let (Some(from), Some(to)) = (track.at(frame), track.at(frame + 1)) {
-                let moved = to - from - self.first_drift(frame);
+            if track.at(frame).is_some() && track.at(frame + 1).is_some() {
+                let at =
+                    |node: usize| states.instants[frame + node].cells.positions[motion.cells[node] as usize];
                 let time = self.times[frame + 1] - self.times[frame];
-                velocities[frame][motion.cells[0] as usize] = Some(moved / time);
+                velocities[frame][motion.cells[0] as usize] =
+                    Some((at(1) - at(0) - self.first_drift(frame)) / time);
             }
         }
         let frames = states.instants.into_iter().zip(velocities);
@@ -201,7 +301,7 @@ fn track(frames: &[Vec<Option<Vector<f64>>>], cell: usize, domain: Domain) -> Op
     let seen = frames[first..=last].iter().map(|frame| {
         let place = frame[cell].map(|r| previous.map_or(r, |from| from + domain.shortest(r - from)));
         previous = place.or(previous);
-        place
+        place.map(|position| Sighting { position, error: 1.0 })
     });
     Some(Track { first, seen: seen.collect(), names: vec![(first, cell)] })
 }

@@ -1,7 +1,7 @@
 //! Space-time nudging: the objective of a movie.
 //!
 //! ```text
-//! Φ(β, x) = Σ ‖x_{j+1} − x_j − ∫F_β − d‖² / (T h_j)  +  k Σ_anchors ‖y − x‖²,      k = σ_v² / σ_r²
+//! Φ(β, x) = Σ ‖x_{j+1} − x_j − ∫F_β − d‖² / (T h_j)  +  k Σ_anchors m ‖y − H(x)‖²,      k = σ_v² / σ_r²
 //! ```
 //!
 //! with places x of the cells at all instants, h_j the time between two of them, T the usual time between two frames, and d the
@@ -12,6 +12,7 @@ use super::movie::Movie;
 use super::states::{Motion, States};
 use crate::normal_equations::NormalEquations;
 use crate::objective::{Evaluated, Nudged};
+use crate::position_rows::squares;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use rayon::prelude::*;
@@ -46,7 +47,7 @@ pub(crate) struct Placed<'a> {
 pub(crate) struct MovieParts {
     /// Sum of the squared residuals of motions.
     pub residual: f64,
-    /// Sum of the squared displacements from the measured positions.
+    /// Sum of the squares of what is left of the measured positions, each over the square of its error in units of σ_r.
     pub nudges: f64,
     /// What keeps places that were not seen.
     pub floor: f64,
@@ -177,6 +178,22 @@ impl<'a> MovieObjective<'a> {
         self.states.motions.par_iter().flat_map_iter(of_motion).collect()
     }
 
+    /// The instants that are frames: index, and the cells as they were measured.
+    pub fn frames(&self) -> impl Iterator<Item = (usize, &'a Observation)> + use<'a> {
+        let instants = self.states.instants.iter().enumerate();
+        instants
+            .filter(|(_, instant)| instant.frame.is_some())
+            .map(|(index, instant)| (index, &instant.cells))
+    }
+
+    /// How far each cell at an instant is from where it was before any fit, x and y of one after the other.
+    pub fn nudges(&self, index: usize, displacements: &[f64]) -> Vec<f64> {
+        let cells = 0..self.states.instants[index].tracks.len();
+        cells
+            .flat_map(|cell| <[f64; 2]>::from(self.states.displacement(index, cell, displacements)))
+            .collect()
+    }
+
     /// Stiffness of places that were not seen.
     pub fn floor(&self) -> f64 {
         (self.levels.velocity / FAR).powi(2)
@@ -185,7 +202,7 @@ impl<'a> MovieObjective<'a> {
     /// Whether each block has a measured position.
     pub fn anchored(&self) -> Vec<bool> {
         let mut anchored = vec![false; self.states.blocks()];
-        self.states.anchors.iter().for_each(|(place, ..)| anchored[*place as usize] = true);
+        self.states.anchors.iter().for_each(|place| anchored[*place as usize] = true);
         anchored
     }
 
@@ -194,10 +211,16 @@ impl<'a> MovieObjective<'a> {
         let placed = self.place(parameters)?;
         let (free, displacements) = self.split(parameters);
         let residual = self.residuals(&placed, parameters).iter().map(|r| r.norm_squared()).sum();
-        let (mut nudges, mut loose) = (0.0, 0.0);
-        for (e, anchored) in displacements.chunks_exact(2).zip(self.anchored()) {
-            *(if anchored { &mut nudges } else { &mut loose }) += e[0] * e[0] + e[1] * e[1];
-        }
+        let nudges = self
+            .frames()
+            .map(|(index, cells)| {
+                let nudged = &placed.instants[index].0;
+                let nudges = self.nudges(index, displacements);
+                squares(cells, &nudged.tessellation, &nudged.positions, &nudges)
+            })
+            .sum();
+        let unseen = displacements.chunks_exact(2).zip(self.anchored()).filter(|(_, anchored)| !anchored);
+        let loose: f64 = unseen.map(|(e, _)| e[0] * e[0] + e[1] * e[1]).sum();
         let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);
         Ok(MovieParts { residual, nudges, floor: self.floor() * loose, priors })
     }

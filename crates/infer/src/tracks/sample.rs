@@ -2,7 +2,7 @@
 
 use super::movie::{Drift, Movie};
 use rand_distr::{Distribution, Normal};
-use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
+use voronudge_geometry::{CellPolygon, Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{RandomPlacement, Simulation, generator};
 
@@ -19,9 +19,20 @@ pub struct Filmed {
     pub seed: u64,
 }
 
+/// What is seen of a cell.
+#[derive(Clone, Copy, PartialEq)]
+enum Point {
+    Site,
+    Centroid,
+}
+
 impl Filmed {
     /// Positions in each frame, the box, and K_P α in units of the velocities.
     pub fn film(&self) -> (Vec<Vec<Option<Vector<f64>>>>, Domain, f64) {
+        self.film_of(Point::Site)
+    }
+
+    fn film_of(&self, point: Point) -> (Vec<Vec<Option<Vector<f64>>>>, Domain, f64) {
         let [cells, frames] = self.size;
         let side = (cells as f64).sqrt();
         let domain = Domain::Periodic(PeriodicBox::new([side, side]).unwrap());
@@ -48,14 +59,33 @@ impl Filmed {
             }
             let mut seen =
                 |r: &Vector<f64>| Some(r + Vector::new(noise.sample(&mut rng), noise.sample(&mut rng)));
-            film.push(tissue.positions_with_images().iter().map(&mut seen).collect());
+            let mut places = tissue.positions_with_images().to_vec();
+            if point == Point::Centroid {
+                let tessellation = Tessellation::new(&places, domain).unwrap();
+                let mut polygon = CellPolygon::default();
+                let centroid = |cell: usize| {
+                    polygon.fill(&tessellation, &places, cell);
+                    places[cell] + polygon.centroid()
+                };
+                places = (0..cells).map(centroid).collect();
+            }
+            film.push(places.iter().map(&mut seen).collect());
         }
         (film, domain, TRUTH[1] / speed.sqrt())
     }
 
     /// The same as a movie whose velocities are of order one, and K_P α.
     pub fn movie(&self) -> (Movie, f64) {
-        let (film, domain, truth) = self.film();
+        self.movie_of(Point::Site)
+    }
+
+    /// The same of the centroids of cells.
+    pub fn movie_of_centroids(&self) -> (Movie, f64) {
+        self.movie_of(Point::Centroid)
+    }
+
+    fn movie_of(&self, point: Point) -> (Movie, f64) {
+        let (film, domain, truth) = self.film_of(point);
         let times = (0..film.len()).map(|k| k as f64 * self.step).collect();
         (Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap(), truth)
     }

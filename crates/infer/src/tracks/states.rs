@@ -1,7 +1,7 @@
 //! The unknowns of a movie: where its cells are at the frames and at instants between them.
 //!
 //! A cell has a place of its own at an instant if it was seen there or if its motion to or from there is explained. Elsewhere (at the
-//! rim of an open field, between frames) it is on the straight line between its nearest places before and after.
+//! rim of an open field, between frames) it is on the straight line between its nearest places before and after, if there are both.
 
 use super::movie::{Drift, Movie};
 use super::rule::{Rule, Scheme};
@@ -31,16 +31,19 @@ pub(crate) enum Place {
     Own(u32),
     /// On the line between two: the share of the second.
     Between(u32, u32, f64),
+    /// None: the cell stays where it is thought to be.
+    Fixed,
 }
 
 impl Place {
     /// The places and their shares.
     pub fn shares(self) -> impl Iterator<Item = (usize, f64)> {
         let (first, second) = match self {
-            Self::Own(place) => ((place, 1.0), None),
-            Self::Between(before, after, share) => ((before, 1.0 - share), Some((after, share))),
+            Self::Own(place) => (Some((place, 1.0)), None),
+            Self::Between(before, after, share) => (Some((before, 1.0 - share)), Some((after, share))),
+            Self::Fixed => (None, None),
         };
-        std::iter::once(first).chain(second).map(|(place, share)| (place as usize, share))
+        first.into_iter().chain(second).map(|(place, share)| (place as usize, share))
     }
 }
 
@@ -78,8 +81,8 @@ pub(crate) struct States {
     /// The middle of each step; none for a rule without.
     pub middles: Vec<Middle>,
     pub motions: Vec<Motion>,
-    /// The measured places: place, track and frame.
-    pub anchors: Vec<(u32, u32, u32)>,
+    /// The measured places.
+    pub anchors: Vec<u32>,
     /// Where each place is before any fit.
     pub start: Vec<Vector<f64>>,
     /// First of the translations, one for each interval, which stand behind the places; their number.
@@ -136,7 +139,7 @@ impl States {
             }
         }
         let (mut start, mut anchors) = (Vec::new(), Vec::new());
-        for (track, all) in of_track.iter().enumerate() {
+        for all in &of_track {
             let mut waiting: Vec<(usize, usize)> = Vec::new();
             let mut before: Option<(u32, f64)> = None;
             for &(index, cell) in all {
@@ -147,10 +150,8 @@ impl States {
                 }
                 let place = start.len() as u32;
                 start.push(instant.cells.positions[cell]);
-                if let Some(frame) = instant.frame
-                    && movie.tracks[track].at(frame).is_some()
-                {
-                    anchors.push((place, track as u32, frame as u32));
+                if instant.frame.is_some() && instant.cells.is_seen(cell) {
+                    anchors.push(place);
                 }
                 instant.place[cell] = Place::Own(place);
                 let time = instant.time;
@@ -168,6 +169,14 @@ impl States {
             Drift::PerInterval => movie.frames() - 1,
         };
         Ok(Self { rule, drifts: (start.len(), drifts), instants, middles, motions, anchors, start })
+    }
+
+    /// The same with positions measured at another share of the way to the centroids.
+    pub fn at_share(mut self, share: f64) -> Self {
+        for instant in self.instants.iter_mut().filter(|instant| instant.frame.is_some()) {
+            instant.cells = instant.cells.clone().at_share(share);
+        }
+        self
     }
 
     /// The two unknowns of one block.
@@ -191,9 +200,13 @@ impl States {
 
     /// Where a cell is at an instant.
     pub fn position(&self, instant: usize, cell: usize, displacements: &[f64]) -> Vector<f64> {
-        let instant = &self.instants[instant];
-        let parts = instant.place[cell].shares().map(|(at, share)| Self::vector(displacements, at) * share);
-        parts.fold(instant.cells.positions[cell], |sum, part| sum + part)
+        self.instants[instant].cells.positions[cell] + self.displacement(instant, cell, displacements)
+    }
+
+    /// How far a cell is at an instant from where it was before any fit.
+    pub fn displacement(&self, instant: usize, cell: usize, displacements: &[f64]) -> Vector<f64> {
+        let shares = self.instants[instant].place[cell].shares();
+        shares.map(|(at, share)| Self::vector(displacements, at) * share).sum()
     }
 
     /// Number of places and translations: blocks of two unknowns.
@@ -216,7 +229,7 @@ fn instants(movie: &Movie, rule: Rule) -> Result<Vec<Instant>, Error> {
     all.push((last, 0.0));
     all.into_par_iter()
         .map(|(frame, share)| {
-            let (mut tracks, mut positions) = (Vec::new(), Vec::new());
+            let (mut tracks, mut positions, mut errors) = (Vec::new(), Vec::new(), Vec::new());
             for number in 0..movie.tracks.len() {
                 let Some(here) = movie.near(number, frame) else { continue };
                 let place = match share > 0.0 {
@@ -226,23 +239,32 @@ fn instants(movie: &Movie, rule: Rule) -> Result<Vec<Instant>, Error> {
                 if let Some(place) = place {
                     tracks.push(number as u32);
                     positions.push(place);
+                    errors.push(movie.tracks[number].error(frame));
                 }
             }
             let count = tracks.len();
-            let cells = Observation::new(
+            let mut cells = Observation::new(
                 frame,
                 positions,
                 vec![None; count],
                 movie.domain,
                 movie.field_of_view.clone(),
             )?;
+            if share == 0.0 {
+                if errors.iter().any(|error| *error != 1.0) {
+                    cells = cells.with_position_errors(&errors);
+                }
+                if movie.share() != 0.0 {
+                    cells = cells.with_positions_at(movie.share())?;
+                }
+            }
             let span = if frame < last { movie.times[frame + 1] - movie.times[frame] } else { 0.0 };
             Ok(Instant {
                 time: movie.times[frame] + share * span,
                 frame: (share == 0.0).then_some(frame),
                 tracks,
                 cells,
-                place: vec![Place::Own(ABSENT); count],
+                place: vec![Place::Fixed; count],
             })
         })
         .collect()

@@ -1,6 +1,7 @@
 //! Cells that were not detected: what is asked, and how the frames are completed.
 
 use super::prepare::Prepared;
+use super::tracks::PreparedTracks;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::snapshot::y_sign;
@@ -48,6 +49,19 @@ impl LatentArguments {
         prepared.observations = completion.frames.iter().map(|frame| frame.observation.clone()).collect();
         prepared.completion = Some(completion);
         Ok(())
+    }
+
+    /// Completes the tracks of a problem.
+    pub fn complete_tracks(
+        &self,
+        tracks: &mut PreparedTracks,
+        prepared: &mut Prepared,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        match self.complete {
+            true => tracks.complete(prepared, self.missed_rate, progress),
+            false => Ok(()),
+        }
     }
 }
 

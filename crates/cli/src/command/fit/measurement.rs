@@ -3,10 +3,13 @@
 use super::flow::OrderedField;
 use super::prepare::Prepared;
 use super::scaling::factor;
+use super::tracks::PreparedTracks;
 use crate::progress::Progress;
 use crate::run::Run;
 use crate::snapshot::Snapshot;
-use voronudge_infer::{Determined, Error, KnownMeasurement, Measurement, Quantity, Scale, Window, measure};
+use voronudge_infer::{
+    Determined, Error, KnownMeasurement, Measurement, Quantity, Scale, Window, measure, measure_tracks,
+};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{self as told, MeasurementSource, PositionKind};
 use voronudge_report::numbers::significant;
@@ -33,6 +36,18 @@ pub(super) fn known(data: &DataSet, field: Option<&OrderedField>, scale: &Scale)
         share: data.positions_are.map(|are| are.share()),
         kind: declared.kind.map(super::flow::kind),
         width: declared.width.map(|width| width / scale.length),
+    }
+}
+
+impl PreparedTracks {
+    /// Determines what is not declared of the measurement.
+    pub fn measure(&mut self, prepared: &mut Prepared, progress: &mut Progress) -> Result<(), Error> {
+        let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
+        let (movie, measurement) =
+            measure_tracks(&self.movie, &prepared.request, &prepared.known, &mut observe)?;
+        self.movie = movie;
+        prepared.measurement = measurement;
+        self.show(prepared)
     }
 }
 
@@ -92,7 +107,7 @@ pub(super) fn positions(prepared: &Prepared) -> told::MeasuredPositions {
             (None, Some(_)) => MeasurementSource::Estimated,
             (None, None) => MeasurementSource::Assumed,
         },
-        own_errors: prepared.own_errors,
+        own_errors: prepared.own_errors.is_some(),
     }
 }
 

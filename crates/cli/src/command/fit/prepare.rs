@@ -50,8 +50,8 @@ pub(crate) struct Prepared {
     pub known: KnownMeasurement,
     /// How cells were measured, in scaled units.
     pub measurement: Measurement,
-    /// Whether cells have position errors of their own.
-    pub own_errors: bool,
+    /// Position errors of the cells of each frame (F, N) in units of a typical one, if they have errors of their own.
+    pub own_errors: Option<Vec<Vec<f64>>>,
 }
 
 impl Prepared {
@@ -169,6 +169,9 @@ impl Question<'_> {
             .map(|(snapshot, &frame)| measurement::position_errors(data, snapshot, frame))
             .collect();
         let typical_error = errors.as_ref().and_then(|all| measurement::typical(all.iter().flatten()));
+        let own_errors = errors.zip(typical_error).map(|(all, typical)| -> Vec<Vec<f64>> {
+            all.into_iter().map(|of_frame| of_frame.iter().map(|error| error / typical).collect()).collect()
+        });
         let (mut request, stated_noise) = self.request(&scale, typical_error);
         request.frame_interval = velocities.derived().map(|_| data.frame_interval / scale.time);
         let known = measurement::known(data, velocities.flow(), &scale);
@@ -177,9 +180,8 @@ impl Question<'_> {
             .enumerate()
             .map(|(index, observation)| {
                 let mut observation = scaled(index, observation, &scale)?;
-                if let (Some(errors), Some(typical)) = (&errors, typical_error) {
-                    let relative: Vec<f64> = errors[index].iter().map(|error| error / typical).collect();
-                    observation = observation.with_position_errors(&relative);
+                if let Some(relative) = &own_errors {
+                    observation = observation.with_position_errors(&relative[index]);
                 }
                 if let Some(share) = known.share.filter(|share| *share > 0.0) {
                     observation = observation.with_positions_at(share)?;
@@ -206,7 +208,7 @@ impl Question<'_> {
             constraints: self.constraints,
             known,
             measurement: Measurement::stated(&known),
-            own_errors: typical_error.is_some(),
+            own_errors,
         })
     }
 

@@ -3,17 +3,20 @@
 use super::measured::Measured;
 use super::prepare::{Prepared, Question};
 use crate::failure::Failure;
+use crate::progress::Progress;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, as_given, y_sign};
 use ndarray::Array3;
 use voronudge_geometry::Vector;
-use voronudge_infer::{Drift, Inference, Movie, Tracked};
+use voronudge_infer::{Drift, Error, Inference, Latent, Movie, Tracked, complete_tracks};
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_report::infer_report::{MeanRemoved, TracksReport};
 
 /// The tracks of a data set, those that break joined.
 pub(crate) struct PreparedTracks {
     pub movie: Movie,
+    /// The cells that were not detected, if they were looked for.
+    latent: Option<Latent>,
     /// How many joins were made.
     joined: usize,
 }
@@ -32,10 +35,10 @@ impl PreparedTracks {
         let times =
             prepared.frames.iter().map(|frame| *frame as f64 * data.frame_interval / scale.time).collect();
         let mut places = Vec::with_capacity(prepared.frames.len());
-        for (snapshot, observation) in prepared.snapshots.iter().zip(&prepared.observations) {
+        for snapshot in &prepared.snapshots {
             let mut of_frame = vec![None; data.cells()];
-            for (cell, r) in snapshot.cells.iter().zip(&observation.positions) {
-                of_frame[*cell] = Some(*r);
+            for (cell, r) in snapshot.cells.iter().zip(&snapshot.positions) {
+                of_frame[*cell] = Some(r / scale.length);
             }
             places.push(of_frame);
         }
@@ -49,22 +52,58 @@ impl PreparedTracks {
         };
         let place = |error| prepared.place(error, arguments);
         let mut movie = Movie::new(times, &places, domain, field_of_view, drift).map_err(place)?;
+        if let Some(own) = &prepared.own_errors {
+            let mut errors = vec![vec![1.0; data.cells()]; own.len()];
+            for ((of_frame, snapshot), own) in errors.iter_mut().zip(&prepared.snapshots).zip(own) {
+                snapshot.cells.iter().zip(own).for_each(|(cell, error)| of_frame[*cell] = *error);
+            }
+            movie = movie.with_position_errors(&errors);
+        }
         let joined = movie.join();
-        let observations = movie.observations().map_err(place)?;
+        let tracks = Self { movie, latent: None, joined };
+        tracks.show(&mut prepared).map_err(|error| prepared.place(error, arguments))?;
+        Ok((prepared, tracks))
+    }
+
+    /// Puts in the cells that were not detected.
+    pub(super) fn complete(
+        &mut self,
+        prepared: &mut Prepared,
+        missed_rate: Option<f64>,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
+        let (movie, latent) = complete_tracks(&self.movie, &prepared.request, missed_rate, &mut observe)?;
+        (self.movie, self.latent) = (movie, Some(latent));
+        self.show(prepared)
+    }
+
+    /// Lets the snapshots be those of the movie.
+    pub(super) fn show(&self, prepared: &mut Prepared) -> Result<(), Error> {
+        let movie = &self.movie;
+        prepared.observations = movie.observations()?;
         prepared.snapshots = (0..movie.frames())
-            .map(|frame| Snapshot {
-                cells: movie.present(frame).map(|track| movie.tracks[track].name(frame)).collect(),
-                positions: observations[frame].positions.iter().map(|r| r * scale.length).collect(),
+            .map(|frame| {
+                let (cells, positions) = movie
+                    .present(frame)
+                    .filter_map(|track| {
+                        let r = movie.near(track, frame)?;
+                        Some((movie.tracks[track].name(frame)?, r * prepared.scale.length))
+                    })
+                    .unzip();
+                Snapshot { cells, positions }
             })
             .collect();
-        prepared.observations = observations;
-        Ok((prepared, Self { movie, joined }))
+        prepared.completion =
+            self.latent.as_ref().map(|latent| latent.completion(movie, &prepared.observations));
+        Ok(())
     }
 
     /// For the report.
     pub fn report(&self, prepared: &Prepared, result: &Inference, tracked: &Tracked) -> TracksReport {
         let scale = &prepared.scale;
-        let (frames, tracks) = (self.movie.frames(), &self.movie.tracks);
+        let frames = self.movie.frames();
+        let tracks: Vec<_> = self.movie.tracks.iter().filter(|track| !track.names.is_empty()).collect();
         TracksReport {
             tracks: tracks.len(),
             joined: self.joined,
@@ -98,7 +137,7 @@ impl PreparedTracks {
         for (frame, places) in tracked.trajectories.iter().enumerate() {
             for (track, place) in self.movie.tracks.iter().zip(places) {
                 let Some(r) = place.map(|r: Vector<f64>| r * prepared.scale.length) else { continue };
-                let cell = track.name(track.first);
+                let Some(cell) = track.name(track.first) else { continue };
                 all[(frame, cell, 0)] = r.x;
                 all[(frame, cell, 1)] = flip * r.y;
             }

@@ -91,7 +91,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let seed = arguments.common.seed;
     let question =
         Question { arguments: &arguments.snapshots, data: &data, constraints, method, seed, scale: None };
-    let (mut prepared, movie) = match velocities {
+    let (mut prepared, mut movie) = match velocities {
         Measured::Tracks(_) => {
             arguments.check_tracks()?;
             let (prepared, movie) = PreparedTracks::new(question, velocities, frames, &mut run)?;
@@ -100,9 +100,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         _ => (question.prepare(velocities, frames, &mut run)?, None),
     };
     let mut progress = Progress::new(arguments.common.verbosity());
-    // Windows make the data of a flow field; what a position is can be told of complete cells only.
-    let understood = match (&movie, prepared.velocities.flow()) {
-        (Some(_), _) => Ok(()),
+    // Windows make the data of a flow field; in a single frame what a position is can be told of complete cells only.
+    let understood = match (&mut movie, prepared.velocities.flow()) {
+        (Some(tracks), _) => tracks
+            .measure(&mut prepared, &mut progress)
+            .and_then(|()| arguments.latent.complete_tracks(tracks, &mut prepared, &mut progress)),
         (None, Some(_)) => prepared
             .measure(&mut progress)
             .and_then(|()| arguments.latent.complete(&mut prepared, &mut progress)),
