@@ -140,7 +140,7 @@ fn the_number_of_threads_changes_no_byte() {
 #[test]
 fn tracks_are_fitted_themselves() {
     let out = infer(&fixture("open-field"), "");
-    let mut files = FILES[1..].to_vec();
+    let mut files = FILES.to_vec();
     files.push("trajectories.npy");
     assert_eq!(out.names(), files);
     let report = report(out.path());

@@ -4,7 +4,7 @@ use crate::inferences::infer;
 use crate::program::{fixture, voronudge};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
-use ndarray::Array2;
+use ndarray::{Array2, Array3};
 use std::ffi::OsStr;
 use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, Tessellation, Vector};
 
@@ -84,4 +84,39 @@ fn what_cannot_be_said_of_a_measurement_is_refused() {
     refused(&["--positions-are", "1.5"], &["positions_are is 1.5", "between 0 and 1"]);
     refused(&["--positions-are", "nuclei"], &["nuclei", "centroids"]);
     refused(&["--position-errors", "nowhere.npy"], &["nowhere.npy"]);
+}
+
+/// A cell that no frame shows, and one that is lost on the way, are put back into their tracks.
+#[test]
+fn cells_that_tracks_lack_are_found() {
+    let data = Folder::copy_of("open-field");
+    let mut positions: Array3<f64> = read(&data.file("positions.npy"));
+    let truth = positions.clone();
+    let (hidden, lost) = (114, 123);
+    for ((frame, cell, _), place) in positions.indexed_iter_mut() {
+        if cell == hidden || cell == lost && frame >= 3 {
+            *place = f64::NAN;
+        }
+    }
+    data.write_array("positions.npy", &positions);
+    let out = infer(data.path(), "");
+    let found = report(out.path());
+    let measured = &found["measurement"];
+    assert_eq!((&measured["latent"]["inserted"], &measured["tracks"]["ended"]), (&5.into(), &0.into()));
+    let error = number(&found, "/parameters/K_P_alpha/value") / 0.02 - 1.0;
+    assert!(error.abs() < 0.02, "{error}");
+    let latent: Array2<f64> = read(&out.file("latent_cells.npy"));
+    let trajectories: Array3<f64> = read(&out.file("trajectories.npy"));
+    for frame in 0..5 {
+        let miss =
+            |x: f64, y: f64, cell: usize| (x - truth[(frame, cell, 0)]).hypot(y - truth[(frame, cell, 1)]);
+        assert_eq!(latent[(frame, 2)], frame as f64);
+        assert!(miss(latent[(frame, 0)], latent[(frame, 1)], hidden) < 0.5);
+        assert!(miss(trajectories[(frame, lost, 0)], trajectories[(frame, lost, 1)], lost) < 0.5);
+    }
+    // Without them the fit says so.
+    let out = infer(data.path(), "--complete false");
+    let found = report(out.path());
+    assert!(found["measurement"]["latent"].is_null());
+    assert_eq!(found["verdict"]["kind"], "measurement_misfit");
 }

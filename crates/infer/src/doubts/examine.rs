@@ -15,7 +15,7 @@ use voronudge_geometry::Vector;
 const EFFECTS: [&[&str]; 2] = [&["centroid_bias", "time_lag"], &["centroid_bias", "flow_blur"]];
 
 /// Mean of half the squared whitened residuals, of which one is expected, below which there is nothing in them.
-const EXACT: f64 = 0.05;
+pub(crate) const EXACT: f64 = 0.05;
 
 /// What there is to doubt in a fit beside its course.
 ///

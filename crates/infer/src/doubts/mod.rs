@@ -14,7 +14,8 @@ mod steps;
 mod tails;
 mod voids;
 
-pub(crate) use examine::{examine, examine_residuals};
+pub(crate) use examine::{EXACT, examine, examine_residuals};
+pub(crate) use tails::tails;
 pub use voids::Voids;
 pub(crate) use voids::voids;
 

@@ -13,7 +13,7 @@ const DEVIATIONS: f64 = 4.5;
 const LEAST: f64 = 1.25;
 
 /// By how much the scatter of all halved squared residuals exceeds that of the smaller half, where this is no chance.
-pub(super) fn tails(halved_squares: &[f64]) -> Option<f64> {
+pub(crate) fn tails(halved_squares: &[f64]) -> Option<f64> {
     let (robust, _) = robust_variance(halved_squares)?;
     let count = halved_squares.len() as f64;
     let ratio = halved_squares.iter().sum::<f64>() / count / robust;

@@ -8,11 +8,13 @@ use super::result::{Integration, Tracked};
 use super::rule::Rule;
 use super::states::States;
 use crate::coefficients::parameters;
-use crate::doubts::voids;
+use crate::diagnostics::robust_variance;
+use crate::doubts::{EXACT, tails, voids};
 use crate::inference::{changed_edges, doubts, estimates};
 use crate::noisy_fit::at_limit;
+use crate::position_rows::PositionRows;
 use crate::search::Watch;
-use crate::{CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, Progress, Request};
+use crate::{CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, Observation, Progress, Request};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
@@ -73,6 +75,7 @@ pub fn infer_tracks(
         }
     };
     let placed = objective.place(&found.parameters)?;
+    let stray = tails(&strays(&objective, &placed, displacements)).map(Doubt::Tails);
     let tracked = tracked(&objective, &found);
     let coefficients = space.coefficients(free);
     let means = mean_velocities(&objective, &placed);
@@ -112,11 +115,39 @@ pub fn infer_tracks(
             .into_iter()
             .chain((found.error > ACCEPTED_ERROR).then_some(Doubt::Integration(found.error)))
             .chain(voids(&movie.seen_by(coarse.clone())).map(Doubt::Voids))
+            .chain(stray)
             .collect(),
         used,
         total,
     };
     Ok((inference, tracked))
+}
+
+/// Half the squared distances of the cells from where they were seen, of those whose motion is explained, in units of the usual one in
+/// their frame.
+fn strays(objective: &MovieObjective<'_>, placed: &Placed<'_>, displacements: &[f64]) -> Vec<f64> {
+    let states = objective.states;
+    let mut explained: Vec<Vec<bool>> =
+        states.instants.iter().map(|instant| vec![false; instant.tracks.len()]).collect();
+    for motion in &states.motions {
+        for (node, cell) in motion.cells.iter().enumerate() {
+            explained[motion.interval * states.rule.steps + node][*cell as usize] = true;
+        }
+    }
+    let of_frame = |(index, cells): (usize, &Observation)| {
+        let nudged = &placed.instants[index].0;
+        let nudges = objective.nudges(index, displacements);
+        let rows = PositionRows::new(cells, &nudged.tessellation, &nudged.positions, &nudges, 0, None);
+        let own = rows.rows().rows.iter().filter(|(cell, ..)| explained[index][*cell]);
+        let halved: Vec<f64> = own.map(|(_, rest, _)| 0.5 * rest.norm_squared()).collect();
+        let usual = robust_variance(&halved).map_or(f64::INFINITY, |(variance, _)| variance);
+        halved.into_iter().map(move |square| [square, square / usual]).collect::<Vec<_>>()
+    };
+    let all: Vec<[f64; 2]> = objective.frames().flat_map(of_frame).collect();
+    // Far below the noise there is rounding.
+    let variance = objective.levels.position.powi(2);
+    let is_exact = all.iter().map(|square| square[0]).sum::<f64>() < EXACT * variance * all.len() as f64;
+    all.into_iter().filter(|_| !is_exact).map(|square| square[1]).collect()
 }
 
 /// Mean velocities of the model along the trajectories.
