@@ -16,8 +16,9 @@ use super::movie::{Movie, Track};
 use super::neighbours::Motion;
 use pathfinding::kuhn_munkres::kuhn_munkres;
 use pathfinding::matrix::Matrix;
+use pathfinding::undirected::connected_components::components;
 use rayon::prelude::*;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use voronudge_geometry::Vector;
 
 /// A track goes on after this many frames at most.
@@ -98,19 +99,21 @@ fn has_room(movie: &Movie, (first, from): (usize, Vector<f64>), (last, to): (usi
 
 /// The pairs that gain most together, each end and each beginning in one at most.
 fn assign(gains: &[(usize, usize, i64)]) -> Vec<(usize, usize)> {
-    let partners = |end: usize| -> Vec<usize> {
-        let own = gains.iter().filter(|gain| gain.0 == end);
-        own.map(|gain| gain.1).collect()
-    };
-    let ends: BTreeSet<usize> = gains.iter().map(|gain| gain.0).collect();
-    let ends: Vec<usize> = ends.into_iter().collect();
+    let gain_of: BTreeMap<(usize, usize), i64> =
+        gains.iter().map(|gain| ((gain.0, gain.1), gain.2)).collect();
     let mut pairs = Vec::new();
-    // Ends without a beginning in common are decided by themselves.
-    for (ends, begins) in components(&ends.iter().map(|end| (*end, partners(*end))).collect::<Vec<_>>()) {
-        let gain = |end: usize, begin: usize| {
-            let known = gains.iter().find(|gain| (gain.0, gain.1) == (end, begin));
-            known.map_or(0, |gain| gain.2)
-        };
+    // Ends that have no beginning in common do not depend on each other.
+    let linked: Vec<Vec<Side>> =
+        gains.iter().map(|gain| vec![Side::End(gain.0), Side::Beginning(gain.1)]).collect();
+    for group in components(&linked) {
+        let (mut ends, mut begins) = (Vec::new(), Vec::new());
+        for side in group.into_iter().collect::<BTreeSet<_>>() {
+            match side {
+                Side::End(track) => ends.push(track),
+                Side::Beginning(track) => begins.push(track),
+            }
+        }
+        let gain = |end: usize, begin: usize| gain_of.get(&(end, begin)).copied().unwrap_or(0);
         // The method wants no more rows than columns.
         let wide = ends.len() <= begins.len();
         let matrix = match wide {
@@ -118,30 +121,20 @@ fn assign(gains: &[(usize, usize, i64)]) -> Vec<(usize, usize)> {
             false => Matrix::from_fn(begins.len(), ends.len(), |(j, i)| gain(ends[i], begins[j])),
         };
         let (_, partner) = kuhn_munkres(&matrix);
-        for (row, column) in partner.into_iter().enumerate() {
-            let (end, begin) = if wide { (ends[row], begins[column]) } else { (ends[column], begins[row]) };
-            if gain(end, begin) > 0 {
-                pairs.push((end, begin));
-            }
-        }
+        let paired = partner.into_iter().enumerate().map(|(row, column)| match wide {
+            true => (ends[row], begins[column]),
+            false => (ends[column], begins[row]),
+        });
+        pairs.extend(paired.filter(|(end, begin)| gain(*end, *begin) > 0));
     }
     pairs
 }
 
-/// Ends that have beginnings in common, with these.
-fn components(partners: &[(usize, Vec<usize>)]) -> Vec<(Vec<usize>, Vec<usize>)> {
-    let mut groups: Vec<(Vec<usize>, BTreeSet<usize>)> = Vec::new();
-    for (end, begins) in partners {
-        let mut whole = (vec![*end], begins.iter().copied().collect::<BTreeSet<_>>());
-        let (touching, apart) = groups.into_iter().partition(|group| !group.1.is_disjoint(&whole.1));
-        groups = apart;
-        for (ends, begins) in touching as Vec<(Vec<usize>, BTreeSet<usize>)> {
-            whole.0.extend(ends);
-            whole.1.extend(begins);
-        }
-        groups.push(whole);
-    }
-    groups.into_iter().map(|(ends, begins)| (ends, begins.into_iter().collect())).collect()
+/// A track as one side of a join.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+enum Side {
+    End(usize),
+    Beginning(usize),
 }
 
 #[cfg(test)]

@@ -146,7 +146,7 @@ fn with_cells(movie: &Movie, motions: &[Motion<'_>], chains: &[Chain]) -> (Movie
     let (mut cells, mut found) = (Vec::new(), Vec::new());
     for chain in chains {
         let mut whole = Track { first: 0, seen: Vec::new(), names: Vec::new() };
-        for part in (Course { movie, motions, taken: &taken, chain }).parts() {
+        for part in (Way { movie, motions, taken: &taken, chain }).parts() {
             match part {
                 Part::Latent(frame, position) => {
                     let sighting = Sighting { position, error: f64::INFINITY };
@@ -181,7 +181,7 @@ enum Part {
 }
 
 /// The way of a cell through a movie.
-struct Course<'a> {
+struct Way<'a> {
     movie: &'a Movie,
     motions: &'a [Motion<'a>],
     /// Tracks that are other cells'.
@@ -189,7 +189,7 @@ struct Course<'a> {
     chain: &'a Chain,
 }
 
-impl Course<'_> {
+impl Way<'_> {
     /// Its parts in the order of time: back from the first frame in which it was found, then on.
     fn parts(&self) -> Vec<Part> {
         let Chain { first, found } = self.chain;

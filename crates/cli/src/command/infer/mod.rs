@@ -100,11 +100,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         _ => (question.prepare(velocities, frames, &mut run)?, None),
     };
     let mut progress = Progress::new(arguments.common.verbosity());
-    // Windows make the data of a flow field; in a single frame what a position is can be told of complete cells only.
+    // Windows make the data of a flow field; what a position is can be told of complete cells only.
     let understood = match (&mut movie, prepared.velocities.flow()) {
-        (Some(tracks), _) => tracks
-            .measure(&mut prepared, &mut progress)
-            .and_then(|()| arguments.latent.complete_tracks(tracks, &mut prepared, &mut progress)),
+        (Some(tracks), _) => arguments
+            .latent
+            .complete_tracks(tracks, &mut prepared, &mut progress)
+            .and_then(|()| tracks.measure(&mut prepared, &mut progress)),
         (None, Some(_)) => prepared
             .measure(&mut progress)
             .and_then(|()| arguments.latent.complete(&mut prepared, &mut progress)),
