@@ -92,7 +92,7 @@ fn cells_that_tracks_lack_are_found() {
     let data = Folder::copy_of("open-field");
     let mut positions: Array3<f64> = read(&data.file("positions.npy"));
     let truth = positions.clone();
-    let (hidden, lost) = (114, 123);
+    let (hidden, lost) = (114, 143);
     for ((frame, cell, _), place) in positions.indexed_iter_mut() {
         if cell == hidden || cell == lost && frame >= 3 {
             *place = f64::NAN;
