@@ -125,6 +125,39 @@ fn hidden_cells_are_found_and_no_others() {
     );
 }
 
+/// The best place for a single cell is between two neighbours that were both missed.
+#[test]
+fn neighbours_that_were_both_missed_are_both_found() {
+    let (mut hidden, mut found, mut inserted) = (0, 0, 0);
+    for seed in 11..=13 {
+        let tissue = Tissue::new(CELLS, seed).unwrap();
+        let whole = tissue.measured(NOISE, seed).unwrap();
+        let domain = whole.tessellation.domain();
+        let apart = |a: usize, b: usize| domain.shortest(whole.positions[a] - whole.positions[b]).norm();
+        let mut gone: Vec<usize> = Vec::new();
+        for cell in (0..CELLS).step_by(CELLS / 4) {
+            let around = whole.tessellation.neighbours(cell).iter().map(|other| *other as usize);
+            let nearest = around.min_by(|a, b| apart(*a, cell).total_cmp(&apart(*b, cell))).unwrap();
+            if gone.iter().all(|other| apart(*other, cell).min(apart(*other, nearest)) > 3.0) {
+                gone.extend([cell, nearest]);
+            }
+        }
+        let kept: Vec<usize> = (0..CELLS).filter(|cell| !gone.contains(cell)).collect();
+        let at = kept.iter().map(|cell| whole.positions[*cell]).collect();
+        let values = whole.velocities.values();
+        let velocities: Vec<_> = kept.iter().map(|cell| values[*cell]).collect();
+        let observation = Observation::new(0, at, velocities, domain, FieldOfView::default()).unwrap();
+        let sites = gone.iter().map(|cell| tissue.positions[*cell]).collect();
+        let set = Detections { tissue, observation, hidden: sites, merged: 0, doubled: 0 };
+        let completion = looked_over(&set);
+        hidden += set.hidden.len();
+        found += recovered(&set, &completion);
+        inserted += completion.count(ChangeKind::Inserted);
+    }
+    assert!(hidden >= 12 && found + 1 >= hidden, "{found} of {hidden}");
+    assert!(inserted <= found + 1, "{found} of {inserted} inserted");
+}
+
 #[test]
 fn complete_detections_stay_as_they_are() {
     for seed in 4..=6 {

@@ -100,12 +100,17 @@ const fn class(name: &'static str, words: &'static str, recipe: Recipe) -> Class
 }
 
 /// All classes of the study.
-pub const CLASSES: [Class; 16] = [
+pub const CLASSES: [Class; 17] = [
     class("complete", "complete, periodic", COMPLETE),
     class("open", "open field of view", Recipe { view: View::Window, ..COMPLETE }),
     class("missed-2", "2 % not detected", missed(0.02)),
     class("missed-5", "5 % not detected", missed(0.05)),
     class("missed-15", "15 % not detected", missed(0.15)),
+    class(
+        "open-missed-2",
+        "open field of view, 2 % not detected",
+        Recipe { view: View::Window, ..missed(0.02) },
+    ),
     class(
         "merged-split",
         "2 % merged, 2 % split",

@@ -58,7 +58,7 @@ pub(super) fn deviance(square: f64, variance: f64) -> f64 {
 }
 
 /// The weight of a residual in least squares.
-pub(super) fn weight(square: f64, variance: f64) -> f64 {
+fn weight(square: f64, variance: f64) -> f64 {
     (FREEDOM + 2.0) / (FREEDOM + square / variance) / variance
 }
 
@@ -75,6 +75,16 @@ impl Law<'_> {
             .filter_map(|(cell, b)| Some(of_cell(cell)? * b.iter().map(|x| x * x).sum::<f64>()))
             .sum();
         self.excess * (self.levels.velocity.powi(2) + 0.5 * sum * self.levels.position.powi(2))
+    }
+
+    /// σ_v². What is left beyond the noise levels is in both errors; where less is left than they say, positions are better.
+    pub fn velocity_variance(&self) -> f64 {
+        self.excess.max(1.0) * self.levels.velocity.powi(2)
+    }
+
+    /// σ_r²
+    pub fn position_variance(&self) -> f64 {
+        self.excess * self.levels.position.powi(2)
     }
 
     /// All velocities of a frame that count.

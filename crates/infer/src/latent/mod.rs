@@ -10,10 +10,13 @@
 //!         └──  all changes placed anew, those without evidence undone  <──  the best ones, far from each other
 //! ```
 //!
-//! The order matters: coefficients that follow the first wrong cell never recover.
+//! The order matters: coefficients that follow the first wrong cell never recover. Where no further change has evidence, cells that were
+//! put in near each other are placed anew together (`arrangement`).
 
+mod arrangement;
 mod change;
 mod law;
+mod misfit;
 mod neighbourhood;
 mod polygons;
 mod proposal;
@@ -25,6 +28,7 @@ pub use scene::Origin;
 use crate::noise::FIRST_POSITION_NOISE;
 use crate::search::Watch;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Progress, Request};
+use arrangement::rearranged;
 use law::{Law, coefficients};
 use polygons::Polygons;
 use proposal::{Evidence, Stage, assess, proposals, reassess};
@@ -166,6 +170,8 @@ impl Search<'_> {
     fn run(&self, scenes: &mut [Scene<'_>], rates: &mut Rates, watch: &mut Watch<'_>) -> Result<(), Error> {
         let mut free = self.coefficients(scenes, None)?;
         let (mut excess, mut idle, mut stage) = (f64::INFINITY, 0, Stage::Additions);
+        // Whether nothing has changed since no cells had a better arrangement.
+        let mut settled = false;
         for round in 0..ROUNDS {
             watch.tell("cells not detected", (round as u64, ROUNDS as u64), 1.0)?;
             let found = {
@@ -188,8 +194,15 @@ impl Search<'_> {
             let undone = self.revise(scenes, stage, (free.as_slice(), excess), rates)?;
             rates.estimate(scenes);
             idle = if made == undone { idle + 1 } else { 0 };
+            settled &= made + undone == 0;
             if made + undone == 0 || idle == IDLE_ROUNDS {
+                // What is arranged anew is looked over once more.
+                if !settled && round + 1 < ROUNDS {
+                    let moved = self.rearrange(scenes, (free.as_slice(), excess), rates)?;
+                    settled = moved == 0;
+                }
                 match stage {
+                    _ if !settled => idle = 0,
                     Stage::Additions => (stage, idle) = (Stage::All, 0),
                     Stage::All => break,
                 }
@@ -252,6 +265,35 @@ impl Search<'_> {
             }
         }
         Ok(found.into_iter().map(|own| own.into_iter().map(|(_, change)| change).collect()).collect())
+    }
+
+    /// Arranges cells that were put in near each other anew where another arrangement has more evidence. Returns how often.
+    fn rearrange(
+        &self,
+        scenes: &mut [Scene<'_>],
+        (free, excess): (&[f64], f64),
+        rates: &Rates,
+    ) -> Result<usize, Error> {
+        let at = self.space.coefficients(free);
+        let evidence = self.evidence(scenes, at.as_slice(), excess, rates);
+        let made = scenes
+            .par_iter_mut()
+            .map(|scene| {
+                scene.explain(&evidence.law);
+                let (mut made, mut index) = (0, 0);
+                while index < scene.changes.len() {
+                    match rearranged(scene, index, &evidence)? {
+                        Some(changes) => {
+                            scene.change(changes)?;
+                            made += 1;
+                        }
+                        None => index += 1,
+                    }
+                }
+                Ok(made)
+            })
+            .collect::<Result<Vec<usize>, Error>>()?;
+        Ok(made.into_iter().sum())
     }
 
     /// Places all changes anew, one after the other, and undoes those that have lost their evidence. Returns their number.

@@ -1,6 +1,7 @@
 //! The cells around a place, in coordinates that do not jump: what a change there does to the velocities nearby.
 
-use super::law::{Law, deviance, weight};
+use super::law::Law;
+use super::misfit::{Misfit, Residuals};
 use super::polygons::size_around;
 use super::scene::{Cell, Scene};
 use crate::flow::Sampling;
@@ -36,14 +37,6 @@ pub(super) struct Neighbourhood {
     flow: Option<Flow>,
 }
 
-/// A velocity nearby and what the law leaves of it.
-struct Row {
-    residual: Vector<f64>,
-    variance: f64,
-    /// Derivatives by the free positions.
-    by_free: Vec<Matrix2<f64>>,
-}
-
 /// Free cells with a normal prior of their places.
 #[derive(Debug, Clone)]
 pub(super) struct Guess {
@@ -63,6 +56,8 @@ pub(super) struct Placed {
     pub positions: Vec<Vector<f64>>,
     /// Deviance of the velocities nearby.
     pub deviance: f64,
+    /// The largest factor λ of one of them.
+    pub strain: f64,
     /// `Σ ‖z − z₀‖² / s²`
     pub prior: f64,
     /// Information of the velocities on the coordinates.
@@ -70,11 +65,11 @@ pub(super) struct Placed {
 }
 
 impl Neighbourhood {
-    /// Around a place, with one of the changes undone, without some further detections.
+    /// Around a place, with some of the changes undone, without some further detections.
     pub fn new(
         scene: &Scene<'_>,
         centre: Vector<f64>,
-        undone: Option<usize>,
+        undone: &[usize],
         without: &[usize],
     ) -> Result<Self, Error> {
         let (mut cells, mut positions, mut targets) = (Vec::new(), Vec::new(), Vec::new());
@@ -97,12 +92,12 @@ impl Neighbourhood {
     }
 
     /// The velocities nearby with free cells.
-    fn rows(
+    fn residuals(
         &self,
         law: &Law<'_>,
         free: &[Vector<f64>],
         target: Option<Vector<f64>>,
-    ) -> Result<Vec<Row>, Error> {
+    ) -> Result<Residuals, Error> {
         let fixed = self.positions.len();
         let positions: Vec<Vector<f64>> = self.positions.iter().chain(free).copied().collect();
         let tessellation = if free.is_empty() { self.tessellation.clone() } else { tessellate(&positions)? };
@@ -112,26 +107,43 @@ impl Neighbourhood {
         let nudged = Nudged::placed(law.structure, Arc::default(), positions, tessellation, sampling);
         let evaluated = nudged.evaluate(law.coefficients);
         let jacobian = nudged.jacobian(law.coefficients, &evaluated);
-        let of_cell = |cell: usize| self.cells.get(cell).and_then(|cell| cell.variance);
         let own = target.map(|target| (fixed, target));
-        Ok((self.targets.iter().copied().chain(own))
-            .map(|(datum, target)| {
-                let mut by_free = vec![Matrix2::zeros(); free.len()];
-                for (column, b) in jacobian.row(datum).filter(|(column, _)| *column >= fixed) {
-                    by_free[column - fixed] = Matrix2::new(b[0], b[1], b[2], b[3]);
+        let data: Vec<(usize, Vector<f64>)> = self.targets.iter().copied().chain(own).collect();
+        let measured: Vec<Option<f64>> =
+            (0..fixed).map(|cell| Some(law.position_variance() * self.cells[cell].variance?)).collect();
+        let mut by_free = DMatrix::zeros(2 * data.len(), 2 * free.len());
+        let mut by_measured = DMatrix::zeros(2 * data.len(), 2 * fixed);
+        for (row, (datum, _)) in data.iter().enumerate() {
+            for (column, b) in jacobian.row(*datum) {
+                let b = Matrix2::new(b[0], b[1], b[2], b[3]);
+                match measured.get(column) {
+                    None => by_free.fixed_view_mut::<2, 2>(2 * row, 2 * (column - fixed)).copy_from(&b),
+                    Some(Some(variance)) => by_measured
+                        .fixed_view_mut::<2, 2>(2 * row, 2 * column)
+                        .copy_from(&(b * variance.sqrt())),
+                    Some(None) => {}
                 }
-                Row {
-                    residual: target - evaluated.predicted[datum],
-                    variance: law.variance(&jacobian, datum, of_cell),
-                    by_free,
-                }
-            })
-            .collect())
+            }
+        }
+        let rests = data.iter().map(|(datum, target)| target - evaluated.predicted[*datum]);
+        let residuals = DVector::from_vec(rests.flat_map(|rest| [rest.x, rest.y]).collect());
+        Ok(Residuals { residuals, by_free, by_measured, variance: law.velocity_variance() })
+    }
+
+    /// How well the velocities nearby are explained with free cells, from the factors of places nearby.
+    fn misfit(
+        &self,
+        law: &Law<'_>,
+        (free, target): (&[Vector<f64>], Option<Vector<f64>>),
+        factors: &mut Vec<f64>,
+    ) -> Result<Misfit, Error> {
+        let misfit = self.residuals(law, free, target)?.misfit(factors);
+        misfit.ok_or_else(|| Error::Optimiser("velocities that are not finite".into()))
     }
 
     /// Deviance of the velocities nearby as things are.
     pub fn deviance(&self, law: &Law<'_>) -> Result<f64, Error> {
-        Ok(total(&self.rows(law, &[], None)?))
+        Ok(self.misfit(law, (&[], None), &mut Vec::new()).map_or(f64::INFINITY, |misfit| misfit.deviance))
     }
 
     /// Damped Gauss–Newton on the places of free cells, the coefficients held. Steps are counted by evaluations.
@@ -141,21 +153,29 @@ impl Neighbourhood {
             z.iter().zip(&guess.places).map(|(z, at)| (z - at).norm_squared()).sum::<f64>() * stiffness
         };
         let mut z = guess.start.clone();
-        let mut rows = self.rows(law, &z, guess.target)?;
-        let mut value = total(&rows) + from_prior(&z);
+        let mut factors = Vec::new();
+        let Ok(mut misfit) = self.misfit(law, (&z, guess.target), &mut factors) else {
+            return Ok(Placed {
+                deviance: f64::INFINITY,
+                strain: f64::INFINITY,
+                prior: 0.0,
+                information: DMatrix::zeros(2 * z.len(), 2 * z.len()),
+                positions: z,
+            });
+        };
+        let mut value = misfit.deviance + from_prior(&z);
         let (mut damping, mut done) = (DAMPING[0], 1);
-        let mut normal = Normal::new(&rows, z.len());
         while done < steps && damping < DAMPING[1] && !z.is_empty() {
-            let Some(delta) = normal.step(&z, guess, stiffness, damping) else { break };
+            let Some(delta) = step(&misfit, &z, guess, damping) else { break };
             let trial: Vec<Vector<f64>> = z.iter().zip(&delta).map(|(z, d)| z + d).collect();
             done += 1;
-            let other = self.rows(law, &trial, guess.target);
-            let next = other.as_ref().map_or(f64::INFINITY, |rows| total(rows) + from_prior(&trial));
+            let mut of_trial = factors.clone();
+            let other = self.misfit(law, (&trial, guess.target), &mut of_trial);
+            let next = other.as_ref().map_or(f64::INFINITY, |other| other.deviance + from_prior(&trial));
             match other {
                 Ok(other) if next < value => {
                     let small = value - next < SMALL_GAIN;
-                    (z, rows, value) = (trial, other, next);
-                    normal = Normal::new(&rows, z.len());
+                    (z, misfit, value, factors) = (trial, other, next, of_trial);
                     damping = (0.2 * damping).max(1e-4);
                     if small {
                         break;
@@ -165,20 +185,30 @@ impl Neighbourhood {
             }
         }
         let prior = from_prior(&z);
-        Ok(Placed { positions: z, deviance: value - prior, prior, information: normal.information })
+        let strain = factors.iter().copied().fold(0.0, f64::max);
+        Ok(Placed { positions: z, deviance: value - prior, strain, prior, information: misfit.information })
     }
 
-    /// The largest empty circle that a place is in: its centre, and its radius in roots of the mean area of the cells around.
-    pub fn empty_circle(&self, place: Vector<f64>) -> Option<(Vector<f64>, f64)> {
-        let circles = self.tessellation.triangles().into_iter().map(|triangle| {
-            let [a, b, c] = triangle.cells.map(|cell| self.positions[cell as usize]);
+    /// The largest empty circle that a place is in beside some further cells: its centre, and its radius in roots of the mean area
+    /// of the cells around.
+    pub fn empty_circle(
+        &self,
+        place: Vector<f64>,
+        others: &[Vector<f64>],
+    ) -> Result<Option<(Vector<f64>, f64)>, Error> {
+        let positions: Vec<Vector<f64>> = self.positions.iter().chain(others).copied().collect();
+        let with_others = if others.is_empty() { None } else { Some(tessellate(&positions)?) };
+        let tessellation = with_others.as_ref().unwrap_or(&self.tessellation);
+        let circles = tessellation.triangles().into_iter().map(|triangle| {
+            let [a, b, c] = triangle.cells.map(|cell| positions[cell as usize]);
             let centre = circumcentre(b - a, c - a);
             (a + centre, centre.norm(), triangle.cells.map(|cell| cell as usize))
         });
         let around = circles.filter(|(centre, radius, _)| (place - centre).norm() <= *radius);
-        let (centre, radius, cells) = around.max_by(|a, b| a.1.total_cmp(&b.1))?;
-        let areas = areas(&self.tessellation, &self.positions);
-        Some((centre, radius / size_around(&self.tessellation, &areas, &cells)))
+        Ok(around.max_by(|a, b| a.1.total_cmp(&b.1)).map(|(centre, radius, cells)| {
+            let areas = areas(tessellation, &positions);
+            (centre, radius / size_around(tessellation, &areas, &cells))
+        }))
     }
 
     /// The polygon of a cell.
@@ -195,53 +225,20 @@ fn tessellate(positions: &[Vector<f64>]) -> Result<Tessellation, Error> {
     Tessellation::new(positions, Domain::Open).map_err(|source| Error::Geometry { frame: 0, source })
 }
 
-fn total(rows: &[Row]) -> f64 {
-    let sum: f64 = rows.iter().map(|row| deviance(row.residual.norm_squared(), row.variance)).sum();
-    if sum.is_nan() { f64::INFINITY } else { sum }
-}
-
-/// The normal equations of the free places.
-struct Normal {
-    information: DMatrix<f64>,
-    gradient: DVector<f64>,
-}
-
-impl Normal {
-    fn new(rows: &[Row], free: usize) -> Self {
-        let (mut information, mut gradient) = (DMatrix::zeros(2 * free, 2 * free), DVector::zeros(2 * free));
-        for row in rows {
-            let w = weight(row.residual.norm_squared(), row.variance);
-            for (i, a) in row.by_free.iter().enumerate() {
-                let mut slope = gradient.fixed_rows_mut::<2>(2 * i);
-                slope += a.transpose() * row.residual * w;
-                for (j, b) in row.by_free.iter().enumerate() {
-                    let mut block = information.fixed_view_mut::<2, 2>(2 * i, 2 * j);
-                    block += a.transpose() * b * w;
-                }
-            }
-        }
-        Self { information, gradient }
+/// A damped step of the places of free cells.
+fn step(misfit: &Misfit, z: &[Vector<f64>], guess: &Guess, damping: f64) -> Option<Vec<Vector<f64>>> {
+    let stiffness = guess.spread.powi(-2);
+    let (mut hessian, mut gradient) = (misfit.information.clone(), misfit.gradient.clone());
+    for (i, (z, at)) in z.iter().zip(&guess.places).enumerate() {
+        let mut slope = gradient.fixed_rows_mut::<2>(2 * i);
+        slope -= (z - at) * stiffness;
     }
-
-    fn step(
-        &self,
-        z: &[Vector<f64>],
-        guess: &Guess,
-        stiffness: f64,
-        damping: f64,
-    ) -> Option<Vec<Vector<f64>>> {
-        let (mut hessian, mut gradient) = (self.information.clone(), self.gradient.clone());
-        for (i, (z, at)) in z.iter().zip(&guess.places).enumerate() {
-            let mut slope = gradient.fixed_rows_mut::<2>(2 * i);
-            slope -= (z - at) * stiffness;
-        }
-        for i in 0..2 * z.len() {
-            hessian[(i, i)] = (hessian[(i, i)] + stiffness) * (1.0 + damping);
-        }
-        let delta = hessian.cholesky()?.solve(&gradient);
-        let shorter = (LONGEST_STEP / delta.amax().max(f64::MIN_POSITIVE)).min(1.0);
-        Some((0..z.len()).map(|i| Vector::new(delta[2 * i], delta[2 * i + 1]) * shorter).collect())
+    for i in 0..2 * z.len() {
+        hessian[(i, i)] = (hessian[(i, i)] + stiffness) * (1.0 + damping);
     }
+    let delta = hessian.cholesky()?.solve(&gradient);
+    let shorter = (LONGEST_STEP / delta.amax().max(f64::MIN_POSITIVE)).min(1.0);
+    Some((0..z.len()).map(|i| Vector::new(delta[2 * i], delta[2 * i + 1]) * shorter).collect())
 }
 
 /// The part of a grid around a place, in the coordinates of that place, with what is to be explained there. Where a grid does

@@ -42,7 +42,7 @@ const SHARES: [(ChangeKind, usize, usize); 4] = [
 const SPLIT_AHEAD: f64 = 6.0;
 
 /// Evaluations of a placement.
-const STEPS: usize = 20;
+pub(super) const STEPS: usize = 20;
 
 /// A change to be tried.
 #[derive(Debug, Clone)]
@@ -127,7 +127,7 @@ pub(super) fn assess(
     proposal: &Proposal,
     evidence: &Evidence<'_>,
 ) -> Result<Change, Error> {
-    judge(scene, proposal, None, &[], evidence)
+    judge(scene, proposal, &[], &[], evidence)
 }
 
 /// A change that was made, placed anew from where it is, with its evidence; or what has more in its place: a cell beside a
@@ -145,7 +145,7 @@ pub(super) fn reassess(
     };
     let proposal = |kind, centre, removed| Proposal { kind, centre, removed, promise: 0.0 };
     let own = proposal(change.kind, centre, change.removed.clone());
-    let own = judge(scene, &own, Some(index), &change.added, evidence)?;
+    let own = judge(scene, &own, &[index], &change.added, evidence)?;
     let others: Vec<Proposal> = match change.kind {
         ChangeKind::Split => {
             change.added.iter().map(|place| proposal(ChangeKind::Inserted, *place, Vec::new())).collect()
@@ -164,7 +164,7 @@ pub(super) fn reassess(
     };
     let mut best = own;
     for other in others {
-        let other = judge(scene, &other, Some(index), &[], evidence)?;
+        let other = judge(scene, &other, &[index], &[], evidence)?;
         let ahead = if other.kind == ChangeKind::Split { SPLIT_AHEAD } else { 0.0 };
         if other.evidence > best.evidence + ahead {
             best = other;
@@ -173,17 +173,17 @@ pub(super) fn reassess(
     Ok(best)
 }
 
-/// What speaks for a proposal once one of the changes is undone, from some places or those that are usual.
+/// What speaks for a proposal once some of the changes are undone, from some places or those that are usual.
 fn judge(
     scene: &Scene<'_>,
     proposal: &Proposal,
-    undone: Option<usize>,
+    undone: &[usize],
     start: &[Vector<f64>],
     evidence: &Evidence<'_>,
 ) -> Result<Change, Error> {
     let Evidence { law, polygons, rates, spread } = evidence;
     let before = Neighbourhood::new(scene, proposal.centre, undone, &[])?;
-    let (feature, guesses) = features(scene, &before, proposal, polygons);
+    let (feature, guesses) = features(scene, &before, proposal, polygons)?;
     let after = match proposal.removed.is_empty() {
         true => None,
         false => Some(Neighbourhood::new(scene, proposal.centre, undone, &proposal.removed)?),
@@ -240,7 +240,7 @@ fn features(
     before: &Neighbourhood,
     proposal: &Proposal,
     polygons: &Polygons,
-) -> (f64, Vec<Guess>) {
+) -> Result<(f64, Vec<Guess>), Error> {
     let own: Vec<usize> = proposal
         .removed
         .iter()
@@ -249,10 +249,10 @@ fn features(
     let area: f64 = own.iter().map(|cell| before.polygon(*cell).map_or(f64::NAN, |p| p.shape().area)).sum();
     let guess =
         |places: Vec<Vector<f64>>, spread: f64| Guess { start: places.clone(), places, spread, target: None };
-    match proposal.kind {
+    Ok(match proposal.kind {
         ChangeKind::Inserted => {
-            let (centre, radius) =
-                before.empty_circle(proposal.centre).unwrap_or((proposal.centre, f64::NAN));
+            let circle = before.empty_circle(proposal.centre, &[])?;
+            let (centre, radius) = circle.unwrap_or((proposal.centre, f64::NAN));
             (radius, vec![guess(vec![centre], polygons.spread)])
         }
         ChangeKind::Deleted => (area, vec![guess(Vec::new(), polygons.spread)]),
@@ -263,7 +263,7 @@ fn features(
         ChangeKind::Split => {
             let Some((cell, polygon)) = own.first().and_then(|cell| Some((*cell, before.polygon(*cell)?)))
             else {
-                return (f64::NAN, Vec::new());
+                return Ok((f64::NAN, Vec::new()));
             };
             // Along the long axis of the polygon, and beside it.
             let [mut xx, mut xy, mut yy] = [0.0; 3];
@@ -282,5 +282,5 @@ fn features(
             });
             (area, guesses.collect())
         }
-    }
+    })
 }

@@ -106,14 +106,14 @@ impl<'a> Scene<'a> {
         self.squares = judged.iter().map(of).collect();
     }
 
-    /// The cells, with one of the changes undone, without some further detections.
-    pub fn cells(&self, undone: Option<usize>, without: &[usize]) -> Vec<Cell> {
+    /// The cells, with some of the changes undone, without some further detections.
+    pub fn cells(&self, undone: &[usize], without: &[usize]) -> Vec<Cell> {
         let own = self.origins.iter().zip(&self.observation.positions).filter(|(origin, _)| match origin {
             Origin::Detected(cell) => !without.contains(cell),
-            Origin::Added(index, _) => Some(*index) != undone,
+            Origin::Added(index, _) => !undone.contains(index),
         });
         let mut cells: Vec<Cell> = own.map(|(origin, position)| self.cell(*origin, *position)).collect();
-        let restored = undone.map(|index| &self.changes[index].removed).into_iter().flatten();
+        let restored = undone.iter().flat_map(|index| &self.changes[*index].removed);
         for cell in restored.filter(|cell| !without.contains(cell)) {
             cells.push(self.cell(Origin::Detected(*cell), self.measured.positions[*cell]));
         }

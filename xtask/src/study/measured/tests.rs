@@ -22,7 +22,7 @@ const RIGHT: Held = Held::Right { deviation: 3.0, share: 0.1 };
 /// What each class is held to.
 fn held(class: &Class) -> Held {
     match class.name {
-        "complete" | "open" | "missed-2" | "missed-5" | "merged-split" => RIGHT,
+        "complete" | "open" | "missed-2" | "missed-5" | "open-missed-2" | "merged-split" => RIGHT,
         "flow-gaussian-35" | "flow-gaussian-50" | "flow-square" | "centroids" => RIGHT,
         "tracks-05" | "tracks-15" | "broken-tracks" => RIGHT,
         _ => Held::Answer,
