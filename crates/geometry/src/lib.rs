@@ -49,6 +49,7 @@ mod region;
 mod scalar;
 mod side;
 mod tessellation;
+mod transition;
 
 pub use agreement::{Agreement, MeasuredShape, agreement, comparable};
 pub use centroid::centroid_slopes;
@@ -71,3 +72,4 @@ pub use region::Region;
 pub use scalar::{Scalar, lift};
 pub use side::Side;
 pub use tessellation::{Tessellation, Triangle};
+pub use transition::Transition;

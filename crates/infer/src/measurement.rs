@@ -150,34 +150,33 @@ pub fn measure(
             Err(Error::Degenerate) => return Ok((frames, measurement)),
             other => other?,
         };
-        if usual_share(best.found[0][0], best.found[0][1]) != Some(SITES) {
+        if usual_share(best.found[0]) != Some(SITES) {
             let other = settle(at(&frames, CENTROIDS)?, request, &unknowns, &mut watch)?;
             if other.criterion < best.criterion {
                 best = other;
             }
         }
-        let [value, error] = best.found[0];
-        measurement.share = determined_share(value, error);
+        measurement.share = determined_share(best.found[0]);
         if measurement.share.value != 0.0 {
             frames = at(&frames, measurement.share.value)?;
         }
-        if usual_share(value, error).is_none() {
+        if usual_share(best.found[0]).is_none() {
             frames = frames.into_iter().map(|frame| frame.with_unknown(Unknown::Share)).collect();
         }
     }
     Ok((frames, measurement))
 }
 
-/// Sites or centroids, where the share is about that of either.
-pub(crate) fn usual_share(value: f64, error: f64) -> Option<f64> {
+/// Sites or centroids, where a share with its standard error is about that of either.
+pub(crate) fn usual_share([value, error]: [f64; 2]) -> Option<f64> {
     [SITES, CENTROIDS].into_iter().find(|usual| (value - usual).abs() <= NORMAL_95 * error + TOLERANCE)
 }
 
-/// A share that was estimated: the usual one where it is about that.
-pub(crate) fn determined_share(value: f64, error: f64) -> Determined {
+/// A share that was estimated, with its standard error: the usual one where it is about that.
+pub(crate) fn determined_share([value, error]: [f64; 2]) -> Determined {
     let interval = [value - NORMAL_95 * error, value + NORMAL_95 * error];
     Determined {
-        value: usual_share(value, error).unwrap_or(value.clamp(SITES, CENTROIDS)),
+        value: usual_share([value, error]).unwrap_or(value.clamp(SITES, CENTROIDS)),
         interval: Some(interval.map(|end| end.clamp(SITES, CENTROIDS))),
     }
 }

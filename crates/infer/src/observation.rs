@@ -231,7 +231,7 @@ impl Observation {
     /// `(σ_r / σ_i)²` of a cell; zero if it was not seen.
     pub(crate) fn stiffness(&self, cell: usize) -> f64 {
         let own = self.stiffness.get(cell).copied().unwrap_or(1.0);
-        match self.share != 0.0 && !self.has_polygon(cell) {
+        match self.share != 0.0 && !self.may_have_polygon(cell) {
             true => own / (1.0 + (self.share * OFF_CENTRE).powi(2)),
             false => own,
         }

@@ -40,11 +40,9 @@ impl PositionRows {
             if root > 0.0 {
                 let held = frame.is_held(place);
                 let polygonal = (share != 0.0 || of_share.is_some())
-                    && frame.has_polygon(place)
-                    && tessellation.is_closed(place);
+                    && frame.fill_polygon(&mut polygon, tessellation, positions, place);
                 let mut offset = Vector::zeros();
                 if polygonal {
-                    polygon.fill(tessellation, positions, place);
                     offset = polygon.centroid();
                     if share != 0.0 {
                         centroid_slopes(tessellation, positions, place, |neighbour, block| {
@@ -96,14 +94,17 @@ pub(crate) fn squares(
     let mut polygon = CellPolygon::default();
     let square = |(cell, e): (usize, &[f64])| {
         let mut rest = frame.aim(cell) - Vector::new(e[0], e[1]);
-        if frame.share() != 0.0 && frame.has_polygon(cell) && tessellation.is_closed(cell) {
-            polygon.fill(tessellation, positions, cell);
+        if frame.share() != 0.0 && frame.fill_polygon(&mut polygon, tessellation, positions, cell) {
             rest -= polygon.centroid() * frame.share();
         }
         frame.stiffness(cell) * rest.norm_squared()
     };
     nudges.chunks_exact(2).enumerate().map(square).sum()
 }
+
+/// Largest derivative of a centroid. On the way to a fit a cell can come so near another that a corner goes wherever the least displacement
+/// sends it; such a row is scaled down to this, or it would hide all others behind rounding.
+const LARGEST: f64 = 1e3;
 
 /// Rows on the way.
 struct Rowed {
@@ -144,6 +145,12 @@ impl Rowed {
         let mut by_coefficient = DMatrix::zeros(2, self.p);
         if let Some((k, slope)) = slope {
             by_coefficient.set_column(k, &slope);
+        }
+        let begin = self.begin();
+        let own = &mut self.jacobian.block[begin..];
+        let largest = own.iter().flatten().fold(0.0, |largest: f64, entry| largest.max(entry.abs()));
+        if largest > LARGEST {
+            own.iter_mut().flatten().for_each(|entry| *entry *= LARGEST / largest);
         }
         self.rows.push((row, rest, by_coefficient));
         self.skip();

@@ -8,7 +8,7 @@ use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
+use voronudge_geometry::{CellPolygon, Domain, Scalar, Tessellation, Vector};
 
 /// Cells per task.
 pub(crate) const CHUNK: usize = 1024;
@@ -149,31 +149,40 @@ fn elements<S: Scalar>(
     on_cells: &mut [Vector<S>],
 ) {
     let mut polygon = CellPolygon::default();
-    let has_ring_terms = model.has_ring_terms();
     let offset = tessellation.ring(cells.start).start;
     for (cell, on_cell) in cells.zip(on_cells) {
         let ring = tessellation.ring(cell);
         let own = &mut forces[ring.start - offset..ring.end - offset];
         if tessellation.is_closed(cell) {
             polygon.fill(tessellation, positions, cell);
-            *on_cell = VertexForces::of(&model.terms, polygon.shape()).on_ring(&polygon, own);
-            if has_ring_terms {
-                let element = CellElement {
-                    cell,
-                    neighbours: tessellation.neighbours(cell),
-                    polygon: &polygon,
-                    position: positions[cell],
-                    domain: tessellation.domain(),
-                    environment: &model.environment,
-                };
-                ring_terms(model, &element, &mut RingForces { on_ring: own, on_cell });
-            }
+            let (neighbours, domain) = (tessellation.neighbours(cell), tessellation.domain());
+            *on_cell = element(model, cell, neighbours, positions[cell], domain, &polygon, own);
         } else {
             let nan = S::constant(f64::NAN);
             *on_cell = Vector::new(nan, nan);
             own.fill(*on_cell);
         }
     }
+}
+
+/// One element: writes the forces on the ring and returns that on the cell itself.
+#[inline]
+pub(crate) fn element<S: Scalar>(
+    model: &Model<S>,
+    cell: usize,
+    neighbours: &[u32],
+    position: Vector<S>,
+    domain: Domain,
+    polygon: &CellPolygon<S>,
+    on_ring: &mut [Vector<S>],
+) -> Vector<S> {
+    let mut on_cell = VertexForces::of(&model.terms, polygon.shape()).on_ring(polygon, on_ring);
+    if model.has_ring_terms() {
+        let element =
+            CellElement { cell, neighbours, polygon, position, domain, environment: &model.environment };
+        ring_terms(model, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
+    }
+    on_cell
 }
 
 /// Adds the forces of the ring terms of a model for one cell.

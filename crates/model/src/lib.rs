@@ -42,6 +42,7 @@ mod row_assembly;
 mod stress;
 mod structure;
 mod term;
+mod transition;
 
 pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use axis::Axis;
@@ -58,3 +59,4 @@ pub use structure::{Evaluation, Model, Structure, WeightedResponse, WeightedTerm
 pub use term::{
     Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, RingTerm, ShapeTerm, Term,
 };
+pub use transition::{Exchange, JumpSlopes};

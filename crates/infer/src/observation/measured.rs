@@ -30,13 +30,11 @@ impl Observation {
         let mut positions = measured.clone();
         let mut polygon = CellPolygon::default();
         for _ in 0..if share > 0.0 { APPROACHES } else { 0 } {
-            let offset = |cell: usize| {
-                if !(polygons[cell] && tessellation.is_closed(cell)) {
-                    return Vector::zeros();
-                }
-                polygon.fill(&tessellation, &positions, cell);
-                polygon.centroid() * share
-            };
+            let offset =
+                |cell: usize| match polygons[cell] && filled(&mut polygon, &tessellation, &positions, cell) {
+                    true => polygon.centroid() * share,
+                    false => Vector::zeros(),
+                };
             let offsets: Vec<Vector<f64>> = (0..positions.len()).map(offset).collect();
             positions = measured.iter().zip(offsets).map(|(y, offset)| y - offset).collect();
             tessellation = Tessellation::new(&positions, domain).map_err(failure)?;
@@ -86,7 +84,7 @@ impl Observation {
     ) -> Vec<Vector<f64>> {
         let mut polygon = CellPolygon::default();
         let place = |(cell, r): (usize, &Vector<f64>)| {
-            if self.share == 0.0 || !self.has_polygon(cell) || !tessellation.is_closed(cell) {
+            if self.share == 0.0 || !self.may_have_polygon(cell) || !tessellation.is_closed(cell) {
                 return *r;
             }
             polygon.fill(tessellation, positions, cell);
@@ -120,8 +118,36 @@ impl Observation {
         self.aims.get(cell).copied().unwrap_or_else(Vector::zeros)
     }
 
-    /// Whether a cell's polygon is known well enough to have a centroid, if it is closed.
-    pub(crate) fn has_polygon(&self, cell: usize) -> bool {
+    /// Fills the polygon of a cell at some positions, if it is known well enough to have a centroid.
+    pub(crate) fn fill_polygon(
+        &self,
+        polygon: &mut CellPolygon<f64>,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        cell: usize,
+    ) -> bool {
+        self.may_have_polygon(cell) && filled(polygon, tessellation, positions, cell)
+    }
+
+    /// Whether the surroundings of a cell are known well enough for a polygon, if it is closed.
+    pub(crate) fn may_have_polygon(&self, cell: usize) -> bool {
         self.polygons.get(cell).copied().unwrap_or(true)
     }
+}
+
+/// Distance of a corner from its cell, in units of ℓ₀, beyond which a polygon is open but for chance.
+const FARTHEST: f64 = 3.0;
+
+/// Fills the polygon of a cell; tells whether it is closed and no corner is far away, which happens at the rim of a field.
+fn filled(
+    polygon: &mut CellPolygon<f64>,
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    cell: usize,
+) -> bool {
+    if !tessellation.is_closed(cell) {
+        return false;
+    }
+    polygon.fill(tessellation, positions, cell);
+    polygon.vertices().all(|corner| corner.norm_squared() < FARTHEST * FARTHEST)
 }

@@ -5,7 +5,6 @@ use super::row_builder::RowBuilder;
 use crate::position_rows::PositionRows;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
 
@@ -37,20 +36,14 @@ impl Anchors {
         let own = objective.space.dimension();
         let of_share = (share == Share::Unknown).then_some(own);
         let dimension = own + usize::from(of_share.is_some());
-        let frames: Vec<_> = objective.frames().collect();
-        let of_frames: Vec<(usize, PositionRows)> = frames
-            .into_par_iter()
-            .map(|(index, cells)| {
-                let nudged = &placed.instants[index].0;
-                let nudges = objective.nudges(index, displacements);
-                let (tessellation, positions) = (&nudged.tessellation, &nudged.positions);
-                (index, PositionRows::new(cells, tessellation, positions, &nudges, dimension, of_share))
-            })
-            .collect();
+        let of_frames = objective.of_seen(placed, displacements, |frame, cells, nudged, nudges| {
+            let (tessellation, positions) = (&nudged.tessellation, &nudged.positions);
+            (frame, PositionRows::new(cells, tessellation, positions, nudges, dimension, of_share))
+        });
         let mut builder = RowBuilder::new(objective.states.blocks());
         let mut rows = Vec::new();
-        for (index, of_frame) in &of_frames {
-            let place = &objective.states.instants[*index].place;
+        for (frame, of_frame) in &of_frames {
+            let place = &objective.states.instants[*frame].place;
             let of_frame = of_frame.rows();
             for (row, rest, x) in of_frame.rows {
                 for (cell, block) in of_frame.jacobian.row(*row) {
@@ -95,10 +88,10 @@ mod tests {
     fn rows_are_the_derivatives_of_what_is_left_of_the_positions() {
         let (movie, space) = (movie(0.8), CoefficientSpace::new(&Constraints::default()).unwrap());
         let structure = Structure::base(1.0);
-        let states = States::new(&movie, Rule::TRAPEZOID).unwrap();
+        let states = States::new(&movie).unwrap();
         let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
-        let objective =
-            MovieObjective { movie: &movie, states: &states, structure: &structure, space: &space, levels };
+        let (movie, states, structure, space) = (&movie, &states, &structure, &space);
+        let objective = MovieObjective { movie, states, rule: Rule::Trapezoid, structure, space, levels };
         let at = |step: f64| -> Vec<f64> {
             let free = [0.1, 2.0, 0.5, 1.0];
             let places = (0..2 * states.blocks())

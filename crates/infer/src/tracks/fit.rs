@@ -1,27 +1,40 @@
-//! Coefficients, trajectories and noise levels together, on ever finer instants.
+//! Coefficients, trajectories and noise levels together, in as many steps of integration as it takes.
 
-use super::finer::Finer;
+use super::first::{forward_coefficients, naive_coefficients};
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
 use super::states::States;
-use crate::least_squares::{invert, within_bounds};
+use crate::least_squares::invert;
 use crate::noise::{FIRST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
 use crate::normal_equations::NormalEquations;
 use crate::search::{Optimum, Watch, optimise_knowing};
 use crate::{CoefficientSpace, Error, KnownNoise, Method, NoiseLevels, Request, Status};
-use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 
 /// A finer rule must change the coefficients by less than this share of their standard errors.
 const UNCHANGED: f64 = 0.2;
 
+/// Steps from one frame to the next, at least and at most.
+const FEWEST_STEPS: usize = 1;
+const MOST_STEPS: usize = 16;
+
+/// What twice the steps may change of the motions at first, as a share of what is left of these (squared).
+const FIRST_CHANGE: f64 = 1e-3;
+
+/// Steps of the optimiser at the first noise levels.
+const APPROACH: u64 = 40;
+
 /// Error of the dynamics at first, in units of the velocities: as much as the first coefficients leave open.
 const FIRST_VELOCITY_NOISE: f64 = 0.3;
 
 /// By what factor the error of the dynamics falls from one round to the next at most.
 const FALL: f64 = 0.4;
+
+/// Least error of the dynamics over the usual interval, in units of that of a position. Less would change no parameter, but hold cells so
+/// stiffly to the model that a fit cannot get past changes of neighbours.
+const LEAST_SHARE: f64 = 0.15;
 
 /// How far fit and noise levels are brought together.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +47,7 @@ struct Settling {
     enough: f64,
 }
 
-/// With the first rule, whose errors the noise levels take up; with a finer one on the way; at the end.
+/// At first; on the way; at the end.
 const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7 };
 const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY };
 const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
@@ -43,21 +56,17 @@ const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
 const LOOSENINGS: usize = 3;
 const ACCEPTED_EXCESS: f64 = 1.15;
 
-/// Relative decrease of the objective that counts as none.
+/// Relative decrease of the objective that counts as none, at the end and on the way.
 const TOLERANCE: f64 = 5e-5;
-
-/// Gauss–Newton steps of the first coefficients, which are linear but for responses.
-const FIRST_STEPS: usize = 4;
+const TOLERANCE_ON_THE_WAY: f64 = 2e-4;
 
 /// Spacing of log k at which the likelihood is looked at.
 const SPACING: f64 = 1.0;
 
-/// Fits with what finer steps add at the fit before.
-const CORRECTIONS: usize = 3;
-
 /// A fitted movie.
 pub(super) struct Fit {
     pub states: States,
+    pub rule: Rule,
     pub parameters: Vec<f64>,
     pub levels: NoiseLevels,
     pub naive: Vec<f64>,
@@ -66,8 +75,6 @@ pub(super) struct Fit {
     pub steps: u64,
     /// Φ / σ_v² after each round.
     pub trace: Vec<f64>,
-    /// Steps of the integration from one frame to the next.
-    pub substeps: usize,
     /// By how much a finer rule would change the coefficients, the largest change in standard errors.
     pub error: f64,
 }
@@ -81,6 +88,8 @@ pub(super) struct Course<'a, 'w> {
     request: &'a Request,
     space: &'a CoefficientSpace,
     watch: &'a mut Watch<'w>,
+    /// How the cells are followed from frame to frame.
+    pub rule: Rule,
     levels: NoiseLevels,
     value: f64,
     status: Status,
@@ -95,29 +104,13 @@ pub(super) fn fit(
     space: &CoefficientSpace,
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
-    let Begun { mut course, mut states, mut at, naive } = Begun::new(movie, request, space, watch)?;
-    let (mut substeps, mut error) = (1, f64::INFINITY);
-    for rule in &Rule::LADDER[1..] {
-        let next = States::new(movie, *rule)?;
-        let finer = Finer::new(&course.objective(&states), &at, &next)?;
-        error = course.change(&states, &at, &finer.added)?;
-        if error < UNCHANGED {
-            break;
-        }
-        if rule.steps == 1 {
-            states = next;
-            at = course.pass(&states, finer.at)?;
-        } else {
-            substeps = rule.steps;
-            at = course.correct(&mut states, at, &next, finer)?;
-        }
-    }
-    at = course.finish(&states, at)?;
-    let Course { levels, value, status, steps, trace, .. } = course;
-    Ok(Fit { states, parameters: at, levels, naive, value, status, steps, trace, substeps, error })
+    let Begun { mut course, states, at, naive } = Begun::new(movie, request, space, watch)?;
+    let (at, error) = course.finish(&states, at)?;
+    let Course { rule, levels, value, status, steps, trace, .. } = course;
+    Ok(Fit { states, rule, parameters: at, levels, naive, value, status, steps, trace, error })
 }
 
-/// A fit with the first rule.
+/// A fit whose noise levels are settled roughly.
 pub(super) struct Begun<'a, 'w> {
     pub course: Course<'a, 'w>,
     pub states: States,
@@ -144,16 +137,18 @@ impl<'a, 'w> Begun<'a, 'w> {
             request,
             space,
             watch,
+            rule: Rule::Trapezoid,
             levels: first,
             value: f64::INFINITY,
             status: Status::StepLimit,
             steps: 0,
             trace: Vec::new(),
         };
-        let states = States::new(movie, Rule::TRAPEZOID)?;
-        let naive = first_coefficients(&course.objective(&states))?;
-        let mut at = course.objective(&states).start(&naive);
-        at = course.settle(&states, at, ROUGH)?;
+        let states = States::new(movie)?;
+        let naive = naive_coefficients(&course.objective(&states))?;
+        let at = course.foresee(&states, naive.clone())?;
+        let at = course.approach(&states, at)?;
+        let at = course.settle(&states, at, ROUGH)?;
         Ok(Self { course, states, at, naive })
     }
 }
@@ -166,6 +161,7 @@ impl<'a> Course<'a, '_> {
         MovieObjective {
             movie: self.movie,
             states,
+            rule: self.rule,
             structure: &self.request.structure,
             space: self.space,
             levels: self.levels,
@@ -186,7 +182,8 @@ impl<'a> Course<'a, '_> {
     fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
         let mut start = (at, None);
         for round in 0..how.rounds {
-            let optimum = self.optimise(states, start, how.steps, (round, how.rounds))?;
+            let optimum =
+                self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
             let next = self.next_levels(&self.objective(states), &optimum.equations)?;
             let change = (next.position / self.levels.position).ln().abs()
                 + (next.velocity / self.levels.velocity).ln().abs();
@@ -201,21 +198,28 @@ impl<'a> Course<'a, '_> {
 
     /// Noise levels, and the minimum at these. Kinks where contacts change can keep a fit from the minimum that the likelihood expects:
     /// what is left then counts as error of the dynamics.
-    fn finish(&mut self, states: &States, at: Vec<f64>) -> Result<Vec<f64>, Error> {
-        let mut start = self.settled(states, at, FINAL)?;
+    fn finish(&mut self, states: &States, mut at: Vec<f64>) -> Result<(Vec<f64>, f64), Error> {
+        let (mut start, error) = loop {
+            let (settled, equations) = self.settled(states, at, FINAL)?;
+            let (error, more) = self.refine(states, &settled)?;
+            if !more {
+                break ((settled, equations), error);
+            }
+            at = settled;
+        };
         let most = match self.request.method {
             Method::Search { max_steps, .. } | Method::Descent { max_steps, .. } => max_steps,
         };
         for _ in 0..LOOSENINGS {
-            let optimum = self.optimise(states, start, most, (1, 1))?;
+            let optimum = self.optimise(states, start, most, TOLERANCE, (1, 1))?;
             let excess = optimum.value / self.objective(states).expected();
             if excess < ACCEPTED_EXCESS || self.request.noise.velocity.is_some() {
-                return Ok(optimum.parameters);
+                return Ok((optimum.parameters, error));
             }
             self.levels.velocity *= excess.sqrt();
             start = (optimum.parameters, Some(optimum.equations.at_levels(self.levels)));
         }
-        Ok(self.optimise(states, start, most, (1, 1))?.parameters)
+        Ok((self.optimise(states, start, most, TOLERANCE, (1, 1))?.parameters, error))
     }
 
     fn optimise(
@@ -223,6 +227,7 @@ impl<'a> Course<'a, '_> {
         states: &States,
         start: Start,
         most: u64,
+        tolerance: f64,
         round: (u64, u64),
     ) -> Result<Optimum, Error> {
         let objective = self.objective(states);
@@ -232,7 +237,7 @@ impl<'a> Course<'a, '_> {
             Ok(()) => ControlFlow::Continue(()),
             Err(_) => ControlFlow::Break(()),
         };
-        let optimum = optimise_knowing(&objective, start, most, TOLERANCE, &mut observer)?;
+        let optimum = optimise_knowing(&objective, start, most, tolerance, &mut observer)?;
         self.steps += optimum.steps;
         self.trace.push(optimum.value / self.levels.velocity.powi(2));
         (self.value, self.status) = (optimum.value, optimum.status);
@@ -254,60 +259,71 @@ impl<'a> Course<'a, '_> {
                 Restricted { equations, components, known }.towards(self.levels, SPACING)?
             }
         };
-        Ok(NoiseLevels { velocity: wanted.velocity.max(FALL * self.levels.velocity), ..wanted })
+        let least = match self.request.noise.velocity {
+            Some(_) => 0.0,
+            None => LEAST_SHARE * wanted.position / self.movie.interval(),
+        };
+        Ok(NoiseLevels { velocity: wanted.velocity.max(FALL * self.levels.velocity).max(least), ..wanted })
     }
 
-    /// Fits with what a finer rule adds to the displacements, found at one fit and put into the next. Derivatives are those of the coarse
-    /// rule: they weigh the residuals, whose expected value at the truth is zero for any weights.
-    fn correct(
-        &mut self,
-        states: &mut States,
-        mut at: Vec<f64>,
-        next: &States,
-        mut finer: Finer,
-    ) -> Result<Vec<f64>, Error> {
-        for correction in 0..CORRECTIONS {
-            if correction > 0 {
-                finer = Finer::new(&self.objective(states), &at, next)?;
+    /// The coefficients that follow the cells best from where they were seen in one frame to where they were seen in the next, in as many
+    /// steps of integration as it takes.
+    fn foresee(&mut self, states: &States, mut free: Vec<f64>) -> Result<Vec<f64>, Error> {
+        self.rule = Rule::RungeKutta(FEWEST_STEPS);
+        loop {
+            free = forward_coefficients(&self.objective(states), &free)?;
+            let at = self.objective(states).start(&free);
+            let twice = self.rule.twice();
+            let (coarse, fine) = (self.rests(states, &at, self.rule)?, self.rests(states, &at, twice)?);
+            let whole: f64 = coarse.iter().map(|rest| rest.norm_squared()).sum();
+            let changed: f64 =
+                fine.iter().zip(&coarse).map(|(fine, coarse)| (fine - coarse).norm_squared()).sum();
+            if changed < FIRST_CHANGE * whole || self.rule.steps() >= MOST_STEPS {
+                return Ok(at);
             }
-            states.motions.iter_mut().zip(&finer.added).for_each(|(motion, added)| motion.added = *added);
-            at = self.pass(states, at)?;
+            self.rule = twice;
         }
-        Ok(at)
     }
 
-    /// By how much what a finer rule adds would change the coefficients: the largest change in standard errors.
-    fn change(&self, states: &States, at: &[f64], added: &[Vector<f64>]) -> Result<f64, Error> {
-        let objective = self.objective(states);
-        let steps = states.rule.steps;
-        let of_rows = states.motions.iter().zip(added).flat_map(|(motion, all)| {
-            let each = (motion.added - all) * objective.unit(motion.interval) / steps as f64;
-            std::iter::repeat_n(each, steps)
-        });
-        let reduced = objective.response(at, of_rows.collect())?;
+    /// Fits at the first noise levels in as many steps of integration as it takes. Levels are not estimated on the way: far from the
+    /// minimum the likelihood takes for noise what a better fit would explain.
+    fn approach(&mut self, states: &States, mut at: Vec<f64>) -> Result<Vec<f64>, Error> {
+        loop {
+            at = self.optimise(states, (at, None), APPROACH, TOLERANCE_ON_THE_WAY, (0, 1))?.parameters;
+            if !self.refine(states, &at)?.1 {
+                return Ok(at);
+            }
+        }
+    }
+
+    /// Takes as many steps as the coefficients need at a point: what more would change, and whether they have become more.
+    fn refine(&mut self, states: &States, at: &[f64]) -> Result<(f64, bool), Error> {
+        let before = self.rule;
+        loop {
+            let twice = self.rule.twice();
+            let error = self.change(states, at, [self.rule, twice])?;
+            if error < UNCHANGED || self.rule.steps() >= MOST_STEPS {
+                return Ok((error, self.rule != before));
+            }
+            self.rule = twice;
+        }
+    }
+
+    /// What the model leaves of the motions by some rule.
+    fn rests(&self, states: &States, at: &[f64], rule: Rule) -> Result<Vec<Vector<f64>>, Error> {
+        let objective = MovieObjective { rule, ..self.objective(states) };
+        Ok(objective.residuals(&objective.place(at)?, at))
+    }
+
+    /// By how much one rule in place of another would change the coefficients: the largest change in standard errors.
+    fn change(&self, states: &States, at: &[f64], rules: [Rule; 2]) -> Result<f64, Error> {
+        let [coarse, fine] = [self.rests(states, at, rules[0])?, self.rests(states, at, rules[1])?];
+        let changed = fine.iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect();
+        let reduced = MovieObjective { rule: rules[0], ..self.objective(states) }.response(at, changed)?;
         let covariance = invert(reduced.information.clone())?;
         let response = &covariance * &reduced.gradient;
         let covariance = covariance * self.levels.velocity.powi(2);
         let in_errors = response.iter().enumerate().map(|(k, d)| d.abs() / covariance[(k, k)].sqrt());
         Ok(in_errors.fold(0.0, f64::max))
     }
-}
-
-/// The coefficients by regression of the displacements on the mean of the forces at both ends.
-fn first_coefficients(objective: &MovieObjective<'_>) -> Result<Vec<f64>, Error> {
-    let p = objective.space.dimension();
-    let mut free = DVector::zeros(p);
-    for _ in 0..FIRST_STEPS {
-        let at = objective.start(free.as_slice());
-        let placed = objective.place(&at)?;
-        let (mut normal, mut right) = (DMatrix::zeros(p, p), DVector::zeros(p));
-        let rows = objective.residuals(&placed, &at);
-        for (x, rest) in objective.columns_without_middles(&placed).iter().zip(rows) {
-            normal += x.transpose() * x;
-            right += x.transpose() * DVector::from_column_slice(rest.as_slice());
-        }
-        let newton = invert(normal.clone())? * right;
-        free = within_bounds(objective.space, free + newton, normal)?;
-    }
-    Ok(free.as_slice().to_vec())
 }

@@ -1,11 +1,8 @@
-//! Displacements predicted from the measured positions, also those left out of the fit.
-//!
-//! The prediction of a displacement is the mean of the forces at both of its ends, as measured. An error of a measured position
-//! then adds to the displacement with one sign at one end and the other at the other, and to the forces with the same sign at both, so that
-//! errors of measurement cannot pose as a prediction (as they do where the force is taken at the beginning alone).
+//! Displacements predicted: from the measured positions, and from places that were fitted without them.
 
 use super::movie::Movie;
 use super::objective::MovieObjective;
+use super::rule::Rule;
 use super::states::{Motion, States};
 use crate::Error;
 use crate::cross_validation::ratio;
@@ -19,19 +16,21 @@ const FOLDS: usize = 4;
 /// Fewest intervals of which some are left out as a whole.
 const FEWEST_INTERVALS: usize = 3;
 
+/// Steps of integration from frame to frame up to which cells hardly relax in between.
+const FEW_STEPS: usize = 4;
+
 /// Damping of the step from the fit to all to the fit to some.
 const DAMPING: f64 = 1e-6;
 
 /// The motions between the frames as they were measured, with the translations of a fit.
 pub(super) struct AsMeasured<'a> {
-    /// The objective with no instants between frames.
     objective: MovieObjective<'a>,
     /// Displacements: none but the translations.
     displacements: Vec<f64>,
 }
 
 impl<'a> AsMeasured<'a> {
-    /// `objective` has no instants between frames; `drifts` are the unknowns of the translations of a fit.
+    /// `drifts` are the unknowns of the translations of a fit.
     pub fn new(objective: MovieObjective<'a>, drifts: &[f64]) -> Self {
         let mut displacements = vec![0.0; 2 * objective.states.blocks()];
         let first = 2 * objective.states.drifts.0;
@@ -40,28 +39,46 @@ impl<'a> AsMeasured<'a> {
     }
 
     /// The unknowns for some β.
-    pub fn at(&self, free: &[f64]) -> Vec<f64> {
+    fn at(&self, free: &[f64]) -> Vec<f64> {
         free.iter().chain(&self.displacements).copied().collect()
     }
 
-    /// Mean velocities of the motions, translations removed.
-    pub fn velocities(&self) -> Vec<Vector<f64>> {
+    /// Mean velocities of the motions of cells that were seen at both frames, translations removed.
+    pub fn velocities(&self) -> Vec<Option<Vector<f64>>> {
         let MovieObjective { movie, states, .. } = self.objective;
         let velocity = |motion: &Motion| {
-            let at = |node: usize| {
-                let cell = motion.cells[node] as usize;
-                states.position(motion.interval + node, cell, &self.displacements)
+            let track = &movie.tracks[motion.track as usize];
+            // Where the site would have been seen, of a cell that was.
+            let at = |end: usize| {
+                let (frame, cell) = (motion.interval + end, motion.cells[end] as usize);
+                track.at(frame).map(|_| states.position(frame, cell, &self.displacements))
             };
             let drift = self.objective.drift(motion.interval, &self.displacements);
-            (at(1) - at(0) - drift) / (movie.times[motion.interval + 1] - movie.times[motion.interval])
+            Some((at(1)? - at(0)? - drift) / self.objective.span(motion.interval))
         };
         states.motions.iter().map(velocity).collect()
     }
 
-    /// What the mean of the forces leaves of each displacement, in units of velocity.
-    pub fn residuals(&self, free: &[f64]) -> Result<Vec<Vector<f64>>, Error> {
-        let at = self.at(free);
-        Ok(self.objective.residuals(&self.objective.place(&at)?, &at))
+    /// Sum of the squares of what some β leave of these velocities, if the cells are followed by a rule from where they were seen.
+    pub fn missed(&self, free: &[f64], rule: Rule) -> Result<f64, Error> {
+        let objective = MovieObjective { rule, ..self.objective };
+        let placed = objective.place(&self.at(free))?;
+        let missed = objective.states.motions.iter().zip(self.velocities()).filter_map(|(motion, seen)| {
+            Some((seen? - objective.mean_velocity(&placed, motion, &self.displacements)).norm_squared())
+        });
+        Ok(missed.sum())
+    }
+
+    /// What errors of the positions of unit variance alone make of the sum of the squared velocities.
+    pub fn noise(&self) -> f64 {
+        let MovieObjective { movie, states, .. } = self.objective;
+        let of_motion = |motion: &Motion| {
+            let track = &movie.tracks[motion.track as usize];
+            let [first, last] = [0, 1].map(|end| track.error(motion.interval + end));
+            2.0 * (first * first + last * last) / self.objective.span(motion.interval).powi(2)
+        };
+        // Nothing was measured where the cell was not seen.
+        states.motions.iter().map(of_motion).filter(|square| square.is_finite()).sum()
     }
 }
 
@@ -76,38 +93,49 @@ pub(super) struct HeldOut {
 /// Mean velocities by interval and track.
 pub(super) type MeanVelocities = Vec<BTreeMap<u32, Vector<f64>>>;
 
-/// The error of displacements that were left out of the fit. `objective` and `at` are the fit to all; `None` if there are too few motions.
+/// The error of displacements that were left out of the fit. `at` is the fit to all; `None` if there are too few motions.
 ///
-/// Whole intervals are left out, or parts of the field where there are few. The fit without a fold is one Gauss–Newton step from the fit
-/// to all.
+/// Whole intervals but the first are left out, no two in a row, or parts of the field where there are few. The fit without a fold, of
+/// coefficients and places, is one Gauss–Newton step from the fit to all. An error of a measured position must not pose as a prediction, as it
+/// does where cells are followed from where they were seen. Cells that hardly relax from frame to frame are predicted by the mean of the
+/// forces at both ends as measured, in which such an error has one sign and in the displacement two; others are followed from their places in
+/// the fit without the fold, because forces at measured positions are mostly error.
 pub(super) fn cross_validate(
-    objective: &MovieObjective<'_>,
-    at: &[f64],
     measured: &AsMeasured<'_>,
+    at: &[f64],
     watch: &mut Watch<'_>,
 ) -> Result<Option<HeldOut>, Error> {
-    let coarse = measured.objective.states;
-    let folds = folds(objective.movie, coarse);
-    let velocities = measured.velocities();
+    let objective = &measured.objective;
+    let velocities = &measured.velocities();
+    let all = objective.states;
+    let folds = folds(objective.movie, all);
     let numbers: Vec<usize> = (0..FOLDS).collect();
     let tested = watch.each("cross-validation", &numbers, 1.0, |fold| {
         let left = |motion: &Motion| folds[motion.track as usize][motion.interval] != *fold;
-        let motions: Vec<Motion> = objective.states.motions.iter().filter(|m| left(m)).cloned().collect();
+        let motions: Vec<Motion> = all.motions.iter().filter(|m| left(m)).copied().collect();
         let p = objective.space.dimension();
-        if motions.len() == objective.states.motions.len() || motions.len() < 2 * p + 2 {
+        if motions.len() == all.motions.len() || motions.len() < 2 * p + 2 {
             return Ok(None);
         }
-        let states = States { motions, ..objective.states.clone() };
+        let states = States { motions, ..all.clone() };
         let step = MovieObjective { states: &states, ..*objective }.linearise(at)?.step(DAMPING)?.step;
-        let free: Vec<f64> = at.iter().zip(&step).take(p).map(|(b, s)| b + s).collect();
-        let rests = measured.residuals(&free)?;
+        let without: Vec<f64> = at.iter().zip(&step).map(|(at, step)| at + step).collect();
+        let (rule, point) = match objective.rule.steps() > FEW_STEPS {
+            true => (objective.rule, without),
+            false => (Rule::Trapezoid, measured.at(&without[..p])),
+        };
+        let objective = MovieObjective { rule, ..*objective };
+        let placed = objective.place(&point)?;
+        let displacements = objective.split(&point).1;
         let (mut error, mut total, mut predicted) = (0.0, 0.0, Vec::new());
-        for ((motion, rest), v) in coarse.motions.iter().zip(&rests).zip(&velocities) {
-            if !left(motion) {
-                error += rest.norm_squared();
-                total += v.norm_squared();
-                predicted.push((motion.interval, motion.track, v - rest));
-            }
+        for (motion, seen) in all.motions.iter().zip(velocities).filter(|(motion, _)| !left(motion)) {
+            let Some(seen) = seen else { continue };
+            let mean = objective.mean_velocity(&placed, motion, displacements);
+            // Without a polygon nothing is predicted.
+            let mean = if mean.norm_squared().is_finite() { mean } else { Vector::zeros() };
+            error += (seen - mean).norm_squared();
+            total += seen.norm_squared();
+            predicted.push((motion.interval, motion.track, mean));
         }
         Ok((total > 0.0).then_some(((error, total), predicted)))
     })?;
@@ -132,7 +160,8 @@ fn folds(movie: &Movie, states: &States) -> Vec<Vec<usize>> {
     let middle = Vector::new(median(0), median(1));
     for motion in &states.motions {
         let fold = if intervals >= FEWEST_INTERVALS {
-            motion.interval * FOLDS.min(intervals) / intervals
+            // The first finds where the cells are.
+            if motion.interval == 0 { usize::MAX } else { motion.interval % FOLDS.min(intervals - 1) }
         } else {
             let r = states.instants[motion.interval].cells.positions[motion.cells[0] as usize];
             usize::from(r.x > middle.x) + 2 * usize::from(r.y > middle.y)

@@ -1,9 +1,10 @@
-//! The objective of a movie linearised: a row for each step of each motion.
+//! The objective of a movie linearised: a row for each motion.
 
 use super::anchors::{Anchors, Share};
-use super::objective::{MovieObjective, Moving, Placed};
+use super::objective::{MovieObjective, Placed};
 use super::row_builder::RowBuilder;
 use super::states::{Motion, Place};
+use super::tangent::Tangent;
 use crate::Error;
 use crate::least_squares::combined;
 use crate::linearisation::{Linearisation, Local};
@@ -14,14 +15,11 @@ use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
 
-/// Motions per task.
-const CHUNK: usize = 128;
-
-/// Derivatives of the velocities by the positions, at instants and in middles.
-#[derive(Default)]
-struct Jacobians {
-    instants: Vec<BlockMatrix>,
-    middles: Vec<BlockMatrix>,
+/// Rows of motions, with the sign of a prediction: less those of the residuals.
+struct MotionRows {
+    jacobian: BlockMatrix,
+    /// By the coefficients (2, p).
+    columns: Vec<DMatrix<f64>>,
 }
 
 impl MovieObjective<'_> {
@@ -58,15 +56,7 @@ impl MovieObjective<'_> {
     ) -> Result<NormalEquations, Error> {
         let (free, _) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
-        let all = |moving: &[Moving<'_>]| -> Vec<BlockMatrix> {
-            let jacobian =
-                |(nudged, evaluated): &Moving<'_>| nudged.jacobian(coefficients.as_slice(), evaluated);
-            moving.par_iter().map(jacobian).collect()
-        };
-        let jacobians = Jacobians { instants: all(&placed.instants), middles: all(&placed.middles) };
-        let jacobian = self.rows(&jacobians);
-        let columns = self.columns(placed, &jacobians);
-        drop(jacobians);
+        let MotionRows { jacobian, columns } = self.motion_rows(placed, coefficients.as_slice());
         let p = anchors.dimension;
         let row = |(row, (rest, x)): (usize, (Vector<f64>, DMatrix<f64>))| {
             (row, rest, x.resize_horizontally(p, 0.0))
@@ -82,7 +72,7 @@ impl MovieObjective<'_> {
             nudges: displacements,
             floor: (0..displacements.len()).map(|i| of_block(i / 2)).collect(),
             free: p,
-            places: self.states.where_and_when(),
+            places: self.states.where_and_when(&self.movie.times),
         })?;
         let mut free = free.to_vec();
         let further = p - free.len();
@@ -90,130 +80,118 @@ impl MovieObjective<'_> {
         Ok(NormalEquations::new(&self.space.widened(further), self.levels, &free, vec![linearised]))
     }
 
-    /// The derivatives of all rows by the unknowns, with the sign of a prediction: less that of the residual.
-    fn rows(&self, jacobians: &Jacobians) -> BlockMatrix {
-        let parts: Vec<BlockMatrix> = self
-            .states
-            .motions
-            .par_chunks(CHUNK)
+    /// The derivatives of all motions.
+    fn motion_rows(&self, placed: &Placed<'_>, coefficients: &[f64]) -> MotionRows {
+        let intervals: Vec<&[Motion]> =
+            self.states.motions.chunk_by(|one, next| one.interval == next.interval).collect();
+        let of_frames: Vec<BlockMatrix> = match placed.passages.is_empty() {
+            true => {
+                let instants = placed.instants.par_iter();
+                instants.map(|(nudged, evaluated)| nudged.jacobian(coefficients, evaluated)).collect()
+            }
+            false => Vec::new(),
+        };
+        let parts: Vec<MotionRows> = intervals
+            .into_par_iter()
             .map(|motions| {
-                let mut rows = RowBuilder::new(self.states.blocks());
-                for motion in motions {
-                    (0..self.states.rule.steps)
-                        .for_each(|step| self.fill(motion, step, jacobians, &mut rows));
+                let interval = motions[0].interval;
+                match placed.passages.get(interval) {
+                    None => self.of_trapezoid(motions, placed, &of_frames),
+                    Some(passage) => {
+                        self.of_passage(motions, &Tangent::at_end(self, interval, passage, coefficients))
+                    }
                 }
-                rows.matrix
             })
             .collect();
-        let mut jacobian = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
-        for part in parts {
-            let offset = jacobian.column.len();
-            jacobian.row_start.extend(part.row_start[1..].iter().map(|end| offset + end));
-            jacobian.column.extend(part.column);
-            jacobian.block.extend(part.block);
+        let mut all = MotionRows {
+            jacobian: BlockMatrix { row_start: vec![0], ..BlockMatrix::default() },
+            columns: Vec::new(),
+        };
+        for MotionRows { jacobian, columns } in parts {
+            let offset = all.jacobian.column.len();
+            all.jacobian.row_start.extend(jacobian.row_start[1..].iter().map(|end| offset + end));
+            all.jacobian.column.extend(jacobian.column);
+            all.jacobian.block.extend(jacobian.block);
+            all.columns.extend(columns);
         }
-        jacobian
+        all
     }
 
-    /// Adds the row of one step of a motion.
-    fn fill(&self, motion: &Motion, step: usize, jacobians: &Jacobians, rows: &mut RowBuilder) {
-        let states = self.states;
-        let index = motion.interval * states.rule.steps + step;
-        let unit = self.unit(motion.interval);
-        let length = self.length(motion.interval);
-        let (of_ends, of_middle) = states.rule.weights();
-        let ends = [&states.instants[index], &states.instants[index + 1]];
-        for (end, sign) in [(0, unit), (1, -unit)] {
-            let cell = motion.cells[step + end] as usize;
-            rows.add(ends[end].place[cell], sign, &IDENTITY);
-            for (other, block) in jacobians.instants[index + end].row(cell) {
-                rows.add(ends[end].place[other], of_ends[end] * length * unit, block);
+    /// The derivatives of all motions by the coefficients (2, p), if the cells are followed.
+    pub fn columns_of_passages(&self, placed: &Placed<'_>, coefficients: &[f64]) -> Vec<DMatrix<f64>> {
+        self.motion_rows(placed, coefficients).columns
+    }
+
+    /// The motions of an interval by the mean of the velocities at both frames, whose derivatives are given.
+    fn of_trapezoid(&self, motions: &[Motion], placed: &Placed<'_>, of_frames: &[BlockMatrix]) -> MotionRows {
+        let mut rows = RowBuilder::new(self.states.blocks());
+        for motion in motions {
+            let unit = self.unit(motion.interval);
+            let half = 0.5 * self.span(motion.interval) * unit;
+            for (end, sign) in [(0, unit), (1, -unit)] {
+                let frame = motion.interval + end;
+                let place = &self.states.instants[frame].place;
+                let cell = motion.cells[end] as usize;
+                rows.add(place[cell], sign, &IDENTITY);
+                of_frames[frame].row(cell).for_each(|(other, block)| rows.add(place[other], half, block));
             }
-        }
-        if let Some(drift) = states.drift(motion.interval) {
-            rows.add(Place::Own(drift as u32), unit / states.rule.steps as f64, &IDENTITY);
-        }
-        if let Some(cell) = motion.middles.get(step) {
-            let middle = &states.middles[index];
-            let factor = of_middle * length * unit;
-            for (other, block) in jacobians.middles[index].row(*cell as usize) {
-                for (end, sign) in [(0, 1.0), (1, -1.0)] {
-                    let at_end = middle.ends[other][end] as usize;
-                    rows.add(ends[end].place[at_end], 0.5 * factor, block);
-                    if middle.led[other] {
-                        for (third, own) in jacobians.instants[index + end].row(at_end) {
-                            let share = sign * factor * length / 8.0;
-                            rows.add(ends[end].place[third], share, &product(block, own));
-                        }
-                    }
-                }
+            if let Some(drift) = self.states.drift(motion.interval) {
+                rows.add(Place::Own(drift as u32), unit, &IDENTITY);
             }
+            rows.end();
         }
-        rows.end();
+        MotionRows { jacobian: rows.matrix, columns: self.columns_of_trapezoid(motions, placed) }
     }
 
-    /// The derivative of each row by β (2, p), of a rule without middles.
-    pub fn columns_without_middles(&self, placed: &Placed<'_>) -> Vec<DMatrix<f64>> {
-        self.columns(placed, &Jacobians::default())
-    }
-
-    /// The derivative of each row by β (2, p).
-    fn columns(&self, placed: &Placed<'_>, jacobians: &Jacobians) -> Vec<DMatrix<f64>> {
-        let states = self.states;
-        let p = self.space.dimension();
-        let along: Vec<Vec<f64>> =
-            (0..p).map(|k| self.space.basis().column(k).iter().copied().collect()).collect();
-        let (of_ends, of_middle) = states.rule.weights();
-        let of_step = |motion: &Motion, step: usize| {
-            let index = motion.interval * states.rule.steps + step;
-            let length = self.length(motion.interval);
-            let scale = length * self.unit(motion.interval);
-            let mut x = DMatrix::zeros(2, p);
-            for (k, along) in along.iter().enumerate() {
-                let at_end = |end: usize, cell: u32| {
-                    combined(&placed.instants[index + end].1.by_coefficient, along, cell as usize)
+    /// The derivatives of all motions by the coefficients (2, p), if they follow the mean of the velocities at both frames.
+    pub fn columns_of_trapezoid(&self, motions: &[Motion], placed: &Placed<'_>) -> Vec<DMatrix<f64>> {
+        let along = self.along();
+        let of_motion = |motion: &Motion| {
+            let half = 0.5 * self.span(motion.interval) * self.unit(motion.interval);
+            let mut x = DMatrix::zeros(2, along.len());
+            for (along, mut column) in along.iter().zip(x.column_iter_mut()) {
+                let at = |end: usize| {
+                    let by_coefficient = &placed.instants[motion.interval + end].1.by_coefficient;
+                    combined(by_coefficient, along, motion.cells[end] as usize)
                 };
-                let mut sum = at_end(0, motion.cells[step]) * of_ends[0]
-                    + at_end(1, motion.cells[step + 1]) * of_ends[1];
-                if let Some(cell) = motion.middles.get(step) {
-                    let middle = &states.middles[index];
-                    let cell = *cell as usize;
-                    sum += combined(&placed.middles[index].1.by_coefficient, along, cell) * of_middle;
-                    for (other, b) in
-                        jacobians.middles[index].row(cell).filter(|(other, _)| middle.led[*other])
-                    {
-                        let [first, last] = middle.ends[other];
-                        let moved = (at_end(0, first) - at_end(1, last)) * (of_middle * length / 8.0);
-                        sum += Vector::new(b[0] * moved.x + b[1] * moved.y, b[2] * moved.x + b[3] * moved.y);
-                    }
-                }
-                x[(0, k)] = scale * sum.x;
-                x[(1, k)] = scale * sum.y;
+                column.copy_from(&((at(0) + at(1)) * half));
             }
             x
         };
-        let of_motion =
-            |motion| (0..states.rule.steps).map(move |step| of_step(motion, step)).collect::<Vec<_>>();
-        states.motions.par_iter().flat_map_iter(of_motion).collect()
+        motions.par_iter().map(of_motion).collect()
+    }
+
+    /// The motions of an interval by integration.
+    fn of_passage(&self, motions: &[Motion], tangent: &Tangent) -> MotionRows {
+        let states = self.states;
+        let mut rows = RowBuilder::new(states.blocks());
+        let mut columns = Vec::with_capacity(motions.len());
+        for motion in motions {
+            let unit = self.unit(motion.interval);
+            let between = &states.intervals[motion.interval].ends;
+            let place = [0, 1].map(|end| &states.instants[motion.interval + end].place);
+            for (column, block) in tangent.row(motion.between as usize) {
+                // Cells of the interval at its beginning, then at its end.
+                let (end, cell) = (column / between.len(), between[column % between.len()]);
+                rows.add(place[end][cell[end] as usize], unit, block);
+            }
+            rows.add(place[1][motion.cells[1] as usize], -unit, &IDENTITY);
+            if let Some(drift) = states.drift(motion.interval) {
+                rows.add(Place::Own(drift as u32), unit, &tangent.by_translation(motion.between as usize));
+            }
+            rows.end();
+            columns.push(tangent.by_coefficients(motion.between as usize) * unit);
+        }
+        MotionRows { jacobian: rows.matrix, columns }
     }
 }
 
 const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 1.0];
 
-/// The product of two blocks.
-fn product(a: &[f64; 4], b: &[f64; 4]) -> [f64; 4] {
-    [
-        a[0] * b[0] + a[1] * b[2],
-        a[0] * b[1] + a[1] * b[3],
-        a[2] * b[0] + a[3] * b[2],
-        a[2] * b[1] + a[3] * b[3],
-    ]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracks::rule::{Rule, Scheme};
+    use crate::tracks::rule::Rule;
     use crate::tracks::sample::Filmed;
     use crate::tracks::states::States;
     use crate::tracks::{Drift, Movie};
@@ -222,7 +200,7 @@ mod tests {
     use voronudge_model::Structure;
 
     /// A tissue cut out of its surroundings, with a gap, a track that ends and one that begins.
-    fn open_movie(jump: Vector<f64>) -> Movie {
+    fn open_movie(jump: Vector<f64>, time: f64) -> Movie {
         let (mut film, domain, _) = Filmed { size: [144, 3], step: 0.1, error: 0.01, seed: 2 }.film();
         let Domain::Periodic(cell_box) = domain else { panic!("a periodic film") };
         let first = film[0].clone();
@@ -237,8 +215,14 @@ mod tests {
                 cells.iter_mut().flatten().for_each(|r| *r += jump);
             }
         }
-        Movie::new(vec![0.0, 0.1, 0.25], &film, Domain::Open, FieldOfView::default(), Drift::PerInterval)
-            .unwrap()
+        Movie::new(
+            vec![0.0, time, 2.5 * time],
+            &film,
+            Domain::Open,
+            FieldOfView::default(),
+            Drift::PerInterval,
+        )
+        .unwrap()
     }
 
     fn objective<'a>(
@@ -246,54 +230,110 @@ mod tests {
         states: &'a States,
         structure: &'a Structure,
         space: &'a CoefficientSpace,
+        rule: Rule,
     ) -> MovieObjective<'a> {
         let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
-        MovieObjective { movie, states, structure, space, levels }
+        MovieObjective { movie, states, rule, structure, space, levels }
     }
 
-    /// Every rule's rows against differences of the residuals, along a direction in all unknowns.
-    #[test]
-    fn rows_are_the_derivatives_of_the_residuals() {
-        let movie = open_movie(Vector::zeros());
+    /// A point and the residuals around it, along a direction in all unknowns.
+    struct Around<'a> {
+        objective: MovieObjective<'a>,
+    }
+
+    impl Around<'_> {
+        fn along(k: usize) -> f64 {
+            (0.9 * k as f64).sin()
+        }
+
+        fn at(&self, step: f64) -> Vec<f64> {
+            let p = self.objective.space.dimension();
+            let free = [0.1, 2.0, 0.5, 1.0];
+            let all = (0..p + 2 * self.objective.states.blocks()).map(|k| {
+                let size = if k < p { free[k] } else { 0.003 * (1.7 * k as f64).cos() };
+                size + step * Self::along(k)
+            });
+            all.collect()
+        }
+
+        fn residuals(&self, step: f64) -> Vec<Vector<f64>> {
+            let at = self.at(step);
+            self.objective.residuals(&self.objective.place(&at).unwrap(), &at)
+        }
+
+        /// Relative error of each row.
+        fn misses(&self) -> Vec<f64> {
+            const STEP: f64 = 1e-7;
+            let Self { objective } = self;
+            let p = objective.space.dimension();
+            let [before, after] = [-STEP, STEP].map(|step| self.residuals(step));
+            let at = self.at(0.0);
+            let c = objective.space.coefficients(&at[..p]);
+            let rows = objective.motion_rows(&objective.place(&at).unwrap(), c.as_slice());
+            let direction: Vec<Vector<f64>> = (0..objective.states.blocks())
+                .map(|block| Vector::new(Self::along(p + 2 * block), Self::along(p + 2 * block + 1)))
+                .collect();
+            let by_places = rows.jacobian.apply(&direction);
+            let miss = |(row, x): (usize, &DMatrix<f64>)| {
+                let by_coefficients: Vector<f64> =
+                    (0..p).map(|k| Vector::new(x[(0, k)], x[(1, k)]) * Self::along(k)).sum();
+                let difference = (before[row] - after[row]) / (2.0 * STEP);
+                (by_places[row] + by_coefficients - difference).norm() / (1.0 + difference.norm())
+            };
+            rows.columns.iter().enumerate().map(miss).collect()
+        }
+    }
+
+    /// The errors of the rows of a rule for frames some time apart, in ascending order.
+    fn misses(time: f64, rule: Rule) -> Vec<f64> {
+        let movie = open_movie(Vector::zeros(), time);
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
         let structure = Structure::base(1.0);
-        for rule in Rule::LADDER.into_iter().take(3) {
-            let states = States::new(&movie, rule).unwrap();
-            let objective = objective(&movie, &states, &structure, &space);
-            assert!(states.motions.len() > 20 && states.drifts.1 == 2);
-            let p = space.dimension();
-            let at = |step: f64| -> Vec<f64> {
-                let free = [0.1, 2.0, 0.5, 1.0];
-                let all = (0..p + 2 * states.blocks()).map(|k| {
-                    let size = if k < p { free[k] } else { 0.003 * (1.7 * k as f64).cos() };
-                    size + step * (0.9 * k as f64).sin()
-                });
-                all.collect()
-            };
-            let residuals = |at: &[f64]| objective.residuals(&objective.place(at).unwrap(), at);
-            let [before, after] = [-1e-6, 1e-6].map(|step| residuals(&at(step)));
-            let placed = objective.place(&at(0.0)).unwrap();
-            let c = space.coefficients(&at(0.0)[..p]);
-            let all = |moving: &[Moving<'_>]| -> Vec<BlockMatrix> {
-                moving.iter().map(|(nudged, evaluated)| nudged.jacobian(c.as_slice(), evaluated)).collect()
-            };
-            let jacobians = Jacobians { instants: all(&placed.instants), middles: all(&placed.middles) };
-            assert_eq!(placed.middles.is_empty(), rule.scheme == Scheme::Trapezoid);
-            let (rows, columns) = (objective.rows(&jacobians), objective.columns(&placed, &jacobians));
-            let along = |k: usize| (0.9 * k as f64).sin();
-            let direction: Vec<Vector<f64>> = (0..states.blocks())
-                .map(|block| Vector::new(along(p + 2 * block), along(p + 2 * block + 1)))
-                .collect();
-            let by_places = rows.apply(&direction);
-            for (row, x) in columns.iter().enumerate() {
-                let by_coefficients = (0..p).fold(Vector::zeros(), |sum: Vector<f64>, k| {
-                    sum + Vector::new(x[(0, k)], x[(1, k)]) * along(k)
-                });
-                let difference = (before[row] - after[row]) / 2e-6;
-                let miss = (by_places[row] + by_coefficients - difference).norm();
-                assert!(miss < 1e-4 * (1.0 + difference.norm()), "{rule:?}, row {row}: {miss}");
-            }
+        let states = States::new(&movie).unwrap();
+        assert!(states.motions.len() > 20 && states.drifts.1 == 2);
+        let mut misses = Around { objective: objective(&movie, &states, &structure, &space, rule) }.misses();
+        misses.sort_by(f64::total_cmp);
+        misses
+    }
+
+    /// Every rule's rows against differences of the residuals, along a direction in all unknowns. What is left is the places of cells
+    /// beyond the rings that count, which grows with the time.
+    #[test]
+    fn rows_are_the_derivatives_of_the_residuals() {
+        let quantile = |misses: &[f64], share: f64| misses[(share * (misses.len() - 1) as f64) as usize];
+        let still = misses(0.1, Rule::Trapezoid);
+        assert!(quantile(&still, 1.0) < 1e-6, "{still:?}");
+        for steps in [1, 4] {
+            let short = misses(0.001, Rule::RungeKutta(steps));
+            assert!(quantile(&short, 0.9) < 1e-5 && quantile(&short, 1.0) < 2e-3, "{short:?}");
+            let long = misses(0.1, Rule::RungeKutta(steps));
+            assert!(quantile(&long, 0.5) < 0.02 && quantile(&long, 0.9) < 0.15, "{long:?}");
         }
+    }
+
+    /// Along a line on which transitions move through the stages and steps of the integration, displacements of most cells do not leap. What
+    /// is left are transitions next to each other, and what a jump at one stage does to the next: of second order in the step.
+    #[test]
+    fn displacements_are_continuous_where_neighbours_change() {
+        const STEP: f64 = 2e-5;
+        let movie = open_movie(Vector::zeros(), 0.1);
+        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+        let structure = Structure::base(1.0);
+        let states = States::new(&movie).unwrap();
+        let around =
+            Around { objective: objective(&movie, &states, &structure, &space, Rule::RungeKutta(2)) };
+        let all: Vec<Vec<Vector<f64>>> = (0..200).map(|k| around.residuals(STEP * f64::from(k))).collect();
+        let leaps = |row: usize| {
+            let second = all.windows(3).map(move |w| (w[2][row] - w[1][row] * 2.0 + w[0][row]).norm());
+            second.fold(0.0, f64::max)
+        };
+        let mut largest: Vec<f64> = (0..all[0].len()).map(leaps).collect();
+        largest.sort_by(f64::total_cmp);
+        // The transitions alone would make the middle one 1.7e-4.
+        assert!(largest[largest.len() / 2] < 3e-5, "{largest:?}");
+        let placed = around.objective.place(&around.at(0.0)).unwrap();
+        let turns = placed.passages.iter().flat_map(|passage| &passage.steps).map(|step| step.turns.len());
+        assert!(turns.sum::<usize>() > 20);
     }
 
     /// A jump of the stage changes nothing.
@@ -302,9 +342,9 @@ mod tests {
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
         let structure = Structure::base(1.0);
         let [still, jumped] = [Vector::zeros(), Vector::new(0.3, -0.2)].map(|jump| {
-            let movie = open_movie(jump);
-            let states = States::new(&movie, Rule::LADDER[1]).unwrap();
-            let objective = objective(&movie, &states, &structure, &space);
+            let movie = open_movie(jump, 0.1);
+            let states = States::new(&movie).unwrap();
+            let objective = objective(&movie, &states, &structure, &space, Rule::RungeKutta(2));
             objective.value(&objective.start(&[0.1, 2.0, 0.5, 1.0]))
         });
         assert!((still - jumped).abs() < 1e-9 * still, "{still} {jumped}");

@@ -1,11 +1,8 @@
 //! What of a cell its position is, in a movie for which nobody said.
 
 use super::anchors::Share;
-use super::finer::Finer;
 use super::fit::Begun;
 use super::movie::Movie;
-use super::rule::Rule;
-use super::states::States;
 use crate::least_squares::invert;
 use crate::measurement::{CENTROIDS, SITES, determined_share, usual_share};
 use crate::noise::Restricted;
@@ -24,8 +21,8 @@ const NEGLIGIBLE: f64 = 0.1;
 
 /// The share of the way from site to centroid, and −2 log of the restricted likelihood there.
 struct Estimated {
-    value: f64,
-    error: f64,
+    /// Its value and standard error.
+    share: [f64; 2],
     criterion: f64,
 }
 
@@ -46,7 +43,7 @@ pub fn measure_tracks(
         let mut watch = Watch { observe };
         let beginning = movie.beginning(FRAMES);
         let mut at = |share: f64| estimate(beginning.clone().with_positions_at(share), request, &mut watch);
-        let found = at(SITES).and_then(|found| match usual_share(found.value, found.error) {
+        let found = at(SITES).and_then(|found| match usual_share(found.share) {
             Some(SITES) => Ok(found),
             _ => {
                 let other = at(CENTROIDS)?;
@@ -54,7 +51,7 @@ pub fn measure_tracks(
             }
         });
         match found {
-            Ok(found) => measurement.share = determined_share(found.value, found.error),
+            Ok(found) => measurement.share = determined_share(found.share),
             // Too little moves, or centroids are where the sites are.
             Err(Error::Degenerate | Error::TooFewVelocities { .. }) => {}
             Err(error) => return Err(error),
@@ -66,11 +63,9 @@ pub fn measure_tracks(
 /// The share that explains a movie best, from that which it is taken for on.
 fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Estimated, Error> {
     let space = request.space()?;
-    let Begun { mut course, states: coarse, at, .. } = Begun::new(&movie, request, &space, watch)?;
-    let mut states = States::new(&movie, Rule::LADDER[1])?;
-    let mut at = Finer::new(&course.objective(&coarse), &at, &states)?.at;
+    let Begun { mut course, mut states, mut at, .. } = Begun::new(&movie, request, &space, watch)?;
     let own = space.dimension();
-    let mut found = Estimated { value: movie.share(), error: f64::INFINITY, criterion: f64::INFINITY };
+    let mut found = Estimated { share: [movie.share(), f64::INFINITY], criterion: f64::INFINITY };
     for _ in 0..ROUNDS {
         at = course.pass(&states, at)?;
         let objective = course.objective(&states);
@@ -82,9 +77,9 @@ fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Es
         let inverse = invert(reduced.information)?;
         let step = (&inverse * &reduced.gradient)[own];
         let error = objective.levels.velocity * inverse[(own, own)].max(0.0).sqrt();
-        let value = (found.value + step).clamp(SITES, CENTROIDS);
-        let settled = (value - found.value).abs() < NEGLIGIBLE * error;
-        found = Estimated { value, error, criterion };
+        let value = (found.share[0] + step).clamp(SITES, CENTROIDS);
+        let settled = (value - found.share[0]).abs() < NEGLIGIBLE * error;
+        found = Estimated { share: [value, error], criterion };
         if settled {
             break;
         }

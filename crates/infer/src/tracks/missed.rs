@@ -7,7 +7,6 @@
 
 use super::movie::{Movie, Sighting, Track};
 use super::neighbours::Motion;
-use super::rule::Rule;
 use super::states::{Instant, States};
 use crate::{
     Change, ChangeKind, CompletedFrame, Completion, Error, Observation, Origin, Progress, Request, complete,
@@ -91,7 +90,7 @@ pub fn complete_tracks(
 
 /// The cells in each few successive frames, at their mean places, with their mean velocities.
 fn snapshots(movie: &Movie) -> Result<Vec<Observation>, Error> {
-    let states = States::new(movie, Rule::TRAPEZOID)?;
+    let states = States::new(movie)?;
     let frames = FRAMES.min(movie.frames());
     let snapshot = |(first, instants): (usize, &[Instant])| {
         let last = first + frames - 1;

@@ -1,15 +1,14 @@
 //! Space-time nudging: the model fitted to cells followed from frame to frame, without velocities.
 //!
 //! ```text
-//! minimise over β, x:   Σ ‖y_f − x_f‖² / σ_r²  +  Σ ‖x_{j+1} − x_j − ∫F_β(x) dt‖² / σ_d²
+//! minimise over β, x:   Σ ‖y_f − x_f‖² / σ_r²  +  Σ ‖x_{f+1} − x_f − ∫F_β(x) dt‖² / σ_d²
 //! ```
 //!
-//! Positions x of the cells are unknowns at the frames and at instants between them. What moves a cell from one instant to the next
-//! is the integral of the model's velocities by a collocation rule, so that no velocity is ever derived from positions. The
-//! problem has the form of the nudged fit of snapshots and is solved by the same means.
+//! Positions x of the cells at the frames are unknowns. What moves a cell from one frame to the next is the integral of the model's
+//! velocities along its way, so that no velocity is ever derived from positions. The problem has the form of the nudged fit of snapshots and is solved by the same means.
 
 mod anchors;
-mod finer;
+mod first;
 mod fit;
 mod held_out;
 mod inference;
@@ -20,14 +19,17 @@ mod missed;
 mod movie;
 mod neighbours;
 mod objective;
+mod passage;
 mod result;
 mod row_builder;
 mod rule;
 #[cfg(test)]
 mod sample;
 mod states;
+mod tangent;
 #[cfg(test)]
 mod tests;
+mod turn;
 
 pub use inference::infer_tracks;
 pub use measurement::measure_tracks;

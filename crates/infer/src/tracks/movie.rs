@@ -1,7 +1,6 @@
 //! Cells followed from frame to frame.
 
 use super::join::join;
-use super::rule::Rule;
 use super::states::States;
 use crate::{Error, Observation};
 use voronudge_geometry::{Domain, FieldOfView, Vector};
@@ -153,9 +152,9 @@ impl Movie {
     #[must_use]
     pub fn with_position_errors(mut self, relative: &[Vec<f64>]) -> Self {
         for track in &mut self.tracks {
+            let name = track.name(track.first);
             for (frame, sighting) in (track.first..).zip(&mut track.seen) {
-                let name = track.names.first().map_or(usize::MAX, |name| name.1);
-                let error = relative.get(frame).and_then(|of_frame| of_frame.get(name));
+                let error = name.and_then(|name| relative.get(frame)?.get(name));
                 if let (Some(sighting), Some(error)) = (sighting, error) {
                     sighting.error = *error;
                 }
@@ -265,10 +264,10 @@ impl Movie {
     /// # Errors
     /// [`Error::Geometry`].
     pub fn observations(&self) -> Result<Vec<Observation>, Error> {
-        Ok(self.seen_by(States::new(self, Rule::TRAPEZOID)?))
+        Ok(self.seen_by(States::new(self)?))
     }
 
-    /// The same from states without instants between frames.
+    /// The same from states.
     pub(super) fn seen_by(&self, states: States) -> Vec<Observation> {
         let mut velocities: Vec<Vec<Option<Vector<f64>>>> =
             states.instants.iter().map(|instant| vec![None; instant.tracks.len()]).collect();

@@ -1,14 +1,16 @@
 //! Space-time nudging: the objective of a movie.
 //!
 //! ```text
-//! Φ(β, x) = Σ ‖x_{j+1} − x_j − ∫F_β − d‖² / (T h_j)  +  k Σ_anchors m ‖y − H(x)‖²,      k = σ_v² / σ_r²
+//! Φ(β, x) = Σ ‖x_{f+1} − x_f − ∫F_β − d_f‖² / (T h_f)  +  k Σ_anchors m ‖y − H(x)‖²,      k = σ_v² / σ_r²
 //! ```
 //!
-//! with places x of the cells at all instants, h_j the time between two of them, T the usual time between two frames, and d the
-//! translation of the stage, shared out over the interval. What the model misses of a displacement is a random walk: its variance grows
-//! with the time, so that σ_v is the error of a mean velocity over T, whatever the number of instants.
+//! with places x of the cells at all frames, h_f the time between two of them, T the usual one, and d the
+//! translation of the stage. What the model misses of a displacement is a random walk: its variance grows
+//! with the time, so that σ_v is the error of a mean velocity over T.
 
 use super::movie::Movie;
+use super::passage::Passage;
+use super::rule::Rule;
 use super::states::{Motion, States};
 use crate::normal_equations::NormalEquations;
 use crate::objective::{Evaluated, Nudged};
@@ -28,6 +30,7 @@ const FAR: f64 = 30.0;
 pub(crate) struct MovieObjective<'a> {
     pub movie: &'a Movie,
     pub states: &'a States,
+    pub rule: Rule,
     pub structure: &'a Structure,
     pub space: &'a CoefficientSpace,
     pub levels: NoiseLevels,
@@ -36,10 +39,11 @@ pub(crate) struct MovieObjective<'a> {
 /// Cells at some time, with the velocities that the model gives them.
 pub(crate) type Moving<'a> = (Nudged<'a>, Evaluated);
 
-/// All instants at some places, and the middles between them.
+/// All frames at some places, and how the cells get from one to the next.
 pub(crate) struct Placed<'a> {
     pub instants: Vec<Moving<'a>>,
-    pub middles: Vec<Moving<'a>>,
+    /// One for each interval; none for a rule without steps.
+    pub passages: Vec<Passage<'a>>,
 }
 
 /// The parts of Φ, without their factors.
@@ -70,7 +74,7 @@ impl<'a> MovieObjective<'a> {
 
     /// Number of measured components that no unknown without a measurement takes up.
     pub fn components(&self) -> usize {
-        let rows = 2 * self.states.motions.len() * self.states.rule.steps;
+        let rows = 2 * self.states.motions.len();
         rows.saturating_sub(2 * (self.states.blocks() - self.states.anchors.len()))
     }
 
@@ -80,7 +84,7 @@ impl<'a> MovieObjective<'a> {
         self.levels.velocity.powi(2) * left.saturating_sub(self.space.dimension()).max(1) as f64
     }
 
-    /// Positions of the cells at an instant.
+    /// Positions of the cells at a frame.
     pub fn positions(&self, index: usize, displacements: &[f64]) -> Vec<Vector<f64>> {
         let cells = self.states.instants[index].tracks.len();
         (0..cells).map(|cell| self.states.position(index, cell, displacements)).collect()
@@ -92,106 +96,97 @@ impl<'a> MovieObjective<'a> {
         self.states.drift(interval).map_or(first, |at| first + States::vector(displacements, at))
     }
 
-    /// The time of each step of an interval.
-    pub fn length(&self, interval: usize) -> f64 {
-        let span = self.movie.times[interval + 1] - self.movie.times[interval];
-        span / self.states.rule.steps as f64
+    /// The time of an interval.
+    pub fn span(&self, interval: usize) -> f64 {
+        self.movie.times[interval + 1] - self.movie.times[interval]
     }
 
-    /// One over √(T h) for the steps of an interval.
+    /// One over √(T h) for an interval.
     pub fn unit(&self, interval: usize) -> f64 {
-        1.0 / (self.movie.interval() * self.length(interval)).sqrt()
+        1.0 / (self.movie.interval() * self.span(interval)).sqrt()
     }
 
-    /// The tessellations and velocities at all instants and middles.
+    /// The directions of the free coefficients in those of the model.
+    pub fn along(&self) -> Vec<Vec<f64>> {
+        self.space.basis().column_iter().map(|column| column.iter().copied().collect()).collect()
+    }
+
+    /// The tessellations and velocities at all frames, and the motion between them.
     pub fn place(&self, parameters: &[f64]) -> Result<Placed<'a>, Error> {
         let (free, displacements) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
         let states = self.states;
-        let moving = |index: usize, cells: &Observation, positions: Vec<Vector<f64>>| {
-            let frame = index / states.rule.steps;
+        let moving = |frame: usize| {
+            let positions = self.positions(frame, displacements);
             let tessellation = Tessellation::new(&positions, self.movie.domain)
                 .map_err(|source| Error::Geometry { frame, source })?;
-            let nudged = Nudged::new(cells, self.structure, positions, tessellation);
+            let nudged = Nudged::new(&states.instants[frame].cells, self.structure, positions, tessellation);
             let evaluated = nudged.evaluate(coefficients.as_slice());
             Ok((nudged, evaluated))
         };
         let instants = (0..states.instants.len())
             .into_par_iter()
-            .map(|index| moving(index, &states.instants[index].cells, self.positions(index, displacements)))
+            .map(moving)
             .collect::<Result<Vec<Moving<'_>>, Error>>()?;
-        let middles = (0..states.middles.len())
-            .into_par_iter()
-            .map(|index| {
-                let positions = self.middle(index, &instants[index], &instants[index + 1]);
-                moving(index, &states.middles[index].cells, positions)
-            })
-            .collect::<Result<Vec<Moving<'_>>, Error>>()?;
-        Ok(Placed { instants, middles })
-    }
-
-    /// Positions in the middle of a step between two instants.
-    fn middle(&self, index: usize, begin: &Moving<'_>, end: &Moving<'_>) -> Vec<Vector<f64>> {
-        let middle = &self.states.middles[index];
-        let eighth = self.length(index / self.states.rule.steps) / 8.0;
-        let place = |(ends, led): (&[u32; 2], &bool)| {
-            let [a, b] = ends.map(|cell| cell as usize);
-            let straight = 0.5 * (begin.0.positions[a] + end.0.positions[b]);
-            match led {
-                true => straight + (begin.1.of_cells[a] - end.1.of_cells[b]) * eighth,
-                false => straight,
+        let passage = |(interval, pair): (usize, &[Moving<'_>])| {
+            let ends = [&pair[0].0.positions[..], &pair[1].0.positions[..]];
+            let drift = self.drift(interval, displacements);
+            Passage::new(*self, interval, self.rule.steps(), ends, drift, coefficients.as_slice())
+        };
+        let passages = match self.rule {
+            Rule::Trapezoid => Vec::new(),
+            Rule::RungeKutta(_) => {
+                instants.par_windows(2).enumerate().map(passage).collect::<Result<Vec<_>, Error>>()?
             }
         };
-        middle.ends.iter().zip(&middle.led).map(place).collect()
+        Ok(Placed { instants, passages })
     }
 
-    /// The mean velocity of a motion over one of its steps, with what finer steps add.
-    pub fn mean_velocity(&self, placed: &Placed<'_>, motion: &Motion, step: usize) -> Vector<f64> {
-        let index = motion.interval * self.states.rule.steps + step;
-        let (of_ends, of_middle) = self.states.rule.weights();
-        let at_end = |end: usize| {
-            placed.instants[index + end].1.of_cells[motion.cells[step + end] as usize] * of_ends[end]
-        };
-        let middle =
-            motion.middles.get(step).map(|cell| placed.middles[index].1.of_cells[*cell as usize] * of_middle);
-        let added = motion.added / (self.states.rule.steps as f64 * self.length(motion.interval));
-        at_end(0) + at_end(1) + middle.unwrap_or_else(Vector::zeros) + added
+    /// The mean velocity of a motion, without the translation.
+    pub fn mean_velocity(&self, placed: &Placed<'_>, motion: &Motion, displacements: &[f64]) -> Vector<f64> {
+        match placed.passages.get(motion.interval) {
+            Some(passage) => {
+                let moved = passage.moved[motion.between as usize];
+                (moved - self.drift(motion.interval, displacements)) / self.span(motion.interval)
+            }
+            None => {
+                let at = |end: usize| {
+                    placed.instants[motion.interval + end].1.of_cells[motion.cells[end] as usize]
+                };
+                (at(0) + at(1)) * 0.5
+            }
+        }
     }
 
-    /// What the model leaves of each step of each motion, over √(T h): motion by motion, step by step.
+    /// What the model leaves of each motion, over √(T h).
     pub fn residuals(&self, placed: &Placed<'_>, parameters: &[f64]) -> Vec<Vector<f64>> {
         let (_, displacements) = self.split(parameters);
-        let steps = self.states.rule.steps;
-        let intervals = 0..self.movie.frames() - 1;
-        let drifts: Vec<Vector<f64>> =
-            intervals.map(|interval| self.drift(interval, displacements) / steps as f64).collect();
-        let of_motion = |motion: &Motion| {
-            let first = motion.interval * steps;
-            let at = |node: usize| placed.instants[first + node].0.positions[motion.cells[node] as usize];
-            let (length, unit) = (self.length(motion.interval), self.unit(motion.interval));
-            let residual = |step: usize| {
-                let moved = self.mean_velocity(placed, motion, step) * length + drifts[motion.interval];
-                (at(step + 1) - at(step) - moved) * unit
-            };
-            (0..steps).map(residual).collect::<Vec<_>>()
+        let residual = |motion: &Motion| {
+            let interval = motion.interval;
+            let at = |end: usize| placed.instants[interval + end].0.positions[motion.cells[end] as usize];
+            let moved = self.mean_velocity(placed, motion, displacements) * self.span(interval);
+            (at(1) - at(0) - moved - self.drift(interval, displacements)) * self.unit(interval)
         };
-        self.states.motions.par_iter().flat_map_iter(of_motion).collect()
+        self.states.motions.par_iter().map(residual).collect()
     }
 
-    /// The instants that are frames: index, and the cells as they were measured.
-    pub fn frames(&self) -> impl Iterator<Item = (usize, &'a Observation)> + use<'a> {
-        let instants = self.states.instants.iter().enumerate();
-        instants
-            .filter(|(_, instant)| instant.frame.is_some())
-            .map(|(index, instant)| (index, &instant.cells))
-    }
-
-    /// How far each cell at an instant is from where it was before any fit, x and y of one after the other.
-    pub fn nudges(&self, index: usize, displacements: &[f64]) -> Vec<f64> {
-        let cells = 0..self.states.instants[index].tracks.len();
-        cells
-            .flat_map(|cell| <[f64; 2]>::from(self.states.displacement(index, cell, displacements)))
-            .collect()
+    /// Something of each frame as it was measured, by how far its cells are from where they were before any fit (x and y of one after
+    /// the other).
+    pub fn of_seen<T: Send>(
+        &self,
+        placed: &Placed<'_>,
+        displacements: &[f64],
+        what: impl Fn(usize, &Observation, &Nudged<'_>, &[f64]) -> T + Sync,
+    ) -> Vec<T> {
+        let of_frame = |(frame, (nudged, _)): (usize, &Moving<'_>)| {
+            let instant = &self.states.instants[frame];
+            let cells = 0..instant.tracks.len();
+            let nudges: Vec<f64> = cells
+                .flat_map(|cell| <[f64; 2]>::from(self.states.displacement(frame, cell, displacements)))
+                .collect();
+            what(frame, &instant.cells, nudged, &nudges)
+        };
+        placed.instants.par_iter().enumerate().map(of_frame).collect()
     }
 
     /// Stiffness of places that were not seen.
@@ -211,14 +206,10 @@ impl<'a> MovieObjective<'a> {
         let placed = self.place(parameters)?;
         let (free, displacements) = self.split(parameters);
         let residual = self.residuals(&placed, parameters).iter().map(|r| r.norm_squared()).sum();
-        let nudges = self
-            .frames()
-            .map(|(index, cells)| {
-                let nudged = &placed.instants[index].0;
-                let nudges = self.nudges(index, displacements);
-                squares(cells, &nudged.tessellation, &nudged.positions, &nudges)
-            })
-            .sum();
+        let of_seen = self.of_seen(&placed, displacements, |_, cells, nudged, nudges| {
+            squares(cells, &nudged.tessellation, &nudged.positions, nudges)
+        });
+        let nudges = of_seen.iter().sum();
         let unseen = displacements.chunks_exact(2).zip(self.anchored()).filter(|(_, anchored)| !anchored);
         let loose: f64 = unseen.map(|(e, _)| e[0] * e[0] + e[1] * e[1]).sum();
         let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);

@@ -17,7 +17,7 @@ pub struct TracksReport {
     pub ended: usize,
     /// Steps of integration from one frame to the next.
     pub substeps: usize,
-    /// Order of the rule in the length of a step: 2 for the trapezoid rule, 4 for Hermite–Simpson.
+    /// Order of the rule in the length of a step.
     pub order: usize,
     /// By how much a finer rule would change the coefficients: the largest change, in standard errors.
     pub integration_error: f64,

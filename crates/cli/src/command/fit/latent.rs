@@ -55,11 +55,11 @@ impl LatentArguments {
     pub fn complete_tracks(
         &self,
         tracks: &mut PreparedTracks,
-        prepared: &mut Prepared,
+        prepared: &Prepared,
         progress: &mut Progress,
     ) -> Result<(), Error> {
         match self.complete {
-            true => tracks.complete(prepared, self.missed_rate, progress),
+            true => tracks.complete(&prepared.request, self.missed_rate, progress),
             false => Ok(()),
         }
     }

@@ -47,7 +47,7 @@ impl PreparedTracks {
             measure_tracks(&self.movie, &prepared.request, &prepared.known, &mut observe)?;
         self.movie = movie;
         prepared.measurement = measurement;
-        self.show(prepared)
+        Ok(())
     }
 }
 

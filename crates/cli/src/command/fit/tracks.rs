@@ -8,7 +8,7 @@ use crate::run::Run;
 use crate::snapshot::{Snapshot, as_given, y_sign};
 use ndarray::Array3;
 use voronudge_geometry::Vector;
-use voronudge_infer::{Drift, Error, Inference, Latent, Movie, Tracked, complete_tracks};
+use voronudge_infer::{Drift, Error, Inference, Latent, Movie, Request, Tracked, complete_tracks};
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_report::infer_report::{MeanRemoved, TracksReport};
 
@@ -22,7 +22,7 @@ pub(crate) struct PreparedTracks {
 }
 
 impl PreparedTracks {
-    /// The problem of some frames; the snapshots of `Prepared` hold the cells in gaps of their tracks too.
+    /// The problem of some frames, before anything was found out about the cells: see [`show`](Self::show).
     pub fn new(
         question: Question<'_>,
         measured: Measured,
@@ -30,7 +30,7 @@ impl PreparedTracks {
         run: &mut Run,
     ) -> Result<(Prepared, Self), Failure> {
         let (data, arguments) = (question.data, question.arguments);
-        let mut prepared = question.prepare(measured, frames, run)?;
+        let prepared = question.prepare(measured, frames, run)?;
         let scale = prepared.scale;
         let times =
             prepared.frames.iter().map(|frame| *frame as f64 * data.frame_interval / scale.time).collect();
@@ -60,26 +60,24 @@ impl PreparedTracks {
             movie = movie.with_position_errors(&errors);
         }
         let joined = movie.join();
-        let tracks = Self { movie, latent: None, joined };
-        tracks.show(&mut prepared).map_err(|error| prepared.place(error, arguments))?;
-        Ok((prepared, tracks))
+        Ok((prepared, Self { movie, latent: None, joined }))
     }
 
     /// Puts in the cells that were not detected.
     pub(super) fn complete(
         &mut self,
-        prepared: &mut Prepared,
+        request: &Request,
         missed_rate: Option<f64>,
         progress: &mut Progress,
     ) -> Result<(), Error> {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
-        let (movie, latent) = complete_tracks(&self.movie, &prepared.request, missed_rate, &mut observe)?;
+        let (movie, latent) = complete_tracks(&self.movie, request, missed_rate, &mut observe)?;
         (self.movie, self.latent) = (movie, Some(latent));
-        self.show(prepared)
+        Ok(())
     }
 
-    /// Lets the snapshots be those of the movie.
-    pub(super) fn show(&self, prepared: &mut Prepared) -> Result<(), Error> {
+    /// Lets the snapshots be those of the movie, cells in gaps of their tracks too.
+    pub fn show(&self, prepared: &mut Prepared) -> Result<(), Error> {
         let movie = &self.movie;
         prepared.observations = movie.observations()?;
         prepared.snapshots = (0..movie.frames())

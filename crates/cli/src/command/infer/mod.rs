@@ -104,8 +104,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let understood = match (&mut movie, prepared.velocities.flow()) {
         (Some(tracks), _) => arguments
             .latent
-            .complete_tracks(tracks, &mut prepared, &mut progress)
-            .and_then(|()| tracks.measure(&mut prepared, &mut progress)),
+            .complete_tracks(tracks, &prepared, &mut progress)
+            .and_then(|()| tracks.measure(&mut prepared, &mut progress))
+            .and_then(|()| tracks.show(&mut prepared)),
         (None, Some(_)) => prepared
             .measure(&mut progress)
             .and_then(|()| arguments.latent.complete(&mut prepared, &mut progress)),

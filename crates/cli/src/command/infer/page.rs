@@ -11,7 +11,7 @@ use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
-use voronudge_report::numbers::as_given;
+use voronudge_report::numbers::{as_given, significant};
 use voronudge_report::{FrameView, InferPage};
 
 pub(super) fn page(
@@ -47,7 +47,8 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
         Measured::Tracks(_) => format!(
             "No velocities were given: the tracks of the cells, {} {} from frame to frame, were fitted themselves, and the velocities \
              shown are means up to the next frame",
-            data.frame_interval, data.time_unit
+            significant(data.frame_interval, 4),
+            data.time_unit
         ),
         Measured::Flow(_) => "Velocities were measured on a grid, and stand for averages over cells".into(),
         Measured::Derived(_, difference) => format!(
@@ -57,7 +58,7 @@ fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<
                 Difference::Forward => "forward",
                 Difference::Backward => "backward",
             },
-            data.frame_interval,
+            significant(data.frame_interval, 4),
             data.time_unit
         ),
     };

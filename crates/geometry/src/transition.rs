@@ -1,0 +1,127 @@
+//! T1 transitions: what lies between two tessellations of the same cells.
+
+use crate::Tessellation;
+use std::collections::HashSet;
+
+/// A side that vanishes and the one that appears in its place, between the other two of the four cells that met at its ends.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Transition {
+    /// A cell and its half-edge that is lost, in the tessellation before.
+    pub lost: (usize, usize),
+    /// A cell and its half-edge that is gained, in the tessellation after.
+    pub gained: (usize, usize),
+}
+
+/// A Delaunay edge as [`Tessellation::edges`] gives it.
+type Edge = (u32, u32, [i16; 2]);
+
+impl Transition {
+    /// The transitions that lead from one tessellation to another of the same cells, in the order of the cells that part.
+    ///
+    /// Each of them exchanges one side while those around it stay. Where sides next to each other have changed both, what lies between is
+    /// a sequence that two tessellations do not tell; such sides are left out, as are those of open polygons.
+    pub fn between(before: &Tessellation, after: &Tessellation) -> Vec<Self> {
+        if before.neighbour == after.neighbour && before.image == after.image && before.start == after.start {
+            return Vec::new();
+        }
+        let of =
+            |tessellation: &Tessellation| -> HashSet<Edge> { tessellation.edges().into_iter().collect() };
+        let (old, new) = (of(before), of(after));
+        let mut found = Vec::new();
+        for cell in 0..before.len() {
+            for h in before.ring(cell).filter(|h| *h < before.twin(*h)) {
+                if new.contains(&before.edge(cell, h)) {
+                    continue;
+                }
+                let Some([from, to]) = before.opposite(cell, h) else { continue };
+                let edge = ordered(before.neighbour(from), before.neighbour(to), before.between(from, to));
+                if old.contains(&edge) {
+                    continue;
+                }
+                let Some(gained) = after.half_edge(edge) else { continue };
+                let Some([one, other]) = after.opposite(gained.0, gained.1) else { continue };
+                let faces = ordered(after.neighbour(one), after.neighbour(other), after.between(one, other));
+                if faces == before.edge(cell, h) {
+                    found.push(Self { lost: (cell, h), gained });
+                }
+            }
+        }
+        found
+    }
+}
+
+impl Tessellation {
+    /// The half-edges of a cell next to one of them, clockwise and counter-clockwise: those to the third corners of its triangles. `None`
+    /// where the polygon of one of the four cells is open.
+    pub fn opposite(&self, cell: usize, h: usize) -> Option<[usize; 2]> {
+        let ring = self.ring(cell);
+        let before = if h == ring.start { ring.end - 1 } else { h - 1 };
+        let after = if h + 1 == ring.end { ring.start } else { h + 1 };
+        let cells = [cell, self.neighbour(h), self.neighbour(before), self.neighbour(after)];
+        cells.iter().all(|cell| self.is_closed(*cell)).then_some([before, after])
+    }
+
+    /// Whether there is the edge that a half-edge of a cell is in another tessellation of the same cells.
+    pub fn has_edge(&self, other: &Self, (cell, h): (usize, usize)) -> bool {
+        self.half_edge(other.edge(cell, h)).is_some()
+    }
+
+    /// The edge of a half-edge, as in [`edges`](Self::edges).
+    fn edge(&self, cell: usize, h: usize) -> Edge {
+        ordered(cell, self.neighbour(h), self.image(h))
+    }
+
+    /// Lattice vectors from what one half-edge of a cell points at to what another does.
+    fn between(&self, from: usize, to: usize) -> [i16; 2] {
+        let (from, to) = (self.image(from), self.image(to));
+        [to[0] - from[0], to[1] - from[1]]
+    }
+
+    /// The cell and half-edge of an edge.
+    fn half_edge(&self, (from, to, image): Edge) -> Option<(usize, usize)> {
+        let cell = from as usize;
+        let found = self.ring(cell).find(|h| self.neighbour[*h] == to && self.image[*h] == image)?;
+        Some((cell, found))
+    }
+}
+
+/// An edge from the lower to the higher cell.
+fn ordered(from: usize, to: usize, image: [i16; 2]) -> Edge {
+    let (a, b) = (from as u32, to as u32);
+    if a <= b { (a, b, image) } else { (b, a, [-image[0], -image[1]]) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Domain, MovingTessellation, PeriodicBox, Renewal, Side, Vector};
+
+    /// Small displacements of cells in a periodic box: as many transitions as flips, each with a side that shrinks through zero.
+    #[test]
+    fn transitions_are_the_flips() {
+        let place = |i: i32, t: f64| {
+            let x = f64::from(i);
+            let still =
+                Vector::new(f64::from(i % 12) + 0.3 * x.sin(), f64::from(i / 12) + 0.3 * (2.0 * x).cos());
+            still + Vector::new((3.0 * x).cos(), (5.0 * x).sin()) * t
+        };
+        let domain = Domain::Periodic(PeriodicBox::new([12.0, 12.0]).unwrap());
+        let [first, last]: [Vec<Vector<f64>>; 2] =
+            [0.0, 0.05].map(|t| (0..144).map(|i| place(i, t)).collect());
+        let mut moving = MovingTessellation::new(&first, domain).unwrap();
+        let before = moving.tessellation().clone();
+        let Renewal::Flipped(flips) = moving.renew(&last).unwrap() else { panic!("rebuilt") };
+        let after = moving.tessellation();
+        let found = Transition::between(&before, after);
+        assert!(flips > 0);
+        assert_eq!(found.len(), flips);
+        assert!(Transition::between(&before, &before).is_empty());
+        for Transition { lost, gained } in found {
+            let length = |tessellation, positions, (cell, h)| {
+                Side::new(tessellation, positions, cell, h).unwrap().length
+            };
+            assert!(length(&before, &first, lost) > 0.0 && length(&before, &last, lost) < 0.0);
+            assert!(length(after, &first, gained) < 0.0 && length(after, &last, gained) > 0.0);
+        }
+    }
+}

@@ -1,0 +1,261 @@
+//! The derivatives of where a passage ends by where it begins, by the coefficients and by the translation.
+//!
+//! ```text
+//! dF_i = J(x_i) dx_i + X(x_i) dβ,      x_i and x' as in [`super::passage`]
+//! ```
+//!
+//! Derivatives by the places of cells farther than three rings are left out: what a cell does to others falls off fast. Of transitions, what
+//! the places change about the size of a jump is left out, not what they change about its time.
+
+use super::objective::{MovieObjective, Moving};
+use super::passage::{Passage, STAGES};
+use crate::least_squares::combined;
+use nalgebra::DMatrix;
+use voronudge_geometry::{Tessellation, Vector};
+use voronudge_model::BlockMatrix;
+
+/// Rings of cells whose places count.
+const RINGS: usize = 3;
+
+/// A 2 × 2 block, `[xx, xy, yx, yy]`.
+type Block = [f64; 4];
+
+const IDENTITY: Block = [1.0, 0.0, 0.0, 1.0];
+
+/// A column that is not in a row.
+const NONE: u32 = u32::MAX;
+
+/// Derivatives of the places of the cells of an interval: a row for each cell.
+#[derive(Clone)]
+pub(super) struct Tangent {
+    /// First entry of each row, and the number of entries.
+    start: Vec<usize>,
+    /// By the place of a cell of the interval in the first frame, or (behind all of these) in the second.
+    column: Vec<u32>,
+    block: Vec<Block>,
+    /// By the translation and the free coefficients: matrices (2, 2 + p), row by row.
+    dense: Vec<f64>,
+    width: usize,
+}
+
+/// Columns of the translation among the dense ones.
+const DRIFT: usize = 2;
+
+impl Tangent {
+    /// Where the passage of an interval ends.
+    pub fn at_end(
+        objective: &MovieObjective<'_>,
+        interval: usize,
+        passage: &Passage<'_>,
+        coefficients: &[f64],
+    ) -> Self {
+        let led = &objective.states.intervals[interval].led;
+        let count = passage.steps.len() as f64;
+        let span = objective.span(interval);
+        let advance = Advance { led, span, length: span / count, along: objective.along() };
+        let basis = objective.space.basis();
+        let environment = objective.states.intervals[interval].halfway.environment();
+        let model = objective.structure.model(coefficients, environment);
+        let mut tangent =
+            Self::still(led, &passage.steps[0].stages[0].0.tessellation, DRIFT + objective.space.dimension());
+        let mut slope = tangent.clone();
+        for (number, step) in passage.steps.iter().enumerate() {
+            let mut next = tangent.clone();
+            let mut stage = tangent.clone();
+            for (index, ((_, weight), at)) in STAGES.iter().zip(&step.stages).enumerate() {
+                advance.slope(&mut slope, &stage, &at.0.jacobian(coefficients, &at.1), at);
+                next.go_on(&slope, weight * advance.length);
+                if let Some((share, _)) = STAGES.get(index + 1) {
+                    stage.clone_from(&tangent);
+                    stage.go_on(&slope, share * advance.length);
+                    advance.straight(&mut stage, (number as f64 + share) / count);
+                }
+            }
+            for turn in &step.turns {
+                let by_places = turn.added_by_places(&model);
+                for (index, cell) in turn.cells.iter().enumerate().filter(|(_, cell)| led[**cell]) {
+                    let jump = turn.added_by_fraction(index, coefficients) * advance.length;
+                    for (from, slopes) in [&tangent, &stage].into_iter().zip(&turn.slopes) {
+                        for (other, slope) in turn.cells.iter().zip(slopes) {
+                            let block =
+                                [jump.x * slope.x, jump.x * slope.y, jump.y * slope.x, jump.y * slope.y];
+                            next.add(*cell, &block, from, *other);
+                        }
+                    }
+                    next.add_dense(*cell, &(turn.added_by_coefficients(index, basis) * advance.length));
+                    for (from, of_cells) in [&tangent, &stage].into_iter().zip(&by_places) {
+                        for (other, block) in &of_cells[index] {
+                            next.add(*cell, &block.map(|b| b * advance.length), from, *other as usize);
+                        }
+                    }
+                }
+            }
+            advance.straight(&mut next, (number + 1) as f64 / count);
+            tangent = next;
+        }
+        tangent
+    }
+
+    /// At the beginning: each cell by its own place. Rows have room for what is within reach.
+    fn still(led: &[bool], tessellation: &Tessellation, width: usize) -> Self {
+        let cells = led.len();
+        let mut own = Self {
+            start: vec![0],
+            column: Vec::new(),
+            block: Vec::new(),
+            dense: vec![0.0; 2 * width * cells],
+            width,
+        };
+        let mut seen = vec![usize::MAX; cells];
+        for cell in 0..cells {
+            let first = own.column.len();
+            own.column.push(cell as u32);
+            seen[cell] = cell;
+            let mut ring = first;
+            for _ in 0..RINGS {
+                let end = own.column.len();
+                for at in ring..end {
+                    for next in tessellation.neighbours(own.column[at] as usize) {
+                        if seen[*next as usize] != cell {
+                            seen[*next as usize] = cell;
+                            own.column.push(*next);
+                        }
+                    }
+                }
+                ring = end;
+            }
+            let last = own.column.len();
+            for at in first..last {
+                let other = own.column[at];
+                if !led[other as usize] {
+                    own.column.push(other + cells as u32);
+                }
+            }
+            own.block.resize(own.column.len(), [0.0; 4]);
+            own.block[first] = IDENTITY;
+            own.start.push(own.column.len());
+        }
+        own
+    }
+
+    /// The derivatives of one cell's place: column and block.
+    pub fn row(&self, cell: usize) -> impl Iterator<Item = (usize, &Block)> {
+        let range = self.start[cell]..self.start[cell + 1];
+        self.column[range.clone()].iter().map(|column| *column as usize).zip(&self.block[range])
+    }
+
+    /// The derivative of one cell's place by the translation.
+    pub fn by_translation(&self, cell: usize) -> Block {
+        let own = &self.dense[2 * self.width * cell..];
+        [own[0], own[1], own[self.width], own[self.width + 1]]
+    }
+
+    /// The derivative of one cell's place by the free coefficients (2, p).
+    pub fn by_coefficients(&self, cell: usize) -> DMatrix<f64> {
+        let own = &self.dense[2 * self.width * cell..2 * self.width * (cell + 1)];
+        DMatrix::from_fn(2, self.width - DRIFT, |i, k| own[i * self.width + DRIFT + k])
+    }
+
+    /// Adds another times a factor.
+    fn go_on(&mut self, other: &Self, factor: f64) {
+        let blocks = self.block.iter_mut().flatten().zip(other.block.iter().flatten());
+        blocks.chain(self.dense.iter_mut().zip(&other.dense)).for_each(|(own, other)| *own += factor * other);
+    }
+
+    /// Adds a block times a row of another to a row.
+    fn add(&mut self, cell: usize, block: &Block, from: &Self, other: usize) {
+        let own = self.start[cell]..self.start[cell + 1];
+        for (column, b) in from.row(other) {
+            if let Some(at) = self.column[own.clone()].iter().position(|c| *c as usize == column) {
+                accumulate(&mut self.block[own.start + at], block, b);
+            }
+        }
+        self.add_dense_of(cell, block, from, other);
+    }
+
+    fn add_dense_of(&mut self, cell: usize, block: &Block, from: &Self, other: usize) {
+        let width = self.width;
+        let own = &mut self.dense[2 * width * cell..2 * width * (cell + 1)];
+        let theirs = &from.dense[2 * width * other..2 * width * (other + 1)];
+        for k in 0..width {
+            let [x, y] = [theirs[k], theirs[width + k]];
+            own[k] += block[0] * x + block[1] * y;
+            own[width + k] += block[2] * x + block[3] * y;
+        }
+    }
+
+    /// Adds derivatives by the coefficients.
+    fn add_dense(&mut self, cell: usize, x: &DMatrix<f64>) {
+        let own = &mut self.dense[2 * self.width * cell..];
+        for k in 0..x.ncols() {
+            own[DRIFT + k] += x[(0, k)];
+            own[self.width + DRIFT + k] += x[(1, k)];
+        }
+    }
+}
+
+/// What does not change from step to step.
+struct Advance<'a> {
+    led: &'a [bool],
+    /// Time between the frames, and of a step.
+    span: f64,
+    length: f64,
+    /// The directions of the free coefficients.
+    along: Vec<Vec<f64>>,
+}
+
+impl Advance<'_> {
+    /// J dx + X dβ + dd / T for the cells that are led.
+    fn slope(&self, to: &mut Tangent, from: &Tangent, jacobian: &BlockMatrix, at: &Moving<'_>) {
+        to.block.fill([0.0; 4]);
+        to.dense.fill(0.0);
+        let width = to.width;
+        let mut index = vec![NONE; 2 * self.led.len()];
+        for cell in (0..self.led.len()).filter(|cell| self.led[*cell]) {
+            let own = to.start[cell]..to.start[cell + 1];
+            for (at, column) in own.clone().zip(&to.column[own.clone()]) {
+                index[*column as usize] = at as u32;
+            }
+            for (other, block) in jacobian.row(cell) {
+                for (column, b) in from.row(other) {
+                    if index[column] != NONE {
+                        accumulate(&mut to.block[index[column] as usize], block, b);
+                    }
+                }
+                to.add_dense_of(cell, block, from, other);
+            }
+            to.column[own].iter().for_each(|column| index[*column as usize] = NONE);
+            let dense = &mut to.dense[2 * width * cell..];
+            dense[0] += 1.0 / self.span;
+            dense[width + 1] += 1.0 / self.span;
+            for (k, along) in self.along.iter().enumerate() {
+                let x: Vector<f64> = combined(&at.1.by_coefficient, along, cell);
+                dense[DRIFT + k] += x.x;
+                dense[width + DRIFT + k] += x.y;
+            }
+        }
+    }
+
+    /// Sets the rows of the cells that go straight, after a share of the interval.
+    fn straight(&self, to: &mut Tangent, share: f64) {
+        let cells = self.led.len();
+        for cell in (0..cells).filter(|cell| !self.led[*cell]) {
+            let own = to.start[cell]..to.start[cell + 1];
+            for at in own {
+                to.block[at] = match to.column[at] as usize {
+                    column if column == cell => IDENTITY.map(|one| one * (1.0 - share)),
+                    column if column == cell + cells => IDENTITY.map(|one| one * share),
+                    _ => [0.0; 4],
+                };
+            }
+        }
+    }
+}
+
+/// Adds the product of two blocks.
+fn accumulate(sum: &mut Block, a: &Block, b: &Block) {
+    sum[0] += a[0] * b[0] + a[1] * b[2];
+    sum[1] += a[0] * b[1] + a[1] * b[3];
+    sum[2] += a[2] * b[0] + a[3] * b[2];
+    sum[3] += a[2] * b[1] + a[3] * b[3];
+}
