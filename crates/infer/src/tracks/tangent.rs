@@ -4,7 +4,7 @@
 //! dF_i = J(x_i) dx_i + X(x_i) dβ,      x_i and x' as in [`super::passage`]
 //! ```
 //!
-//! Derivatives by the places of cells farther than three rings are left out: what a cell does to others falls off fast. Of transitions, what
+//! Derivatives by the places of cells farther than two rings, or three where steps are long, are left out: what a cell does to others falls off fast. Of transitions, what
 //! the places change about the size of a jump is left out, not what they change about its time.
 
 use super::objective::{MovieObjective, Moving};
@@ -14,8 +14,12 @@ use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;
 
-/// Rings of cells whose places count.
-const RINGS: usize = 3;
+/// Rings of cells whose places count: those of a force, and one more where cells relax from frame to frame.
+const RINGS: usize = 2;
+const RINGS_IF_LONG: usize = 3;
+
+/// Steps of integration up to which an interval is short.
+const FEW_STEPS: usize = 1;
 
 /// A 2 × 2 block, `[xx, xy, yx, yy]`.
 type Block = [f64; 4];
@@ -56,8 +60,12 @@ impl Tangent {
         let basis = objective.space.basis();
         let environment = objective.states.intervals[interval].halfway.environment();
         let model = objective.structure.model(coefficients, environment);
-        let mut tangent =
-            Self::still(led, &passage.steps[0].stages[0].0.tessellation, DRIFT + objective.space.dimension());
+        let mut tangent = Self::still(
+            led,
+            &passage.steps[0].stages[0].0.tessellation,
+            if passage.steps.len() > FEW_STEPS { RINGS_IF_LONG } else { RINGS },
+            DRIFT + objective.space.dimension(),
+        );
         let mut slope = tangent.clone();
         for (number, step) in passage.steps.iter().enumerate() {
             let mut next = tangent.clone();
@@ -97,7 +105,7 @@ impl Tangent {
     }
 
     /// At the beginning: each cell by its own place. Rows have room for what is within reach.
-    fn still(led: &[bool], tessellation: &Tessellation, width: usize) -> Self {
+    fn still(led: &[bool], tessellation: &Tessellation, rings: usize, width: usize) -> Self {
         let cells = led.len();
         let mut own = Self {
             start: vec![0],
@@ -112,7 +120,7 @@ impl Tangent {
             own.column.push(cell as u32);
             seen[cell] = cell;
             let mut ring = first;
-            for _ in 0..RINGS {
+            for _ in 0..rings {
                 let end = own.column.len();
                 for at in ring..end {
                     for next in tessellation.neighbours(own.column[at] as usize) {
