@@ -25,10 +25,7 @@ impl Side {
         cell: usize,
         h: usize,
     ) -> Option<Self> {
-        let ring = tessellation.ring(cell);
-        let closed = tessellation.is_closed(cell);
-        let before = if h == ring.start { closed.then(|| ring.end - 1)? } else { h - 1 };
-        let after = if h + 1 == ring.end { closed.then_some(ring.start)? } else { h + 1 };
+        let [before, after] = tessellation.beside(cell, h)?;
         let [a, b, c] = [before, h, after].map(|h| tessellation.displacement(positions, cell, h));
         let t = side_direction(b);
         let (first, second) = (Corner::new(a, b), Corner::new(b, c));

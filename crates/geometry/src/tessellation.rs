@@ -99,6 +99,15 @@ impl Tessellation {
         self.start[cell] as usize..self.start[cell + 1] as usize
     }
 
+    /// The half-edges clockwise and counter-clockwise of one of a cell. `None` past the end of an open ring.
+    pub(crate) fn beside(&self, cell: usize, h: usize) -> Option<[usize; 2]> {
+        let ring = self.ring(cell);
+        let around = |at: usize| self.is_closed(cell).then_some(at);
+        let before = if h == ring.start { around(ring.end - 1)? } else { h - 1 };
+        let after = if h + 1 == ring.end { around(ring.start)? } else { h + 1 };
+        Some([before, after])
+    }
+
     /// The cell that half-edge `h` points at.
     #[inline]
     pub fn neighbour(&self, h: usize) -> usize {

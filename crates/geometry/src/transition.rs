@@ -54,9 +54,7 @@ impl Tessellation {
     /// The half-edges of a cell next to one of them, clockwise and counter-clockwise: those to the third corners of its triangles. `None`
     /// where the polygon of one of the four cells is open.
     pub fn opposite(&self, cell: usize, h: usize) -> Option<[usize; 2]> {
-        let ring = self.ring(cell);
-        let before = if h == ring.start { ring.end - 1 } else { h - 1 };
-        let after = if h + 1 == ring.end { ring.start } else { h + 1 };
+        let [before, after] = self.beside(cell, h)?;
         let cells = [cell, self.neighbour(h), self.neighbour(before), self.neighbour(after)];
         cells.iter().all(|cell| self.is_closed(*cell)).then_some([before, after])
     }

@@ -96,29 +96,30 @@ impl Exchange {
         Some(Self { cells, rings })
     }
 
-    /// The velocities of the four cells after the exchange less those before, at the same positions, where the length of a side counts with
-    /// its sign. Responses are left out.
-    pub fn jump(
+    /// The velocities of the four cells after the exchange less those before, for each of some models, at the same positions, where the
+    /// length of a side counts with its sign. Responses are left out.
+    pub fn jumps(
         &self,
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
-        model: &Model<f64>,
-    ) -> [Vector<f64>; 4] {
-        let mut jump = [Vector::zeros(); 4];
+        models: &[Model<f64>],
+    ) -> Vec<[Vector<f64>; 4]> {
+        let mut jumps = vec![[Vector::zeros(); 4]; models.len()];
         let (mut polygon, mut forces) = (CellPolygon::default(), Vec::new());
         for (number, (cell, rings)) in self.cells.iter().zip(&self.rings).enumerate() {
             for (ring, sign) in rings.iter().zip([-1.0, 1.0]) {
                 polygon.fill_ring(ring.displacements.iter().copied());
-                forces.clear();
-                forces.resize(ring.displacements.len(), Vector::zeros());
-                let domain = tessellation.domain();
-                let on_cell =
-                    element(model, *cell, &ring.neighbours, positions[*cell], domain, &polygon, &mut forces);
-                jump[number] += on_cell * sign;
-                ring.own.iter().for_each(|(index, other)| jump[*other] += forces[*index] * sign);
+                let (domain, r) = (tessellation.domain(), positions[*cell]);
+                for (model, jump) in models.iter().zip(&mut jumps) {
+                    forces.clear();
+                    forces.resize(ring.displacements.len(), Vector::zeros());
+                    let on_cell = element(model, *cell, &ring.neighbours, r, domain, &polygon, &mut forces);
+                    jump[number] += on_cell * sign;
+                    ring.own.iter().for_each(|(index, other)| jump[*other] += forces[*index] * sign);
+                }
             }
         }
-        jump
+        jumps
     }
 
     /// The derivative of the jump of each of the four cells by the positions of cells. Those of terms that are
@@ -172,6 +173,7 @@ mod tests {
         };
         let parameters = Parameters { chirality: 0.7, preferred_perimeter: 3.9, ..Parameters::default() };
         let model = Model::chiral_voronoi(&parameters);
+        let models = std::slice::from_ref(&model);
         let domain = Domain::Periodic(PeriodicBox::new([12.0, 12.0]).unwrap());
         let [first, last]: [Vec<Vector<f64>>; 2] =
             [0.0, 0.05].map(|t| (0..144).map(|i| place(i, t)).collect());
@@ -188,14 +190,14 @@ mod tests {
             for transition in &found {
                 let ((cell, h), (other, back)) = (transition.lost, transition.gained);
                 let there = Exchange::new(&before, positions, cell, h).unwrap();
-                let jump = there.jump(&before, positions, &model);
+                let [jump] = there.jumps(&before, positions, models)[..] else { panic!() };
                 there.cells.iter().zip(jump).for_each(|(cell, jump)| rest[*cell] -= jump);
                 let slopes = there.slopes(&model);
                 let along = |cell: usize| Vector::new((1.3 * cell as f64).sin(), (0.7 * cell as f64).cos());
                 let moved = |step: f64| {
                     let moved: Vec<Vector<f64>> =
                         positions.iter().enumerate().map(|(cell, r)| r + along(cell) * step).collect();
-                    Exchange::new(&before, &moved, cell, h).unwrap().jump(&before, &moved, &model)
+                    Exchange::new(&before, &moved, cell, h).unwrap().jumps(&before, &moved, models)[0]
                 };
                 let [less, more] = [-1e-6, 1e-6].map(moved);
                 for (number, slopes) in slopes.iter().enumerate() {
@@ -207,7 +209,7 @@ mod tests {
                     assert!((slope - difference).norm() < 1e-6 * (1.0 + difference.norm()));
                 }
                 let again = Exchange::new(after, positions, other, back).unwrap();
-                for (cell, reverse) in again.cells.iter().zip(again.jump(after, positions, &model)) {
+                for (cell, reverse) in again.cells.iter().zip(again.jumps(after, positions, models)[0]) {
                     let number = there.cells.iter().position(|other| other == cell).unwrap();
                     assert!((jump[number] + reverse).norm() < 1e-12 * size);
                 }

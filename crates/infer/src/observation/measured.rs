@@ -84,10 +84,9 @@ impl Observation {
     ) -> Vec<Vector<f64>> {
         let mut polygon = CellPolygon::default();
         let place = |(cell, r): (usize, &Vector<f64>)| {
-            if self.share == 0.0 || !self.may_have_polygon(cell) || !tessellation.is_closed(cell) {
+            if self.share == 0.0 || !self.fill_polygon(&mut polygon, tessellation, positions, cell) {
                 return *r;
             }
-            polygon.fill(tessellation, positions, cell);
             r + polygon.centroid() * self.share
         };
         positions.iter().enumerate().map(place).collect()

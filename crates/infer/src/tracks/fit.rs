@@ -11,7 +11,6 @@ use crate::normal_equations::NormalEquations;
 use crate::search::{Optimum, Watch, optimise_knowing};
 use crate::{CoefficientSpace, Error, KnownNoise, Method, NoiseLevels, Request, Status};
 use std::ops::ControlFlow;
-use voronudge_geometry::Vector;
 
 /// A finer rule must change the coefficients by less than this share of their standard errors.
 const UNCHANGED: f64 = 0.2;
@@ -89,7 +88,7 @@ pub(super) struct Course<'a, 'w> {
     space: &'a CoefficientSpace,
     watch: &'a mut Watch<'w>,
     /// How the cells are followed from frame to frame.
-    pub rule: Rule,
+    rule: Rule,
     levels: NoiseLevels,
     value: f64,
     status: Status,
@@ -100,11 +99,12 @@ pub(super) struct Course<'a, 'w> {
 /// Fits a movie.
 pub(super) fn fit(
     movie: &Movie,
+    states: States,
     request: &Request,
     space: &CoefficientSpace,
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
-    let Begun { mut course, states, at, naive } = Begun::new(movie, request, space, watch)?;
+    let Begun { mut course, at, naive } = Begun::new(movie, &states, request, space, watch)?;
     let (at, error) = course.finish(&states, at)?;
     let Course { rule, levels, value, status, steps, trace, .. } = course;
     Ok(Fit { states, rule, parameters: at, levels, naive, value, status, steps, trace, error })
@@ -113,7 +113,6 @@ pub(super) fn fit(
 /// A fit whose noise levels are settled roughly.
 pub(super) struct Begun<'a, 'w> {
     pub course: Course<'a, 'w>,
-    pub states: States,
     pub at: Vec<f64>,
     /// The first coefficients.
     naive: Vec<f64>,
@@ -122,6 +121,7 @@ pub(super) struct Begun<'a, 'w> {
 impl<'a, 'w> Begun<'a, 'w> {
     pub fn new(
         movie: &'a Movie,
+        states: &States,
         request: &'a Request,
         space: &'a CoefficientSpace,
         watch: &'a mut Watch<'w>,
@@ -144,12 +144,11 @@ impl<'a, 'w> Begun<'a, 'w> {
             steps: 0,
             trace: Vec::new(),
         };
-        let states = States::new(movie)?;
-        let naive = naive_coefficients(&course.objective(&states))?;
-        let at = course.foresee(&states, naive.clone())?;
-        let at = course.approach(&states, at)?;
-        let at = course.settle(&states, at, ROUGH)?;
-        Ok(Self { course, states, at, naive })
+        let naive = naive_coefficients(&course.objective(states))?;
+        let at = course.foresee(states, naive.clone())?;
+        let at = course.approach(states, at)?;
+        let at = course.settle(states, at, ROUGH)?;
+        Ok(Self { course, at, naive })
     }
 }
 
@@ -274,7 +273,11 @@ impl<'a> Course<'a, '_> {
             free = forward_coefficients(&self.objective(states), &free)?;
             let at = self.objective(states).start(&free);
             let twice = self.rule.twice();
-            let (coarse, fine) = (self.rests(states, &at, self.rule)?, self.rests(states, &at, twice)?);
+            let rests = |rule: Rule| -> Result<_, Error> {
+                let objective = MovieObjective { rule, ..self.objective(states) };
+                Ok(objective.residuals(&objective.place(&at)?, &at))
+            };
+            let (coarse, fine) = (rests(self.rule)?, rests(twice)?);
             let whole: f64 = coarse.iter().map(|rest| rest.norm_squared()).sum();
             let changed: f64 =
                 fine.iter().zip(&coarse).map(|(fine, coarse)| (fine - coarse).norm_squared()).sum();
@@ -309,17 +312,13 @@ impl<'a> Course<'a, '_> {
         }
     }
 
-    /// What the model leaves of the motions by some rule.
-    fn rests(&self, states: &States, at: &[f64], rule: Rule) -> Result<Vec<Vector<f64>>, Error> {
-        let objective = MovieObjective { rule, ..self.objective(states) };
-        Ok(objective.residuals(&objective.place(at)?, at))
-    }
-
     /// By how much one rule in place of another would change the coefficients: the largest change in standard errors.
     fn change(&self, states: &States, at: &[f64], rules: [Rule; 2]) -> Result<f64, Error> {
-        let [coarse, fine] = [self.rests(states, at, rules[0])?, self.rests(states, at, rules[1])?];
-        let changed = fine.iter().zip(coarse).map(|(fine, coarse)| fine - coarse).collect();
-        let reduced = MovieObjective { rule: rules[0], ..self.objective(states) }.response(at, changed)?;
+        let [coarse, fine] = rules.map(|rule| MovieObjective { rule, ..self.objective(states) });
+        let placed = coarse.place(at)?;
+        let (before, after) = (coarse.residuals(&placed, at), fine.residuals(&fine.place(at)?, at));
+        let changed = after.iter().zip(before).map(|(after, before)| after - before).collect();
+        let reduced = coarse.response(&placed, at, changed)?;
         let covariance = invert(reduced.information.clone())?;
         let response = &covariance * &reduced.gradient;
         let covariance = covariance * self.levels.velocity.powi(2);

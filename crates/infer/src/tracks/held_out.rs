@@ -27,6 +27,8 @@ pub(super) struct AsMeasured<'a> {
     objective: MovieObjective<'a>,
     /// Displacements: none but the translations.
     displacements: Vec<f64>,
+    /// Mean velocities of the motions of cells that were seen at both frames, translations removed.
+    pub velocities: Vec<Option<Vector<f64>>>,
 }
 
 impl<'a> AsMeasured<'a> {
@@ -35,7 +37,19 @@ impl<'a> AsMeasured<'a> {
         let mut displacements = vec![0.0; 2 * objective.states.blocks()];
         let first = 2 * objective.states.drifts.0;
         displacements[first..].copy_from_slice(drifts);
-        Self { objective, displacements }
+        let MovieObjective { movie, states, .. } = objective;
+        let velocity = |motion: &Motion| {
+            let track = &movie.tracks[motion.track as usize];
+            // Where the site would have been seen, of a cell that was.
+            let at = |end: usize| {
+                let (frame, cell) = (motion.interval + end, motion.cells[end] as usize);
+                track.at(frame).map(|_| states.position(frame, cell, &displacements))
+            };
+            let drift = objective.drift(motion.interval, &displacements);
+            Some((at(1)? - at(0)? - drift) / objective.span(motion.interval))
+        };
+        let velocities = states.motions.iter().map(velocity).collect();
+        Self { objective, displacements, velocities }
     }
 
     /// The unknowns for some β.
@@ -43,28 +57,15 @@ impl<'a> AsMeasured<'a> {
         free.iter().chain(&self.displacements).copied().collect()
     }
 
-    /// Mean velocities of the motions of cells that were seen at both frames, translations removed.
-    pub fn velocities(&self) -> Vec<Option<Vector<f64>>> {
-        let MovieObjective { movie, states, .. } = self.objective;
-        let velocity = |motion: &Motion| {
-            let track = &movie.tracks[motion.track as usize];
-            // Where the site would have been seen, of a cell that was.
-            let at = |end: usize| {
-                let (frame, cell) = (motion.interval + end, motion.cells[end] as usize);
-                track.at(frame).map(|_| states.position(frame, cell, &self.displacements))
-            };
-            let drift = self.objective.drift(motion.interval, &self.displacements);
-            Some((at(1)? - at(0)? - drift) / self.objective.span(motion.interval))
-        };
-        states.motions.iter().map(velocity).collect()
-    }
-
     /// Sum of the squares of what some β leave of these velocities, if the cells are followed by a rule from where they were seen.
     pub fn missed(&self, free: &[f64], rule: Rule) -> Result<f64, Error> {
         let objective = MovieObjective { rule, ..self.objective };
         let placed = objective.place(&self.at(free))?;
-        let missed = objective.states.motions.iter().zip(self.velocities()).filter_map(|(motion, seen)| {
-            Some((seen? - objective.mean_velocity(&placed, motion, &self.displacements)).norm_squared())
+        let missed = objective.states.motions.iter().zip(&self.velocities).filter_map(|(motion, seen)| {
+            Some(
+                (seen.as_ref()? - objective.mean_velocity(&placed, motion, &self.displacements))
+                    .norm_squared(),
+            )
         });
         Ok(missed.sum())
     }
@@ -106,7 +107,6 @@ pub(super) fn cross_validate(
     watch: &mut Watch<'_>,
 ) -> Result<Option<HeldOut>, Error> {
     let objective = &measured.objective;
-    let velocities = &measured.velocities();
     let all = objective.states;
     let folds = folds(objective.movie, all);
     let numbers: Vec<usize> = (0..FOLDS).collect();
@@ -128,7 +128,8 @@ pub(super) fn cross_validate(
         let placed = objective.place(&point)?;
         let displacements = objective.split(&point).1;
         let (mut error, mut total, mut predicted) = (0.0, 0.0, Vec::new());
-        for (motion, seen) in all.motions.iter().zip(velocities).filter(|(motion, _)| !left(motion)) {
+        for (motion, seen) in all.motions.iter().zip(&measured.velocities).filter(|(motion, _)| !left(motion))
+        {
             let Some(seen) = seen else { continue };
             let mean = objective.mean_velocity(&placed, motion, displacements);
             // Without a polygon nothing is predicted.

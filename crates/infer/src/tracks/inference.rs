@@ -38,18 +38,19 @@ pub fn infer_tracks(
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<(Inference, Tracked), Error> {
     let space = request.space()?;
-    let (explained, required) = (States::new(movie)?.motions.len(), 2 * space.dimension() + 2);
+    let states = States::new(movie)?;
+    let (explained, required) = (states.motions.len(), 2 * space.dimension() + 2);
     if explained < required {
         return Err(Error::TooFewVelocities { used: explained, required });
     }
     let mut watch = Watch { observe };
-    let found = fit(movie, request, &space, &mut watch)?;
+    let found = fit(movie, states, request, &space, &mut watch)?;
     let levels = found.levels;
     let (states, structure) = (&found.states, &request.structure);
     let objective = MovieObjective { movie, states, rule: found.rule, structure, space: &space, levels };
     let (free, displacements) = objective.split(&found.parameters);
     let measured = AsMeasured::new(objective, &displacements[2 * states.drifts.0..]);
-    let velocities = measured.velocities();
+    let velocities = &measured.velocities;
     let total: f64 = velocities.iter().flatten().map(|v| v.norm_squared()).sum();
     let used = velocities.iter().flatten().count();
     if total <= 0.0 {

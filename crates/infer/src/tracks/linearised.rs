@@ -2,7 +2,7 @@
 
 use super::anchors::{Anchors, Share};
 use super::objective::{MovieObjective, Placed};
-use super::row_builder::RowBuilder;
+use super::row_builder::{IDENTITY, RowBuilder};
 use super::states::{Motion, Place};
 use super::tangent::Tangent;
 use crate::Error;
@@ -38,11 +38,15 @@ impl MovieObjective<'_> {
     }
 
     /// The problem in β alone about a minimum whose residuals have changed by so much.
-    pub fn response(&self, parameters: &[f64], residuals: Vec<Vector<f64>>) -> Result<Reduced, Error> {
-        let placed = self.place(parameters)?;
+    pub fn response(
+        &self,
+        placed: &Placed<'_>,
+        parameters: &[f64],
+        residuals: Vec<Vector<f64>>,
+    ) -> Result<Reduced, Error> {
         let displacements = self.split(parameters).1;
-        let anchors = Anchors::new(self, &placed, displacements, Share::Known).without_rests();
-        self.equations(parameters, &placed, residuals, &anchors, &vec![0.0; displacements.len()])?.reduced()
+        let anchors = Anchors::new(self, placed, displacements, Share::Known).without_rests();
+        self.equations(parameters, placed, residuals, &anchors, &vec![0.0; displacements.len()])?.reduced()
     }
 
     /// The equations for some residuals and displacements, with the derivatives at a point.
@@ -119,7 +123,14 @@ impl MovieObjective<'_> {
 
     /// The derivatives of all motions by the coefficients (2, p), if the cells are followed.
     pub fn columns_of_passages(&self, placed: &Placed<'_>, coefficients: &[f64]) -> Vec<DMatrix<f64>> {
-        self.motion_rows(placed, coefficients).columns
+        let passages = placed.passages.par_iter().enumerate();
+        let tangents: Vec<Tangent> = passages
+            .map(|(interval, passage)| Tangent::of_coefficients(self, interval, passage, coefficients))
+            .collect();
+        let column = |motion: &Motion| {
+            tangents[motion.interval].by_coefficients(motion.between as usize) * self.unit(motion.interval)
+        };
+        self.states.motions.iter().map(column).collect()
     }
 
     /// The motions of an interval by the mean of the velocities at both frames, whose derivatives are given.
@@ -185,8 +196,6 @@ impl MovieObjective<'_> {
         MotionRows { jacobian: rows.matrix, columns }
     }
 }
-
-const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 1.0];
 
 #[cfg(test)]
 mod tests {

@@ -3,6 +3,7 @@
 use super::anchors::Share;
 use super::fit::Begun;
 use super::movie::Movie;
+use super::states::States;
 use crate::least_squares::invert;
 use crate::measurement::{CENTROIDS, SITES, determined_share, usual_share};
 use crate::noise::Restricted;
@@ -63,7 +64,8 @@ pub fn measure_tracks(
 /// The share that explains a movie best, from that which it is taken for on.
 fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Estimated, Error> {
     let space = request.space()?;
-    let Begun { mut course, mut states, mut at, .. } = Begun::new(&movie, request, &space, watch)?;
+    let mut states = States::new(&movie)?;
+    let Begun { mut course, mut at, .. } = Begun::new(&movie, &states, request, &space, watch)?;
     let own = space.dimension();
     let mut found = Estimated { share: [movie.share(), f64::INFINITY], criterion: f64::INFINITY };
     for _ in 0..ROUNDS {

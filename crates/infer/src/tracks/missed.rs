@@ -7,7 +7,7 @@
 
 use super::movie::{Movie, Sighting, Track};
 use super::neighbours::Motion;
-use super::states::{Instant, States};
+use super::states::{Instant, instants};
 use crate::{
     Change, ChangeKind, CompletedFrame, Completion, Error, Observation, Origin, Progress, Request, complete,
 };
@@ -90,7 +90,6 @@ pub fn complete_tracks(
 
 /// The cells in each few successive frames, at their mean places, with their mean velocities.
 fn snapshots(movie: &Movie) -> Result<Vec<Observation>, Error> {
-    let states = States::new(movie)?;
     let frames = FRAMES.min(movie.frames());
     let snapshot = |(first, instants): (usize, &[Instant])| {
         let last = first + frames - 1;
@@ -111,7 +110,7 @@ fn snapshots(movie: &Movie) -> Result<Vec<Observation>, Error> {
         }
         Observation::new(first, positions, velocities, movie.domain, movie.field_of_view.clone())
     };
-    states.instants.windows(frames).enumerate().map(snapshot).collect()
+    instants(movie)?.windows(frames).enumerate().map(snapshot).collect()
 }
 
 /// What was found in one frame after the other, from the first of these on.

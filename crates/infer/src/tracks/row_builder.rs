@@ -10,6 +10,9 @@ pub(super) struct RowBuilder {
     at: Vec<u32>,
 }
 
+/// The block of a place by itself.
+pub(super) const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 1.0];
+
 /// A column that the row at hand does not have.
 const NONE: u32 = u32::MAX;
 

@@ -212,7 +212,7 @@ fn explained(instants: &[Instant], motions: &[Motion]) -> Vec<Vec<bool>> {
 }
 
 /// The frames with the cells that are there.
-fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
+pub(super) fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
     let instant = |frame: usize| {
         let (mut tracks, mut positions, mut errors) = (Vec::new(), Vec::new(), Vec::new());
         for number in 0..movie.tracks.len() {

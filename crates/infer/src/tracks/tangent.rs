@@ -4,11 +4,12 @@
 //! dF_i = J(x_i) dx_i + X(x_i) dβ,      x_i and x' as in [`super::passage`]
 //! ```
 //!
-//! Derivatives by the places of cells farther than two rings, or three where steps are long, are left out: what a cell does to others falls off fast. Of transitions, what
-//! the places change about the size of a jump is left out, not what they change about its time.
+//! Derivatives by the places of cells farther than two rings, or three where steps are long, are left out: what a cell does to others
+//! falls off fast.
 
 use super::objective::{MovieObjective, Moving};
 use super::passage::{Passage, STAGES};
+use super::row_builder::IDENTITY;
 use crate::least_squares::combined;
 use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
@@ -23,8 +24,6 @@ const FEW_STEPS: usize = 1;
 
 /// A 2 × 2 block, `[xx, xy, yx, yy]`.
 type Block = [f64; 4];
-
-const IDENTITY: Block = [1.0, 0.0, 0.0, 1.0];
 
 /// A column that is not in a row.
 const NONE: u32 = u32::MAX;
@@ -53,6 +52,28 @@ impl Tangent {
         passage: &Passage<'_>,
         coefficients: &[f64],
     ) -> Self {
+        let rings = if passage.steps.len() > FEW_STEPS { RINGS_IF_LONG } else { RINGS };
+        Self::within(objective, interval, passage, coefficients, rings)
+    }
+
+    /// The same, for what the coefficients and the translation do to all cells alone.
+    pub fn of_coefficients(
+        objective: &MovieObjective<'_>,
+        interval: usize,
+        passage: &Passage<'_>,
+        coefficients: &[f64],
+    ) -> Self {
+        Self::within(objective, interval, passage, coefficients, 0)
+    }
+
+    /// The same, by the places of cells so many rings away at most.
+    fn within(
+        objective: &MovieObjective<'_>,
+        interval: usize,
+        passage: &Passage<'_>,
+        coefficients: &[f64],
+        rings: usize,
+    ) -> Self {
         let led = &objective.states.intervals[interval].led;
         let count = passage.steps.len() as f64;
         let span = objective.span(interval);
@@ -63,18 +84,18 @@ impl Tangent {
         let mut tangent = Self::still(
             led,
             &passage.steps[0].stages[0].0.tessellation,
-            if passage.steps.len() > FEW_STEPS { RINGS_IF_LONG } else { RINGS },
+            rings,
             DRIFT + objective.space.dimension(),
         );
-        let mut slope = tangent.clone();
+        let [mut slope, mut next, mut stage] = [0, 1, 2].map(|_| tangent.clone());
         for (number, step) in passage.steps.iter().enumerate() {
-            let mut next = tangent.clone();
-            let mut stage = tangent.clone();
+            next.take(&tangent);
+            stage.take(&tangent);
             for (index, ((_, weight), at)) in STAGES.iter().zip(&step.stages).enumerate() {
                 advance.slope(&mut slope, &stage, &at.0.jacobian(coefficients, &at.1), at);
                 next.go_on(&slope, weight * advance.length);
                 if let Some((share, _)) = STAGES.get(index + 1) {
-                    stage.clone_from(&tangent);
+                    stage.take(&tangent);
                     stage.go_on(&slope, share * advance.length);
                     advance.straight(&mut stage, (number as f64 + share) / count);
                 }
@@ -99,7 +120,7 @@ impl Tangent {
                 }
             }
             advance.straight(&mut next, (number + 1) as f64 / count);
-            tangent = next;
+            std::mem::swap(&mut tangent, &mut next);
         }
         tangent
     }
@@ -162,6 +183,12 @@ impl Tangent {
     pub fn by_coefficients(&self, cell: usize) -> DMatrix<f64> {
         let own = &self.dense[2 * self.width * cell..2 * self.width * (cell + 1)];
         DMatrix::from_fn(2, self.width - DRIFT, |i, k| own[i * self.width + DRIFT + k])
+    }
+
+    /// Becomes another with the same columns.
+    fn take(&mut self, other: &Self) {
+        self.block.copy_from_slice(&other.block);
+        self.dense.copy_from_slice(&other.dense);
     }
 
     /// Adds another times a factor.

@@ -54,11 +54,9 @@ impl Jump {
         let number = cells.map(|cell| exchange.cells.iter().position(|own| *own == cell));
         let [Some(a), Some(b), Some(c), Some(d)] = number else { return None };
         let order = [a, b, c, d];
-        let of_term = |term| {
-            let jump = exchange.jump(&at.tessellation, &at.positions, term);
-            order.map(|number| jump[number] * sign)
-        };
-        Some(Self { by_coefficient: terms.iter().map(of_term).collect(), exchange, order, sign })
+        let jumps = exchange.jumps(&at.tessellation, &at.positions, terms);
+        let by_coefficient = jumps.iter().map(|jump| order.map(|number| jump[number] * sign)).collect();
+        Some(Self { by_coefficient, exchange, order, sign })
     }
 }
 
