@@ -43,6 +43,9 @@ const LARGEST_DAMPING: f64 = 1e8;
 /// can be the crossing of a kink.
 const SMALL_STEPS: u32 = 2;
 
+/// How many times the tolerance a step promises at most that counts as one that gains little if it fails.
+const LITTLE: f64 = 10.0;
+
 impl<'o> LevenbergMarquardt<'o> {
     pub fn new(tolerance: f64, observer: Observer<'o>) -> Self {
         Self {
@@ -117,9 +120,11 @@ where
             self.linearised = Some(linearised);
             self.damping *= self.growth;
             self.growth *= 2.0;
-            // Nothing left to gain, to rounding.
+            // Nothing left to gain, to rounding; or little, and kinks are in the way.
             if promised <= self.tolerance * cost {
                 self.small_steps = SMALL_STEPS;
+            } else if promised <= LITTLE * self.tolerance * cost {
+                self.small_steps += 1;
             }
             state.param(at).cost(cost)
         };
