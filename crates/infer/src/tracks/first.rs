@@ -13,6 +13,9 @@ const LINEAR_STEPS: usize = 4;
 const FORWARD_STEPS: usize = 12;
 const HALVINGS: usize = 6;
 
+/// How many times the usual size the derivatives of a motion may have there.
+const WILD: f64 = 30.0;
+
 /// Relative decrease of the sum of squares that counts as none there.
 const FORWARD_TOLERANCE: f64 = 1e-3;
 
@@ -24,7 +27,7 @@ pub(super) fn naive_coefficients(objective: &MovieObjective<'_>) -> Result<Vec<f
         let placed = objective.place(&at)?;
         let rests = objective.residuals(&placed, &at);
         let columns = objective.columns_of_trapezoid(&objective.states.motions, &placed);
-        free = newton(objective, &free, &columns, &rests)?;
+        free = newton(objective, &free, columns.iter().zip(&rests))?;
     }
     Ok(free.as_slice().to_vec())
 }
@@ -35,41 +38,56 @@ pub(super) fn forward_coefficients(objective: &MovieObjective<'_>, first: &[f64]
         let at = objective.start(free);
         let placed = objective.place(&at)?;
         let rests = objective.residuals(&placed, &at);
-        let sum: f64 = rests.iter().map(|rest| rest.norm_squared()).sum();
-        Ok((placed, rests, if sum.is_nan() { f64::INFINITY } else { sum }))
+        Ok((placed, rests))
     };
     let mut free = DVector::from_column_slice(first);
     let mut known = rests(first)?;
     for _ in 0..FORWARD_STEPS {
-        let (placed, before, sum) = &known;
+        let (placed, before) = &known;
+        let coefficients = objective.space.coefficients(free.as_slice());
+        let columns = objective.columns_of_passages(placed, coefficients.as_slice());
+        let tame = tame(&columns);
+        let square = |rests: &[Vector<f64>]| -> f64 {
+            let sum: f64 =
+                rests.iter().zip(&tame).filter(|(_, tame)| **tame).map(|(r, _)| r.norm_squared()).sum();
+            if sum.is_nan() { f64::INFINITY } else { sum }
+        };
+        let sum = square(before);
         if sum.is_infinite() {
             break;
         }
-        let coefficients = objective.space.coefficients(free.as_slice());
-        let columns = objective.columns_of_passages(placed, coefficients.as_slice());
-        let step = newton(objective, &free, &columns, before)? - &free;
+        let rows = columns.iter().zip(before).zip(&tame).filter(|(_, tame)| **tame).map(|(row, _)| row);
+        let step = newton(objective, &free, rows)? - &free;
         let shorter = (0..HALVINGS).map(|halving| &free + &step * 0.5_f64.powi(halving as i32));
-        let tried = shorter.map(|next| Ok((rests(next.as_slice())?, next)));
-        let better = tried.filter_map(|tried: Result<_, Error>| tried.ok()).find(|(next, _)| next.2 < *sum);
-        let Some((next, at)) = better else { break };
-        let is_settled = next.2 > (1.0 - FORWARD_TOLERANCE) * sum;
+        let tried = shorter.filter_map(|next| Some((rests(next.as_slice()).ok()?, next)));
+        let summed = tried.map(|(next, at)| (square(&next.1), next, at));
+        let Some((after, next, at)) = summed.into_iter().find(|(after, ..)| *after < sum) else { break };
         (known, free) = (next, at);
-        if is_settled {
+        if after > (1.0 - FORWARD_TOLERANCE) * sum {
             break;
         }
     }
     Ok(free.as_slice().to_vec())
 }
 
+/// Which motions do not depend on the coefficients much more than others: cells nearly upon each other, or with a polygon that is hardly
+/// closed, would decide alone.
+fn tame(columns: &[DMatrix<f64>]) -> Vec<bool> {
+    let sizes: Vec<f64> = columns.iter().map(DMatrix::norm_squared).collect();
+    let mut ordered: Vec<f64> = sizes.iter().copied().filter(|size| size.is_finite()).collect();
+    ordered.sort_unstable_by(f64::total_cmp);
+    let most = WILD * WILD * ordered.get(ordered.len() / 2).copied().unwrap_or(0.0);
+    sizes.into_iter().map(|size| size <= most).collect()
+}
+
 /// Where one step of Gauss and Newton leads from some coefficients, within their bounds.
-fn newton(
+fn newton<'r>(
     objective: &MovieObjective<'_>,
     free: &DVector<f64>,
-    columns: &[DMatrix<f64>],
-    rests: &[Vector<f64>],
+    rows: impl Iterator<Item = (&'r DMatrix<f64>, &'r Vector<f64>)>,
 ) -> Result<DVector<f64>, Error> {
     let (mut normal, mut right) = (DMatrix::zeros(free.len(), free.len()), DVector::zeros(free.len()));
-    for (x, rest) in columns.iter().zip(rests) {
+    for (x, rest) in rows {
         normal += x.transpose() * x;
         right += x.transpose() * rest;
     }

@@ -5,6 +5,7 @@
 //! next frame, moved along with its neighbours, is one cell. It goes on as far as there is room for it, or until a track ends or begins
 //! there, which then is its own.
 
+use super::ends::lengthen;
 use super::movie::{Movie, Sighting, Track};
 use super::neighbours::Motion;
 use super::states::{Instant, instants};
@@ -17,9 +18,6 @@ use voronudge_geometry::Vector;
 
 /// Distance, in units of ℓ₀, from its predicted place at which a cell is found again.
 const REACH: f64 = 0.35;
-
-/// A cell has room for itself if none is nearer than this, in units of ℓ₀.
-const ROOM: f64 = 0.5;
 
 /// Snapshots in which a cell must be found, if there are as many.
 const FEWEST: usize = 2;
@@ -85,6 +83,7 @@ pub fn complete_tracks(
     let found: Vec<Vec<Found>> = completion.frames.iter().enumerate().map(of_frame).collect();
     let chains = chains(movie, &motions, centre, found);
     let (movie, found) = with_cells(movie, &motions, &chains);
+    let movie = lengthen(movie)?;
     Ok((movie, Latent { missed_rate: completion.missed_rate, found }))
 }
 
@@ -193,7 +192,7 @@ impl Way<'_> {
         let Chain { first, found } = self.chain;
         let (mut parts, mut place) = (Vec::new(), found[0].place);
         for frame in (0..=*first).rev() {
-            match self.at(frame, place) {
+            match self.movie.taken_by(frame, place) {
                 None => parts.push(Part::Latent(frame, place)),
                 Some(track) => {
                     if self.movie.tracks[track].end() == frame + 1 && !self.taken[track] {
@@ -214,7 +213,7 @@ impl Way<'_> {
                 Some(found) => found.place,
                 None => place + self.motions[frame - 1].around(place, None),
             };
-            match self.at(frame, place) {
+            match self.movie.taken_by(frame, place) {
                 None => parts.push(Part::Latent(frame, place)),
                 Some(track) if self.movie.tracks[track].first == frame && !self.taken[track] => {
                     parts.push(Part::Track(track));
@@ -229,11 +228,6 @@ impl Way<'_> {
             frame += 1;
         }
         parts
-    }
-
-    /// The cell that has the place of this one in a frame.
-    fn at(&self, frame: usize, place: Vector<f64>) -> Option<usize> {
-        self.movie.nearest(frame, place).filter(|(distance, _)| *distance < ROOM).map(|(_, track)| track)
     }
 }
 

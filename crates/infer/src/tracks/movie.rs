@@ -5,6 +5,9 @@ use super::states::States;
 use crate::{Error, Observation};
 use voronudge_geometry::{Domain, FieldOfView, Vector};
 
+/// A cell has room for itself if none is nearer than this, in units of ℓ₀.
+const ROOM: f64 = 0.5;
+
 /// Where a cell was seen in a frame, or is thought to be.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Sighting {
@@ -76,6 +79,17 @@ impl Track {
         };
         let moved = |seen: Sighting| Sighting { position: seen.position + image, ..seen };
         self.seen.extend(seen.map(|seen| seen.map(moved)));
+    }
+
+    /// Lets the cell be at a place, unseen, in the frame before its first or after its last.
+    pub(super) fn lengthen(&mut self, frame: usize, position: Vector<f64>) {
+        let unseen = Some(Sighting { position, error: f64::INFINITY });
+        if frame < self.first {
+            self.first = frame;
+            self.seen.insert(0, unseen);
+        } else {
+            self.seen.push(unseen);
+        }
     }
 
     /// Number of frames within the track in which the cell was not seen.
@@ -236,6 +250,11 @@ impl Movie {
             Some((self.domain.shortest(there - place).norm(), track))
         };
         self.present(frame).filter_map(distance).min_by(|a, b| a.0.total_cmp(&b.0))
+    }
+
+    /// The cell that has the place in a frame where another might be.
+    pub(super) fn taken_by(&self, frame: usize, place: Vector<f64>) -> Option<usize> {
+        self.nearest(frame, place).filter(|(distance, _)| *distance < ROOM).map(|(_, track)| track)
     }
 
     /// What moves all cells alike in an interval, as far as the increments tell before any fit: their median, which a few fast
