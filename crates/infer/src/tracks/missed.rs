@@ -146,8 +146,8 @@ fn with_cells(movie: &Movie, motions: &[Motion<'_>], chains: &[Chain]) -> (Movie
         for part in (Way { movie, motions, taken: &taken, chain }).parts() {
             match part {
                 Part::Latent(frame, position) => {
-                    let sighting = Sighting { position, error: f64::INFINITY };
-                    whole.go_on(movie.domain, frame, [Some(sighting)].into_iter());
+                    let unseen = Some(Sighting::unseen(position));
+                    whole.go_on(movie.domain, frame, [unseen].into_iter());
                 }
                 Part::Track(number) => {
                     let track = &movie.tracks[number];

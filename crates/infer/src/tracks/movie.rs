@@ -17,6 +17,13 @@ pub struct Sighting {
     pub error: f64,
 }
 
+impl Sighting {
+    /// Of a cell that was not detected.
+    pub(super) fn unseen(position: Vector<f64>) -> Self {
+        Self { position, error: f64::INFINITY }
+    }
+}
+
 /// One cell while it is followed.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Track {
@@ -83,13 +90,28 @@ impl Track {
 
     /// Lets the cell be at a place, unseen, in the frame before its first or after its last.
     pub(super) fn lengthen(&mut self, frame: usize, position: Vector<f64>) {
-        let unseen = Some(Sighting { position, error: f64::INFINITY });
+        let unseen = Some(Sighting::unseen(position));
         if frame < self.first {
             self.first = frame;
             self.seen.insert(0, unseen);
         } else {
             self.seen.push(unseen);
         }
+    }
+
+    /// Takes back what was put at its beginning or end.
+    pub(super) fn shorten(&mut self, frame: usize) {
+        if frame == self.first {
+            self.first += 1;
+            self.seen.remove(0);
+        } else {
+            self.seen.truncate(frame - self.first);
+        }
+    }
+
+    /// Moves the cell, unseen in a frame, to another place.
+    pub(super) fn put(&mut self, frame: usize, position: Vector<f64>) {
+        self.seen[frame - self.first] = Some(Sighting::unseen(position));
     }
 
     /// Number of frames within the track in which the cell was not seen.
@@ -188,17 +210,19 @@ impl Movie {
         self.share
     }
 
-    /// The first frames alone.
+    /// The first frames alone. A cell in a gap that goes beyond these is there, unseen.
     pub(super) fn beginning(&self, frames: usize) -> Self {
-        let part = |track: &Track| {
-            let seen = &track.seen[..track.seen.len().min(frames.checked_sub(track.first)?)];
-            let last = seen.iter().rposition(Option::is_some)?;
-            Some(Track { seen: seen[..=last].to_vec(), ..track.clone() })
-        };
         let frames = frames.min(self.frames());
+        let part = |(number, track): (usize, &Track)| {
+            let sighting = |frame: usize| {
+                track.sighting(frame).or_else(|| self.near(number, frame).map(Sighting::unseen))
+            };
+            let seen: Vec<_> = (track.first..track.end().min(frames)).map(sighting).collect();
+            (!seen.is_empty()).then(|| Track { seen, ..track.clone() })
+        };
         Self {
             times: self.times[..frames].to_vec(),
-            tracks: self.tracks.iter().filter_map(part).collect(),
+            tracks: self.tracks.iter().enumerate().filter_map(part).collect(),
             stage: self.stage[..frames].to_vec(),
             ..self.clone()
         }
