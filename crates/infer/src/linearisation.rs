@@ -142,6 +142,11 @@ impl Linearisation {
         })
     }
 
+    /// Whether one factor at a time is enough.
+    pub fn is_large(&self) -> bool {
+        self.pattern.is_large()
+    }
+
     /// Number of nudge components.
     pub fn order(&self) -> usize {
         self.nudges.len()

@@ -10,7 +10,7 @@
 //! For given k the best σ_v² is `yᵀPy / (n − p)`, which leaves a function of k alone.
 
 use crate::Error;
-use crate::linearisation::{Leftover, Whitened};
+use crate::linearisation::{Leftover, Linearisation, Whitened};
 use crate::normal_equations::NormalEquations;
 use argmin::core::{CostFunction, Error as ArgminError, Executor, State};
 use argmin::solver::brent::BrentOpt;
@@ -121,10 +121,11 @@ impl Restricted<'_> {
     /// log k and one so far to either side.
     pub fn towards(&self, present: NoiseLevels, spacing: f64) -> Result<NoiseLevels, Error> {
         let centre = present.spring().ln();
-        let values: Vec<f64> = [-spacing, 0.0, spacing]
-            .into_par_iter()
-            .map(|aside| self.criterion(centre + aside))
-            .collect::<Result<_, Error>>()?;
+        let points = [-spacing, 0.0, spacing].map(|aside| centre + aside);
+        let values: Vec<f64> = match self.equations.frames.iter().any(Linearisation::is_large) {
+            true => points.iter().map(|log_k| self.criterion(*log_k)).collect::<Result<_, Error>>()?,
+            false => points.par_iter().map(|log_k| self.criterion(*log_k)).collect::<Result<_, Error>>()?,
+        };
         let (slope, bend) = (values[2] - values[0], values[2] - 2.0 * values[1] + values[0]);
         let furthest = 2.0 * spacing;
         let step = match bend > 0.0 {

@@ -73,9 +73,14 @@ impl CholeskyPattern {
         Ok(Self { symbolic: Arc::new(symbolic) })
     }
 
+    /// Whether factors are so large that the work on each is shared out, and several at once would take much memory.
+    pub fn is_large(&self) -> bool {
+        self.symbolic.len_val() >= LARGE
+    }
+
     /// How the work on a factor is shared out: the same for any number of threads, so that results are.
     fn tasks(&self) -> Par {
-        if self.symbolic.len_val() < LARGE { Par::Seq } else { Par::rayon(TASKS) }
+        if self.is_large() { Par::rayon(TASKS) } else { Par::Seq }
     }
 
     /// Factorises a matrix of this pattern.

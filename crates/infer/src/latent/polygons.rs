@@ -170,7 +170,11 @@ pub(super) fn voids(scene: &Scene<'_>) -> Vec<Void> {
         tessellation.ring(cell).zip(polygon.vertices()).for_each(|(h, vertex)| vertices[h] = vertex);
     }
     let areas = voronudge_geometry::areas(tessellation, positions);
-    let trusted = |cell: usize| frame.visibility[cell] == Visibility::Counted;
+    // A hole that a cell leaves may be so large that its neighbours do not count.
+    let trusted = |cell: usize| {
+        use Visibility::{Counted, NextToUncertain, TooLarge};
+        matches!(frame.visibility[cell], Counted | NextToUncertain | TooLarge)
+    };
     let turned = |cell: usize, h: usize, by: usize| {
         let ring = tessellation.ring(cell);
         ring.start + (h - ring.start + by) % ring.len()

@@ -4,6 +4,7 @@
 //! with room for its cell where that must have been a frame before, is that of a cell which was not detected there. Without it the
 //! polygons of its neighbours reach into its place, and their centroids with them.
 
+use super::join::unite;
 use super::movie::Movie;
 use super::neighbours::Motion;
 use super::states::{Instant, instants};
@@ -29,8 +30,8 @@ struct Unseen {
     area: f64,
 }
 
-/// Lets the cells be where their tracks have not begun yet or have ended, frame by frame, as far as there is room for them. Positions in
-/// units of ℓ₀.
+/// Lets the cells be where their tracks have not begun yet or have ended, frame by frame, as far as there is room for them. Tracks that
+/// meet in a frame in which one of them is unseen are of one cell. Positions in units of ℓ₀.
 ///
 /// # Errors
 /// [`Error::Geometry`].
@@ -39,29 +40,54 @@ pub(super) fn lengthen(mut movie: Movie) -> Result<Movie, Error> {
     let mut without: BTreeSet<(usize, usize)> = BTreeSet::new();
     for _ in 1..movie.frames() {
         let mut put: Vec<Vec<Unseen>> = vec![Vec::new(); movie.frames()];
+        let mut next: Vec<Option<usize>> = vec![None; movie.tracks.len()];
         for unseen in further(&movie)? {
             let Unseen { track, frame, place, .. } = unseen;
             if without.contains(&(track, frame)) {
                 continue;
             }
-            if movie.taken_by(frame, place).is_some() {
-                without.insert((track, frame));
-            } else {
-                movie.tracks[track].lengthen(frame, place);
-                put[frame].push(unseen);
+            match movie.taken_by(frame, place) {
+                None => {
+                    movie.tracks[track].lengthen(frame, place);
+                    put[frame].push(unseen);
+                }
+                Some(other) => {
+                    without.insert((track, frame));
+                    let met = meet(&movie, track, other, frame);
+                    if let Some((first, then)) = met.filter(|(_, then)| !next.contains(&Some(*then))) {
+                        let _ = next[first].get_or_insert(then);
+                    }
+                }
             }
         }
-        if put.iter().all(Vec::is_empty) {
-            break;
-        }
-        for own in put.into_iter().filter(|own| !own.is_empty()) {
-            for unseen in settle(&mut movie, &own)? {
+        for own in put.iter().filter(|own| !own.is_empty()) {
+            for unseen in settle(&mut movie, own)? {
                 movie.tracks[unseen.track].shorten(unseen.frame);
                 without.insert((unseen.track, unseen.frame));
             }
         }
+        if next.iter().any(Option::is_some) {
+            unite(&mut movie, &next);
+            without.clear();
+        } else if put.iter().all(Vec::is_empty) {
+            break;
+        }
     }
     Ok(movie)
+}
+
+/// The earlier and the later of two tracks of which one would go on in a frame where the other, unseen, has its end.
+fn meet(movie: &Movie, track: usize, other: usize, frame: usize) -> Option<(usize, usize)> {
+    let [own, there] = [track, other].map(|number| &movie.tracks[number]);
+    // What was found between the tracks has its own place among them.
+    if own.names.is_empty() || there.names.is_empty() {
+        return None;
+    }
+    let unseen = there.at(frame).is_none();
+    if unseen && own.first == frame + 1 && there.end() == frame + 1 {
+        return Some((other, track));
+    }
+    (unseen && own.end() == frame && there.first == frame).then_some((track, other))
 }
 
 /// Where cells should be in the frames next to those of their tracks. A cell whose polygon is certain is not about to leave the field.
@@ -121,4 +147,45 @@ fn settle(movie: &mut Movie, put: &[Unseen]) -> Result<Vec<Unseen>, Error> {
         }
     }
     Ok(small)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::tracks::Drift;
+    use crate::tracks::sample::Filmed;
+    use voronudge_geometry::FieldOfView;
+
+    /// Cells that are not detected at first, at last, or twice at the end are put where they are; one that divides is not.
+    #[test]
+    fn undetected_ends_are_put_where_the_cells_are() {
+        let (mut film, domain, _) = Filmed { size: [144, 5], step: 0.1, error: 0.01, seed: 4 }.film();
+        let truth = film.clone();
+        for (frame, cell) in [(0, 20), (0, 21), (4, 50), (3, 90), (4, 90)] {
+            film[frame][cell] = None;
+        }
+        // Two daughters from the third frame on.
+        for (frame, cells) in film.iter_mut().enumerate() {
+            let mother = cells[120].filter(|_| frame >= 2);
+            cells.push(mother.map(|r| r + Vector::new(0.2, 0.0)));
+            cells.push(mother.map(|r| r - Vector::new(0.2, 0.0)));
+            cells[120] = cells[120].filter(|_| frame < 2);
+        }
+        let times = (0..5).map(|frame| 0.1 * f64::from(frame)).collect();
+        let movie = Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap();
+        let longer = lengthen(movie.clone()).unwrap();
+        for (track, own) in longer.tracks.iter().enumerate() {
+            let whole = (own.first, own.end()) == (0, 5);
+            assert_eq!(whole, !(track == 120 || track >= 144), "{track}: {} to {}", own.first, own.end());
+        }
+        for (frame, cell) in [(0, 20), (0, 21), (4, 50), (3, 90), (4, 90)] {
+            assert!(longer.tracks[cell].at(frame).is_none());
+            let place = longer.near(cell, frame).unwrap();
+            let miss = domain.shortest(place - truth[frame][cell].unwrap()).norm();
+            assert!(miss < 0.3, "{cell} in {frame}: {miss}");
+        }
+        // A gap goes on beyond the first frames.
+        let gap = longer.beginning(4);
+        assert_eq!((gap.tracks[90].end(), gap.tracks[90].at(3)), (4, None));
+    }
 }

@@ -39,9 +39,15 @@ pub(super) fn join(movie: &mut Movie) -> usize {
         next[end] = Some(begin);
         taken[begin] = true;
     }
-    let joins = taken.iter().filter(|taken| **taken).count();
-    let mut tracks: Vec<Track> = Vec::with_capacity(count - joins);
-    for head in (0..count).filter(|t| !taken[*t]) {
+    unite(movie, &next);
+    taken.iter().filter(|taken| **taken).count()
+}
+
+/// Makes one track of those that follow each other: the next part of each, if it has one.
+pub(super) fn unite(movie: &mut Movie, next: &[Option<usize>]) {
+    let followers: BTreeSet<usize> = next.iter().copied().flatten().collect();
+    let mut tracks: Vec<Track> = Vec::with_capacity(next.len() - followers.len());
+    for head in (0..next.len()).filter(|track| !followers.contains(track)) {
         let mut whole = Track { first: 0, seen: Vec::new(), names: Vec::new() };
         let mut part = Some(head);
         while let Some(own) = part {
@@ -53,7 +59,6 @@ pub(super) fn join(movie: &mut Movie) -> usize {
         tracks.push(whole);
     }
     movie.tracks = tracks;
-    joins
 }
 
 /// The tracks that end and those that begin later which may be one cell: both, and what joining them gains, in [`PARTS`].

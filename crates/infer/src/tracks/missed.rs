@@ -83,6 +83,7 @@ pub fn complete_tracks(
     let found: Vec<Vec<Found>> = completion.frames.iter().enumerate().map(of_frame).collect();
     let chains = chains(movie, &motions, centre, found);
     let (movie, found) = with_cells(movie, &motions, &chains);
+    // Two neighbours of which one is never detected leave one hole: that one is looked for first.
     let movie = lengthen(movie)?;
     Ok((movie, Latent { missed_rate: completion.missed_rate, found }))
 }

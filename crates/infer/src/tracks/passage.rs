@@ -81,6 +81,11 @@ impl<'a> Passage<'a> {
     }
 }
 
+/// Whether a cell has a velocity: it has none while its polygon or one next to it is open. Then it goes with the stage.
+pub(super) fn is_known(velocity: Vector<f64>) -> bool {
+    velocity.norm_squared().is_finite()
+}
+
 impl<'a> Way<'a, '_> {
     /// One step of a length, and where it ends.
     fn step(
@@ -93,6 +98,7 @@ impl<'a> Way<'a, '_> {
         let after = |velocity: &dyn Fn(usize) -> Vector<f64>, time: f64| -> Vec<Vector<f64>> {
             let next = |(cell, r): (usize, &Vector<f64>)| {
                 let own = if led[cell] { velocity(cell) } else { Vector::zeros() };
+                let own = if is_known(own) { own } else { Vector::zeros() };
                 r + (self.beside[cell] + own) * time
             };
             begin.iter().enumerate().map(next).collect()

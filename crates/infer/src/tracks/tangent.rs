@@ -8,7 +8,7 @@
 //! falls off fast.
 
 use super::objective::{MovieObjective, Moving};
-use super::passage::{Passage, STAGES};
+use super::passage::{Passage, STAGES, is_known};
 use super::row_builder::IDENTITY;
 use crate::least_squares::combined;
 use nalgebra::DMatrix;
@@ -247,6 +247,11 @@ impl Advance<'_> {
         let width = to.width;
         let mut index = vec![NONE; 2 * self.led.len()];
         for cell in (0..self.led.len()).filter(|cell| self.led[*cell]) {
+            to.dense[2 * width * cell] = 1.0 / self.span;
+            to.dense[2 * width * cell + width + 1] = 1.0 / self.span;
+            if !is_known(at.1.of_cells[cell]) {
+                continue;
+            }
             let own = to.start[cell]..to.start[cell + 1];
             for (at, column) in own.clone().zip(&to.column[own.clone()]) {
                 index[*column as usize] = at as u32;
@@ -261,8 +266,6 @@ impl Advance<'_> {
             }
             to.column[own].iter().for_each(|column| index[*column as usize] = NONE);
             let dense = &mut to.dense[2 * width * cell..];
-            dense[0] += 1.0 / self.span;
-            dense[width + 1] += 1.0 / self.span;
             for (k, along) in self.along.iter().enumerate() {
                 let x: Vector<f64> = combined(&at.1.by_coefficient, along, cell);
                 dense[DRIFT + k] += x.x;
