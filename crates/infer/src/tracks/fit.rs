@@ -269,23 +269,38 @@ impl<'a> Course<'a, '_> {
     /// steps of integration as it takes.
     fn foresee(&mut self, states: &States, mut free: Vec<f64>) -> Result<Vec<f64>, Error> {
         self.rule = Rule::RungeKutta(FEWEST_STEPS);
+        self.resolve(states, &free);
         loop {
+            let before = self.rule;
             free = forward_coefficients(&self.objective(states), &free)?;
-            let at = self.objective(states).start(&free);
-            let twice = self.rule.twice();
-            let rests = |rule: Rule| -> Result<_, Error> {
-                let objective = MovieObjective { rule, ..self.objective(states) };
-                Ok(objective.residuals(&objective.place(&at)?, &at))
-            };
-            let (coarse, fine) = (rests(self.rule)?, rests(twice)?);
-            let whole: f64 = coarse.iter().map(|rest| rest.norm_squared()).sum();
-            let changed: f64 =
-                fine.iter().zip(&coarse).map(|(fine, coarse)| (fine - coarse).norm_squared()).sum();
-            if changed < FIRST_CHANGE * whole || self.rule.steps() >= MOST_STEPS {
-                return Ok(at);
+            self.resolve(states, &free);
+            if self.rule == before {
+                return Ok(self.objective(states).start(&free));
             }
-            self.rule = twice;
         }
+    }
+
+    /// Takes as many steps as some coefficients need where the cells were seen: too few, and the motion leads anywhere.
+    fn resolve(&mut self, states: &States, free: &[f64]) {
+        let at = self.objective(states).start(free);
+        let rests = |rule: Rule| {
+            let objective = MovieObjective { rule, ..self.objective(states) };
+            objective.place(&at).map(|placed| objective.residuals(&placed, &at)).ok()
+        };
+        let mut rule = self.rule;
+        let mut coarse = rests(rule);
+        while rule.steps() < MOST_STEPS {
+            let fine = rests(rule.twice());
+            if let (Some(coarse), Some(fine)) = (&coarse, &fine) {
+                let whole: f64 = coarse.iter().map(|rest| rest.norm_squared()).sum();
+                let changes = fine.iter().zip(coarse).map(|(fine, coarse)| (fine - coarse).norm_squared());
+                if changes.sum::<f64>() < FIRST_CHANGE * whole {
+                    break;
+                }
+            }
+            (rule, coarse) = (rule.twice(), fine);
+        }
+        self.rule = rule;
     }
 
     /// Fits at the first noise levels in as many steps of integration as it takes. Levels are not estimated on the way: far from the
@@ -312,14 +327,16 @@ impl<'a> Course<'a, '_> {
         }
     }
 
-    /// By how much one rule in place of another would change the coefficients: the largest change in standard errors.
+    /// By how much one rule in place of another would change the coefficients: the largest change in standard errors. Infinite where these
+    /// are not determined.
     fn change(&self, states: &States, at: &[f64], rules: [Rule; 2]) -> Result<f64, Error> {
         let [coarse, fine] = rules.map(|rule| MovieObjective { rule, ..self.objective(states) });
         let placed = coarse.place(at)?;
         let (before, after) = (coarse.residuals(&placed, at), fine.residuals(&fine.place(at)?, at));
         let changed = after.iter().zip(before).map(|(after, before)| after - before).collect();
         let reduced = coarse.response(&placed, at, changed)?;
-        let covariance = invert(reduced.information.clone())?;
+        // A fit gone wrong tells nothing of the coefficients.
+        let Ok(covariance) = invert(reduced.information.clone()) else { return Ok(f64::INFINITY) };
         let response = &covariance * &reduced.gradient;
         let covariance = covariance * self.levels.velocity.powi(2);
         let in_errors = response.iter().enumerate().map(|(k, d)| d.abs() / covariance[(k, k)].sqrt());

@@ -136,7 +136,8 @@ fn found(program: &Program, data: &DataSet, folder: &Path) -> Result<Found, Box<
     let Run { report, seconds, message } = program.run("infer", &input, &out)?;
     let report = report.ok_or(message)?;
     let unit = report["length_scale"]["value"].as_f64().ok_or("a report without a length scale")?;
-    let latent = latent::read(&out)?.ok_or("the program names no latent cells")?;
+    let latent =
+        latent::read(&input, &out, Domain::Open, unit)?.ok_or("the program names no latent cells")?;
     Ok(Found { latent, unit, seconds })
 }
 

@@ -2,7 +2,7 @@
 
 use super::count::Count;
 use super::record::Recovery;
-use claims::measured::{Truth, View};
+use claims::measured::{View, Written};
 use std::error::Error;
 use std::path::Path;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
@@ -10,6 +10,8 @@ use voronudge_io::read_reals;
 
 /// Farther than this from a hidden cell, in ℓ₀, a latent cell is another one.
 const NEAR: f64 = 0.3;
+/// Farther than this from a detection, in ℓ₀, a place of a track is that of a cell that was not detected.
+const SAME: f64 = 0.5;
 /// Cells nearer than this to the rim of a field of view, in ℓ₀, need not be found.
 const RIM: f64 = 2.0;
 
@@ -20,29 +22,53 @@ pub struct Place {
     pub at: Vector<f64>,
 }
 
-/// The latent cells of a run; none if it names none.
-pub fn read(out: &Path) -> Result<Option<Vec<Place>>, Box<dyn Error>> {
-    let path = out.join("latent_cells.npy");
-    if !path.is_file() {
+/// The cells of a run where none was detected: latent cells, and places in the gaps and beyond the ends of tracks. `unit` is ℓ₀. None if it
+/// names none.
+pub fn read(
+    data: &Path,
+    out: &Path,
+    domain: Domain,
+    unit: f64,
+) -> Result<Option<Vec<Place>>, Box<dyn Error>> {
+    let [latent, trajectories] = ["latent_cells.npy", "trajectories.npy"].map(|name| out.join(name));
+    if !latent.is_file() {
         return Ok(None);
     }
-    let cells = read_reals(&path)?;
+    let cells = read_reals(&latent)?;
     let place = |row: ndarray::ArrayViewD<'_, f64>| Place {
         frame: row[[2]] as usize,
         at: Vector::new(row[[0]], row[[1]]),
     };
-    Ok(Some(cells.outer_iter().map(place).collect()))
+    let mut unseen: Vec<Place> = cells.outer_iter().map(place).collect();
+    if trajectories.is_file() {
+        let (tracked, detected) = (places(&trajectories)?, places(&data.join("positions.npy"))?);
+        let of_detections = matches(&detected, &tracked, domain, SAME * unit);
+        unseen.extend(tracked.iter().zip(of_detections).filter(|(_, own)| own.is_none()).map(|(at, _)| *at));
+    }
+    Ok(Some(unseen))
+}
+
+/// All places of an array (frames, cells, 2).
+fn places(path: &Path) -> Result<Vec<Place>, Box<dyn Error>> {
+    let all = read_reals(path)?;
+    let of_frame = |(frame, cells): (usize, ndarray::ArrayViewD<'_, f64>)| {
+        let at = |row: ndarray::ArrayViewD<'_, f64>| Vector::new(row[[0]], row[[1]]);
+        let places = cells.outer_iter().map(|row| Place { frame, at: at(row) });
+        places.filter(|place| place.at.x.is_finite()).collect::<Vec<_>>()
+    };
+    Ok(all.outer_iter().enumerate().flat_map(of_frame).collect())
 }
 
 /// How many of the hidden cells a run found, and how many of its latent cells are hidden ones.
-pub fn recovery(truth: &Truth, view: View, out: &Path) -> Result<Option<Recovery>, Box<dyn Error>> {
-    let Some(latent) = read(out)? else {
-        return Ok(None);
-    };
+pub fn recovery(written: &Written, view: View, out: &Path) -> Result<Option<Recovery>, Box<dyn Error>> {
+    let truth = &written.truth;
     let [_, _, width, height] = truth.field_of_view;
     let domain = match view {
         View::Whole => Domain::Periodic(PeriodicBox::new([width, height])?),
         View::Window => Domain::Open,
+    };
+    let Some(latent) = read(&written.data, out, domain, 1.0)? else {
+        return Ok(None);
     };
     let inside = |x: f64, length: f64| view == View::Whole || (RIM..length - RIM).contains(&x);
     let (mut sites, mut groups) = (Vec::new(), Vec::new());

@@ -2,7 +2,7 @@
 
 use super::latent;
 use super::record::{Discovery, Estimate, Fit, Record};
-use claims::measured::{Class, Truth, View};
+use claims::measured::{Class, View, Written};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
 use std::error::Error;
@@ -83,7 +83,7 @@ pub fn run(
     let out = folder.join("infer");
     let Run { report, seconds, message } = program.run("infer", &written.data, &out)?;
     let fit = match report {
-        Some(report) => Some(fit(&report, &written.truth, class.recipe.view, &out)?),
+        Some(report) => Some(fit(&report, &written, class.recipe.view, &out)?),
         None => None,
     };
     let discovery = if discover {
@@ -104,12 +104,12 @@ pub fn run(
     })
 }
 
-fn fit(report: &Value, truth: &Truth, view: View, out: &Path) -> Result<Fit, Box<dyn Error>> {
+fn fit(report: &Value, written: &Written, view: View, out: &Path) -> Result<Fit, Box<dyn Error>> {
     let estimate = |name: &str| -> Result<Estimate, Box<dyn Error>> {
         let found = &report["parameters"][name];
         let value = found["value"].as_f64().unwrap_or(f64::NAN);
         let ci95 = [0, 1].map(|end| found["ci95"][end].as_f64());
-        let truth = *truth.parameters.get(name).ok_or("a parameter without a truth")?;
+        let truth = *written.truth.parameters.get(name).ok_or("a parameter without a truth")?;
         Ok(Estimate { truth, value, ci95 })
     };
     let doubts = report["fit"]["doubts"].as_array().into_iter().flatten();
@@ -119,7 +119,7 @@ fn fit(report: &Value, truth: &Truth, view: View, out: &Path) -> Result<Fit, Box
         trustworthy: report["fit"]["trustworthy"].as_bool().ok_or("a report without `trustworthy`")?,
         doubts: doubts.map(|doubt| doubt.as_str().map_or_else(|| doubt.to_string(), String::from)).collect(),
         verdict: report["verdict"]["kind"].as_str().map(String::from),
-        recall: latent::recovery(truth, view, out)?,
+        recall: latent::recovery(written, view, out)?,
     })
 }
 

@@ -64,6 +64,10 @@ fn findings(parameters: &Parameters) -> String {
             format!("The tissue is chiral, α = {}", significant(alpha.value, 2))
         }
         (_, true) => format!("With α held at {}", significant(alpha.value, 2)),
+        _ if parameters.K_P_alpha.fixed => {
+            let held = format!("With K_P α held at {}", significant(parameters.K_P_alpha.value, 3));
+            format!("{held}, α is {}", significant(alpha.value, 2))
+        }
         _ => "No chirality is seen".into(),
     };
     format!(
