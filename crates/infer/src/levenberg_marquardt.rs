@@ -24,11 +24,25 @@ pub(crate) type Observer<'a> = &'a mut dyn FnMut(u64, f64) -> ControlFlow<()>;
 
 pub(crate) type FitState = IterState<Vec<f64>, (), (), (), (), f64>;
 
+/// Problems that can tell where a step fails.
+pub(crate) trait Obstacles {
+    /// The places (pairs of nudges) without which a step would gain about what it promises, if these are few; after some failures to name
+    /// enough of them.
+    fn obstacles(&self, _at: &[f64], _trial: &[f64], _promised: f64, _failures: usize) -> Option<Vec<usize>> {
+        None
+    }
+}
+
 /// Damped Gauss–Newton on parameters and nudges together. The damping follows the ratio of actual to predicted
-/// decrease; the cost is evaluated anew at every trial, with its own topology.
+/// decrease; the cost is evaluated anew at every trial, with its own topology. Where a step fails at a few places only, these are held
+/// and the others go on.
 pub(crate) struct LevenbergMarquardt<'o> {
     damping: f64,
     growth: f64,
+    /// Damping of single places beyond that of all; empty where none was ever held.
+    held: Vec<f64>,
+    /// Steps in a row that failed at a few places.
+    evasions: u32,
     tolerance: f64,
     linearised: Option<NormalEquations>,
     small_steps: u32,
@@ -46,11 +60,24 @@ const SMALL_STEPS: u32 = 2;
 /// How many times the tolerance a step promises at most that counts as one that gains little if it fails.
 const LITTLE: f64 = 10.0;
 
+/// Share of the promised decrease below which a step gained poorly.
+const POOR: f64 = 0.25;
+
+/// Damping of a place where a step failed, at first; by how much it grows there with each further failure; below which it is none.
+const HELD: f64 = 1.0;
+const TIGHTER: f64 = 10.0;
+const LOOSE: f64 = 1e-2;
+
+/// Failures in a row at a few places before the step as a whole is damped.
+const MOST_EVASIONS: u32 = 4;
+
 impl<'o> LevenbergMarquardt<'o> {
     pub fn new(tolerance: f64, observer: Observer<'o>) -> Self {
         Self {
             damping: 1e-3,
             growth: 2.0,
+            held: Vec::new(),
+            evasions: 0,
             tolerance,
             linearised: None,
             small_steps: 0,
@@ -70,9 +97,43 @@ impl<'o> LevenbergMarquardt<'o> {
     }
 }
 
+impl LevenbergMarquardt<'_> {
+    /// Holds the places at which a step failed, if they are few: the step without them.
+    fn evade<O: Obstacles>(
+        &mut self,
+        problem: Option<&O>,
+        at: &[f64],
+        trial: &[f64],
+        linearised: &NormalEquations,
+        promised: f64,
+    ) -> Option<Vec<f64>> {
+        if self.evasions >= MOST_EVASIONS {
+            return None;
+        }
+        let places = problem?.obstacles(at, trial, promised, self.evasions as usize)?;
+        self.held.resize(linearised.places(), 0.0);
+        self.evasions += 1;
+        let first = at.len() - 2 * linearised.places();
+        let mut without = trial.to_vec();
+        for place in places {
+            let own = first + 2 * place..first + 2 * place + 2;
+            without[own.clone()].copy_from_slice(&at[own]);
+            self.held[place] = (self.held[place] * TIGHTER).max(HELD);
+        }
+        Some(without)
+    }
+
+    /// Lets held places go by and by.
+    fn release(&mut self) {
+        self.held.iter_mut().for_each(|held| *held = if *held > LOOSE { *held / 3.0 } else { 0.0 });
+    }
+}
+
 impl<O> Solver<O, FitState> for LevenbergMarquardt<'_>
 where
-    O: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
+    O: CostFunction<Param = Vec<f64>, Output = f64>
+        + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>
+        + Obstacles,
 {
     fn name(&self) -> &str {
         "sparse Levenberg-Marquardt"
@@ -104,22 +165,37 @@ where
             .linearised
             .take()
             .ok_or_else(|| Error::Optimiser("the problem was not linearised".into()))?;
-        let Step { step, promised } = linearised.step(self.damping)?;
-        let trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + s).collect();
-        let trial_cost = problem.cost(&trial)?;
+        let Step { step, promised } = linearised.step(self.damping, &self.held)?;
+        let mut trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + s).collect();
+        let mut trial_cost = problem.cost(&trial)?;
+        let evasion = match cost - trial_cost < POOR * promised {
+            true => self.evade(problem.problem.as_ref(), &at, &trial, &linearised, promised),
+            false => None,
+        };
+        let evaded = evasion.is_some();
+        if let Some(without) = evasion {
+            let other_cost = problem.cost(&without)?;
+            if other_cost < trial_cost {
+                (trial, trial_cost) = (without, other_cost);
+            }
+        }
         let gain = (cost - trial_cost) / promised.max(f64::MIN_POSITIVE);
         let next = if trial_cost < cost {
             self.linearised = Some(problem.jacobian(&trial)?);
-            self.damping =
-                (self.damping * (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0)).max(1e-12);
+            let change = (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
+            self.damping = (self.damping * if evaded { change.min(1.0) } else { change }).max(1e-12);
             self.growth = 2.0;
+            self.evasions = 0;
+            self.release();
             let small = cost - trial_cost <= self.tolerance * cost;
             self.small_steps = if small { self.small_steps + 1 } else { 0 };
             state.param(trial).cost(trial_cost)
         } else {
             self.linearised = Some(linearised);
-            self.damping *= self.growth;
-            self.growth *= 2.0;
+            if !evaded {
+                self.damping *= self.growth;
+                self.growth *= 2.0;
+            }
             // Nothing left to gain, to rounding; or little, and kinks are in the way.
             if promised <= self.tolerance * cost {
                 self.small_steps = SMALL_STEPS;

@@ -176,15 +176,13 @@ impl Linearisation {
 
     /// The factor of JᵀJ + k HᵀH and what stiffness there is beside.
     pub fn factor(&self, spring: f64) -> Result<Cholesky, Error> {
-        self.damped(spring, 0.0)
+        self.damped(spring, &[])
     }
 
-    fn damped(&self, spring: f64, damping: f64) -> Result<Cholesky, Error> {
+    fn damped(&self, spring: f64, damping: &[f64]) -> Result<Cholesky, Error> {
         let mut sum: SymmetricMatrix = self.velocities.normal.plus(spring, &self.positions.normal)?;
         sum.add_to_diagonal(self.floor.iter().copied());
-        if damping > 0.0 {
-            sum.shift_diagonal(damping);
-        }
+        sum.add_to_diagonal(damping.iter().copied());
         Ok(self.pattern.factor(&sum)?)
     }
 
@@ -197,12 +195,12 @@ impl Linearisation {
     /// Eliminates the nudges from a damped Gauss–Newton step
     ///
     /// ```text
-    /// [ JᵀJ + kHᵀH + λI   JᵀX + kHᵀZ ] [δε]   [ Jᵀr + kHᵀs ]
+    /// [ JᵀJ + kHᵀH + λ    JᵀX + kHᵀZ ] [δε]   [ Jᵀr + kHᵀs ]
     /// [ XᵀJ + kZᵀH        XᵀX + kZᵀZ ] [δβ] = [ Xᵀr + kZᵀs ]
     /// ```
     ///
-    /// with the residuals s of the positions and their derivative Z by β.
-    pub fn eliminate(&self, spring: f64, damping: f64) -> Result<Eliminated, Error> {
+    /// with the residuals s of the positions, their derivative Z by β and a damping λ of each nudge, if any.
+    pub fn eliminate(&self, spring: f64, damping: &[f64]) -> Result<Eliminated, Error> {
         let factor = self.damped(spring, damping)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mut right = self.sum(spring, |group| &group.mixed[..n * p]);
@@ -331,7 +329,7 @@ mod tests {
             right[i] -= stiffness * nudges[i];
         }
         let expected = full.lu().solve(&right).unwrap();
-        let eliminated = linearised.eliminate(spring, damping).unwrap();
+        let eliminated = linearised.eliminate(spring, &vec![damping; n]).unwrap();
         let free_step = eliminated.schur.clone().lu().solve(&eliminated.gradient).unwrap();
         let step = eliminated.nudge_step(&free_step);
         let scale = expected.amax();

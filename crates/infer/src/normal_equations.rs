@@ -109,17 +109,33 @@ impl NormalEquations {
         self.free.len()
     }
 
+    /// Number of places: pairs of nudges.
+    pub fn places(&self) -> usize {
+        self.frames.iter().map(Linearisation::order).sum::<usize>() / 2
+    }
+
     /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kHᵀH for nudges and
-    /// of the diagonal of XᵀX for coefficients.
-    pub fn step(&self, damping: f64) -> Result<Step, Error> {
+    /// of the diagonal of XᵀX for coefficients. Some places may be held harder, each by a damping of its own; none if there are none.
+    pub fn step(&self, damping: f64, held: &[f64]) -> Result<Step, Error> {
         let count: usize = self.frames.iter().map(Linearisation::order).sum();
         let diagonal = |frame: &Linearisation| frame.trace() + self.spring * frame.stiffness();
         let unit = self.frames.iter().map(diagonal).sum::<f64>() / count as f64;
         let shift = damping * unit;
+        let mut first = 0;
+        let shifts: Vec<Vec<f64>> = self
+            .frames
+            .iter()
+            .map(|frame| {
+                let own = first..first + frame.order();
+                first = own.end;
+                own.map(|i| shift + unit * held.get(i / 2).unwrap_or(&0.0)).collect()
+            })
+            .collect();
         let eliminated: Vec<_> = self
             .frames
             .par_iter()
-            .map(|frame| frame.eliminate(self.spring, shift))
+            .zip(&shifts)
+            .map(|(frame, shifts)| frame.eliminate(self.spring, shifts))
             .collect::<Result<_, _>>()?;
         let p = self.free.len();
         let (mut schur, mut gradient) = (self.priors.normal.clone(), self.priors.gradient.clone());
@@ -141,9 +157,9 @@ impl NormalEquations {
             - (free_step.transpose() * hessian * &free_step).sum()
             + free_step.component_mul(&free_step).dot(&damped);
         let mut step = free_step.as_slice().to_vec();
-        for part in &eliminated {
+        for (part, shifts) in eliminated.iter().zip(&shifts) {
             let own = part.nudge_step(&free_step);
-            promised += part.gain + shift * own.iter().map(|e| e * e).sum::<f64>();
+            promised += part.gain + own.iter().zip(shifts).map(|(e, shift)| shift * e * e).sum::<f64>();
             step.extend(own);
         }
         Ok(Step { step, promised })
@@ -153,7 +169,7 @@ impl NormalEquations {
     pub fn reduced(&self) -> Result<Reduced, Error> {
         let (mut information, mut gradient) = (self.priors.normal.clone(), self.priors.gradient.clone());
         for frame in &self.frames {
-            let part = frame.eliminate(self.spring, 0.0)?;
+            let part = frame.eliminate(self.spring, &[])?;
             information += part.schur;
             gradient += part.gradient;
         }

@@ -2,6 +2,7 @@
 
 use crate::flow::Sampling;
 use crate::least_squares::{Columns, free_rows, residuals};
+use crate::levenberg_marquardt::Obstacles;
 use crate::linearisation::{Linearisation, Local};
 use crate::measurement::Unknown;
 use crate::normal_equations::NormalEquations;
@@ -188,7 +189,8 @@ impl<'a> Objective<'a> {
                 let free = self.floor() / self.spring();
                 let unseen = nudges.chunks_exact(2).enumerate().filter(|(cell, _)| !frame.is_seen(*cell));
                 let stray = unseen.map(|(_, e)| free * (e[0] * e[0] + e[1] * e[1])).sum::<f64>();
-                let seen = position_rows::squares(frame, &nudged.tessellation, &nudged.positions, nudges);
+                let seen = position_rows::squares(frame, &nudged.tessellation, &nudged.positions, nudges)
+                    .sum::<f64>();
                 (squares.sum(), seen + stray)
             })
             .collect();
@@ -299,6 +301,8 @@ impl CostFunction for &Objective<'_> {
         Ok(self.value(parameters))
     }
 }
+
+impl Obstacles for &Objective<'_> {}
 
 impl Jacobian for &Objective<'_> {
     type Param = Vec<f64>;

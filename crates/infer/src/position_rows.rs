@@ -84,22 +84,22 @@ impl PositionRows {
     }
 }
 
-/// `Σ m ‖y − H(r)‖²` over the cells of a frame that were seen.
+/// `m ‖y − H(r)‖²` of the cells of a frame that were seen.
 pub(crate) fn squares(
     frame: &Observation,
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
     nudges: &[f64],
-) -> f64 {
+) -> impl Iterator<Item = f64> {
     let mut polygon = CellPolygon::default();
-    let square = |(cell, e): (usize, &[f64])| {
+    let square = move |(cell, e): (usize, &[f64])| {
         let mut rest = frame.aim(cell) - Vector::new(e[0], e[1]);
         if frame.share() != 0.0 && frame.fill_polygon(&mut polygon, tessellation, positions, cell) {
             rest -= polygon.centroid() * frame.share();
         }
         frame.stiffness(cell) * rest.norm_squared()
     };
-    nudges.chunks_exact(2).enumerate().map(square).sum()
+    nudges.chunks_exact(2).enumerate().map(square)
 }
 
 /// Largest derivative of a centroid. On the way to a fit a cell can come so near another that a corner goes wherever the least displacement
@@ -180,7 +180,7 @@ mod tests {
                 |cell: usize| frame.positions[cell] + Vector::new(nudges[2 * cell], nudges[2 * cell + 1]);
             let positions: Vec<Vector<f64>> = (0..count).map(place).collect();
             let tessellation = Tessellation::new(&positions, domain).unwrap();
-            let total = squares(&frame, &tessellation, &positions, nudges);
+            let total = squares(&frame, &tessellation, &positions, nudges).sum::<f64>();
             (PositionRows::new(&frame, &tessellation, &positions, nudges, 1, Some(0)), total)
         };
         let (exact, total) = rows_at(0.7, &nudges);

@@ -13,7 +13,7 @@ mod transitions;
 pub(crate) use continuation::follow;
 pub(crate) use descent::descend;
 
-use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
+use crate::levenberg_marquardt::{LevenbergMarquardt, Observer, Obstacles};
 use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
 use crate::{Error, Progress, Status};
@@ -141,7 +141,9 @@ pub(crate) fn optimise<P>(
     observer: Observer<'_>,
 ) -> Result<Optimum, Error>
 where
-    P: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
+    P: CostFunction<Param = Vec<f64>, Output = f64>
+        + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>
+        + Obstacles,
 {
     optimise_knowing(objective, (start, None), max_steps, tolerance, observer)
 }
@@ -155,7 +157,9 @@ pub(crate) fn optimise_knowing<P>(
     observer: Observer<'_>,
 ) -> Result<Optimum, Error>
 where
-    P: CostFunction<Param = Vec<f64>, Output = f64> + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>,
+    P: CostFunction<Param = Vec<f64>, Output = f64>
+        + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>
+        + Obstacles,
 {
     let solver = LevenbergMarquardt::new(tolerance, observer).knowing(linearised);
     let executor = Executor::new(objective, solver)

@@ -55,9 +55,10 @@ const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
 const LOOSENINGS: usize = 3;
 const ACCEPTED_EXCESS: f64 = 1.15;
 
-/// Relative decrease of the objective that counts as none, at the end and on the way.
+/// Relative decrease of the objective that counts as none: at the end, on the way, and at the first noise levels.
 const TOLERANCE: f64 = 5e-5;
 const TOLERANCE_ON_THE_WAY: f64 = 2e-4;
+const TOLERANCE_AT_FIRST: f64 = 2e-3;
 
 /// Spacing of log k at which the likelihood is looked at.
 const SPACING: f64 = 1.0;
@@ -180,10 +181,11 @@ impl<'a> Course<'a, '_> {
     /// Fit and noise levels in turn; the problem is linearised at the end.
     fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
         let mut start = (at, None);
+        let mut last = None;
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
-            let next = self.next_levels(&self.objective(states), &optimum.equations)?;
+            let next = self.next_levels(&self.objective(states), &optimum.equations, &mut last)?;
             let change = (next.position / self.levels.position).ln().abs()
                 + (next.velocity / self.levels.velocity).ln().abs();
             self.levels = next;
@@ -248,6 +250,7 @@ impl<'a> Course<'a, '_> {
         &self,
         objective: &MovieObjective<'_>,
         equations: &NormalEquations,
+        earlier: &mut Option<f64>,
     ) -> Result<NoiseLevels, Error> {
         let wanted = match self.request.noise {
             KnownNoise { position: Some(position), velocity: Some(velocity) } => {
@@ -255,7 +258,7 @@ impl<'a> Course<'a, '_> {
             }
             known => {
                 let components = objective.components() as f64;
-                Restricted { equations, components, known }.towards(self.levels, SPACING)?
+                Restricted { equations, components, known }.towards(self.levels, SPACING, earlier)?
             }
         };
         let least = match self.request.noise.velocity {
@@ -307,7 +310,7 @@ impl<'a> Course<'a, '_> {
     /// minimum the likelihood takes for noise what a better fit would explain.
     fn approach(&mut self, states: &States, mut at: Vec<f64>) -> Result<Vec<f64>, Error> {
         loop {
-            at = self.optimise(states, (at, None), APPROACH, TOLERANCE_ON_THE_WAY, (0, 1))?.parameters;
+            at = self.optimise(states, (at, None), APPROACH, TOLERANCE_AT_FIRST, (0, 1))?.parameters;
             if !self.refine(states, &at)?.1 {
                 return Ok(at);
             }
@@ -333,7 +336,12 @@ impl<'a> Course<'a, '_> {
         let [coarse, fine] = rules.map(|rule| MovieObjective { rule, ..self.objective(states) });
         let placed = coarse.place(at)?;
         let (before, after) = (coarse.residuals(&placed, at), fine.residuals(&fine.place(at)?, at));
-        let changed = after.iter().zip(before).map(|(after, before)| after - before).collect();
+        // A cell whose surroundings are close to something else goes anywhere: it counts no more than its error.
+        let changed = after
+            .iter()
+            .zip(before)
+            .map(|(after, before)| (after - before).cap_magnitude(self.levels.velocity));
+        let changed = changed.collect();
         let reduced = coarse.response(&placed, at, changed)?;
         // A fit gone wrong tells nothing of the coefficients.
         let Ok(covariance) = invert(reduced.information.clone()) else { return Ok(f64::INFINITY) };

@@ -118,7 +118,7 @@ pub(super) fn cross_validate(
             return Ok(None);
         }
         let states = States { motions, ..all.clone() };
-        let step = MovieObjective { states: &states, ..*objective }.linearise(at)?.step(DAMPING)?.step;
+        let step = MovieObjective { states: &states, ..*objective }.linearise(at)?.step(DAMPING, &[])?.step;
         let without: Vec<f64> = at.iter().zip(&step).map(|(at, step)| at + step).collect();
         let (rule, point) = match objective.rule.steps() > FEW_STEPS {
             true => (objective.rule, without),

@@ -20,6 +20,7 @@ mod missed;
 mod movie;
 mod neighbours;
 mod objective;
+mod obstacles;
 mod passage;
 mod result;
 mod row_builder;

@@ -207,7 +207,7 @@ impl<'a> MovieObjective<'a> {
         let (free, displacements) = self.split(parameters);
         let residual = self.residuals(&placed, parameters).iter().map(|r| r.norm_squared()).sum();
         let of_seen = self.of_seen(&placed, displacements, |_, cells, nudged, nudges| {
-            squares(cells, &nudged.tessellation, &nudged.positions, nudges)
+            squares(cells, &nudged.tessellation, &nudged.positions, nudges).sum::<f64>()
         });
         let nudges = of_seen.iter().sum();
         let unseen = displacements.chunks_exact(2).zip(self.anchored()).filter(|(_, anchored)| !anchored);

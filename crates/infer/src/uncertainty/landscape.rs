@@ -78,7 +78,8 @@ impl<'a> Slice<'a> {
             let (own, after) = rest.split_at(2 * frame.positions.len());
             rest = after;
             let placed = objective.place(index, own)?;
-            squares += position_rows::squares(frame, &placed.tessellation, &placed.positions, own);
+            squares +=
+                position_rows::squares(frame, &placed.tessellation, &placed.positions, own).sum::<f64>();
             nudged.push(placed);
         }
         let springs = objective.spring() * squares;
