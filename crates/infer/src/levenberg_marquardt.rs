@@ -26,9 +26,8 @@ pub(crate) type FitState = IterState<Vec<f64>, (), (), (), (), f64>;
 
 /// Problems that can tell where a step fails.
 pub(crate) trait Obstacles {
-    /// The places (pairs of nudges) without which a step would gain about what it promises, if these are few; after some failures to name
-    /// enough of them.
-    fn obstacles(&self, _at: &[f64], _trial: &[f64], _promised: f64, _failures: usize) -> Option<Vec<usize>> {
+    /// The places (pairs of nudges) without which a step would gain about what it promises, if these are few.
+    fn obstacles(&self, _at: &[f64], _trial: &[f64], _promised: f64) -> Option<Vec<usize>> {
         None
     }
 }
@@ -110,7 +109,7 @@ impl LevenbergMarquardt<'_> {
         if self.evasions >= MOST_EVASIONS {
             return None;
         }
-        let places = problem?.obstacles(at, trial, promised, self.evasions as usize)?;
+        let places = problem?.obstacles(at, trial, promised)?;
         self.held.resize(linearised.places(), 0.0);
         self.evasions += 1;
         let first = at.len() - 2 * linearised.places();

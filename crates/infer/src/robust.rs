@@ -44,10 +44,7 @@ pub(crate) fn reweighed(objective: &Objective<'_>, at: &[f64]) -> Result<Option<
     let median = *all.select_nth_unstable_by(middle, f64::total_cmp).1;
     // Where the model misses more than the noise explains, the misfit counts as noise.
     let scale = (median / MEDIAN).max(1.0);
-    let fault = |square: f64, share: f64| {
-        let ratio = share / (1.0 - share) / VARIANCE * (0.5 * square / scale * (1.0 - 1.0 / VARIANCE)).exp();
-        if ratio.is_finite() { ratio / (1.0 + ratio) } else { 1.0 }
-    };
+    let fault = |square: f64, share: f64| fault(square / scale, share);
     let mut share = 0.01;
     for _ in 0..STEPS {
         let sum: f64 = all.iter().map(|square| fault(*square, share)).sum();
@@ -61,11 +58,38 @@ pub(crate) fn reweighed(objective: &Objective<'_>, at: &[f64]) -> Result<Option<
     let frames = objective.frames.iter().zip(&squares).map(|(frame, squares)| {
         let mut weights = vec![1.0; frame.velocities.values().len()];
         for (datum, square) in squares {
-            weights[*datum] = 1.0 - fault(*square, share) * (1.0 - 1.0 / VARIANCE);
+            weights[*datum] = posterior_weight(*square / scale, share);
         }
         frame.clone().with_weights(weights)
     });
     Ok(Some(frames.collect()))
+}
+
+/// How much likelier a large error is than a usual one, by its square in units of the usual variance and the share of large ones.
+fn odds(square: f64, share: f64) -> f64 {
+    share / (1.0 - share) / VARIANCE * (0.5 * square * (1.0 - 1.0 / VARIANCE)).exp()
+}
+
+/// The probability that an error is a large one.
+fn fault(square: f64, share: f64) -> f64 {
+    let odds = odds(square, share);
+    if odds.is_finite() { odds / (1.0 + odds) } else { 1.0 }
+}
+
+/// The weight w of a datum of two components whose squared error is so large, in units of the usual variance.
+pub(crate) fn posterior_weight(square: f64, share: f64) -> f64 {
+    1.0 - fault(square, share) * (1.0 - 1.0 / VARIANCE)
+}
+
+/// −2 log of the likelihood of such a datum, less that of none: its derivative by the square is the weight.
+pub(crate) fn loss(square: f64, share: f64) -> f64 {
+    let (odds, none) = (odds(square, share), odds(0.0, share));
+    // Beyond all numbers a large error is certain.
+    let logarithm = match odds.is_finite() {
+        true => odds.ln_1p(),
+        false => none.ln() + 0.5 * square * (1.0 - 1.0 / VARIANCE),
+    };
+    square - 2.0 * (logarithm - none.ln_1p())
 }
 
 /// q of each velocity, by frame.

@@ -52,8 +52,8 @@ const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY 
 const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
 
 /// How often the error of the dynamics is raised to what a fit leaves, and by how much that may exceed what is expected.
-const LOOSENINGS: usize = 3;
-const ACCEPTED_EXCESS: f64 = 1.15;
+const LOOSENINGS: usize = 5;
+const ACCEPTED_EXCESS: f64 = 1.05;
 
 /// Relative decrease of the objective that counts as none: at the end, on the way, and at the first noise levels.
 const TOLERANCE: f64 = 5e-5;
@@ -185,7 +185,7 @@ impl<'a> Course<'a, '_> {
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
-            let next = self.next_levels(&self.objective(states), &optimum.equations, &mut last)?;
+            let next = self.next_levels(&self.objective(states), &optimum, &mut last)?;
             let change = (next.position / self.levels.position).ln().abs()
                 + (next.velocity / self.levels.velocity).ln().abs();
             self.levels = next;
@@ -217,7 +217,7 @@ impl<'a> Course<'a, '_> {
             if excess < ACCEPTED_EXCESS || self.request.noise.velocity.is_some() {
                 return Ok((optimum.parameters, error));
             }
-            self.levels.velocity *= excess.sqrt();
+            self.levels.velocity *= excess;
             start = (optimum.parameters, Some(optimum.equations.at_levels(self.levels)));
         }
         Ok((self.optimise(states, start, most, TOLERANCE, (1, 1))?.parameters, error))
@@ -249,7 +249,7 @@ impl<'a> Course<'a, '_> {
     fn next_levels(
         &self,
         objective: &MovieObjective<'_>,
-        equations: &NormalEquations,
+        optimum: &Optimum,
         earlier: &mut Option<f64>,
     ) -> Result<NoiseLevels, Error> {
         let wanted = match self.request.noise {
@@ -257,8 +257,12 @@ impl<'a> Course<'a, '_> {
                 NoiseLevels { position, velocity }
             }
             known => {
-                let components = objective.components() as f64;
-                Restricted { equations, components, known }.towards(self.levels, SPACING, earlier)?
+                let components = objective.explained_components(&optimum.parameters)?;
+                Restricted { equations: &optimum.equations, components, known }.towards(
+                    self.levels,
+                    SPACING,
+                    earlier,
+                )?
             }
         };
         let least = match self.request.noise.velocity {

@@ -22,6 +22,18 @@ struct MotionRows {
     columns: Vec<DMatrix<f64>>,
 }
 
+impl MotionRows {
+    /// Rows times a factor each.
+    fn scale(&mut self, factors: &[f64]) {
+        let blocks = &mut self.jacobian.block;
+        for (row, factor) in factors.iter().enumerate() {
+            let own = self.jacobian.row_start[row]..self.jacobian.row_start[row + 1];
+            blocks[own].iter_mut().flatten().for_each(|entry| *entry *= factor);
+            self.columns[row] *= *factor;
+        }
+    }
+}
+
 impl MovieObjective<'_> {
     /// The problem linearised about a point.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
@@ -60,10 +72,13 @@ impl MovieObjective<'_> {
     ) -> Result<NormalEquations, Error> {
         let (free, _) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
-        let MotionRows { jacobian, columns } = self.motion_rows(placed, coefficients.as_slice());
+        let mut motions = self.motion_rows(placed, coefficients.as_slice());
+        let roots: Vec<f64> = self.weights(placed, parameters).into_iter().map(f64::sqrt).collect();
+        motions.scale(&roots);
+        let MotionRows { jacobian, columns } = motions;
         let p = anchors.dimension;
         let row = |(row, (rest, x)): (usize, (Vector<f64>, DMatrix<f64>))| {
-            (row, rest, x.resize_horizontally(p, 0.0))
+            (row, rest * roots[row], x.resize_horizontally(p, 0.0))
         };
         let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> =
             residuals.into_iter().zip(columns).enumerate().map(row).collect();

@@ -4,6 +4,7 @@
 //! Φ(β, x) = Σ ‖x_{f+1} − x_f − ∫F_β − d_f‖² / (T h_f)  +  k Σ_anchors m ‖y − H(x)‖²,      k = σ_v² / σ_r²
 //! ```
 //!
+//! with, in place of the square of what is left of a motion, the loss of a contaminated normal distribution (see [`crate::robust`]),
 //! with places x of the cells at all frames, h_f the time between two of them, T the usual one, and d the
 //! translation of the stage. What the model misses of a displacement is a random walk: its variance grows
 //! with the time, so that σ_v is the error of a mean velocity over T.
@@ -15,6 +16,7 @@ use super::states::{Motion, States};
 use crate::normal_equations::NormalEquations;
 use crate::objective::{Evaluated, Nudged};
 use crate::position_rows::squares;
+use crate::robust::{loss, posterior_weight};
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use rayon::prelude::*;
@@ -23,6 +25,10 @@ use voronudge_model::Structure;
 
 /// Standard deviation of a place that nothing holds about where it began, in units of ℓ₀: none to speak of.
 const FAR: f64 = 30.0;
+
+/// Share of motions that nothing explains. Where contacts change, the way of a cell forks, and a fit can be caught on the wrong side of a
+/// fork: what is then left of its motion must not decide a coefficient, nor keep it from crossing over.
+const UNEXPLAINED: f64 = 0.01;
 
 /// The penalised objective of a movie. The parameter vector is β, then the displacements from where places began, x and y of one place
 /// after the other, then the translations.
@@ -49,7 +55,7 @@ pub(crate) struct Placed<'a> {
 /// The parts of Φ, without their factors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct MovieParts {
-    /// Sum of the squared residuals of motions.
+    /// What counts of the squared residuals of motions.
     pub residual: f64,
     /// Sum of the squares of what is left of the measured positions, each over the square of its error in units of σ_r.
     pub nudges: f64,
@@ -76,6 +82,13 @@ impl<'a> MovieObjective<'a> {
     pub fn components(&self) -> usize {
         let rows = 2 * self.states.motions.len();
         rows.saturating_sub(2 * (self.states.blocks() - self.states.anchors.len()))
+    }
+
+    /// The same without the components of motions that nothing explains.
+    pub fn explained_components(&self, parameters: &[f64]) -> Result<f64, Error> {
+        let placed = self.place(parameters)?;
+        let missing: f64 = self.weights(&placed, parameters).iter().map(|weight| 2.0 * (1.0 - weight)).sum();
+        Ok((self.components() as f64 - missing).max(1.0))
     }
 
     /// What Φ is expected to be if model and noise levels are right.
@@ -170,6 +183,19 @@ impl<'a> MovieObjective<'a> {
         self.states.motions.par_iter().map(residual).collect()
     }
 
+    /// What counts of what the model leaves of a motion.
+    pub fn counted(&self, rest: &Vector<f64>) -> f64 {
+        let variance = self.levels.velocity.powi(2);
+        variance * loss(rest.norm_squared() / variance, UNEXPLAINED)
+    }
+
+    /// How much each motion counts, by what the model leaves of it.
+    pub fn weights(&self, placed: &Placed<'_>, parameters: &[f64]) -> Vec<f64> {
+        let variance = self.levels.velocity.powi(2);
+        let weight = |rest: &Vector<f64>| posterior_weight(rest.norm_squared() / variance, UNEXPLAINED);
+        self.residuals(placed, parameters).iter().map(weight).collect()
+    }
+
     /// Something of each frame as it was measured, by how far its cells are from where they were before any fit (x and y of one after
     /// the other).
     pub fn of_seen<T: Send>(
@@ -205,7 +231,8 @@ impl<'a> MovieObjective<'a> {
     pub fn parts(&self, parameters: &[f64]) -> Result<MovieParts, Error> {
         let placed = self.place(parameters)?;
         let (free, displacements) = self.split(parameters);
-        let residual = self.residuals(&placed, parameters).iter().map(|r| r.norm_squared()).sum();
+        let rests = self.residuals(&placed, parameters);
+        let residual = rests.iter().map(|rest| self.counted(rest)).sum();
         let of_seen = self.of_seen(&placed, displacements, |_, cells, nudged, nudges| {
             squares(cells, &nudged.tessellation, &nudged.positions, nudges).sum::<f64>()
         });

@@ -30,7 +30,7 @@ impl MovieObjective<'_> {
         let residuals = self.residuals(&placed, parameters);
         let motions = residuals.iter().enumerate();
         let mut terms: Vec<(Owner, f64)> =
-            motions.map(|(number, rest)| (Owner::Motion(number), rest.norm_squared())).collect();
+            motions.map(|(number, rest)| (Owner::Motion(number), self.counted(rest))).collect();
         let spring = self.levels.spring();
         let of_frames = self.of_seen(&placed, self.split(parameters).1, |frame, cells, nudged, nudges| {
             let all = squares(cells, &nudged.tessellation, &nudged.positions, nudges).enumerate();
@@ -40,12 +40,12 @@ impl MovieObjective<'_> {
         terms.iter().all(|(_, term)| term.is_finite()).then_some(terms)
     }
 
-    /// Marks the places of a cell at a frame and of its neighbours over some rings.
-    fn mark(&self, frame: usize, cell: usize, rings: usize, marked: &mut [bool]) {
+    /// Marks the places of a cell at a frame and of its neighbours.
+    fn mark(&self, frame: usize, cell: usize, marked: &mut [bool]) {
         let instant = &self.states.instants[frame];
         let mut within = vec![cell];
         let mut last = 0;
-        for _ in 0..rings {
+        for _ in 0..RINGS {
             let ring = last..within.len();
             last = ring.end;
             for k in ring {
@@ -65,7 +65,7 @@ impl MovieObjective<'_> {
 }
 
 impl Obstacles for &MovieObjective<'_> {
-    fn obstacles(&self, at: &[f64], trial: &[f64], promised: f64, failures: usize) -> Option<Vec<usize>> {
+    fn obstacles(&self, at: &[f64], trial: &[f64], promised: f64) -> Option<Vec<usize>> {
         let (before, after) = (self.terms(at)?, self.terms(trial)?);
         let mut changes: Vec<(Owner, f64)> = after
             .into_iter()
@@ -76,7 +76,6 @@ impl Obstacles for &MovieObjective<'_> {
         let mut rest: f64 = changes.iter().map(|change| change.1).sum();
         let most = (FEW * self.states.anchors.len() as f64) as usize;
         let mut marked = vec![false; self.states.blocks()];
-        let rings = RINGS + failures;
         for (owner, change) in changes.iter().take(most) {
             if rest <= -KEPT * promised {
                 break;
@@ -86,10 +85,10 @@ impl Obstacles for &MovieObjective<'_> {
                 Owner::Motion(number) => {
                     let motion = &self.states.motions[number];
                     for (end, cell) in motion.cells.iter().enumerate() {
-                        self.mark(motion.interval + end, *cell as usize, rings, &mut marked);
+                        self.mark(motion.interval + end, *cell as usize, &mut marked);
                     }
                 }
-                Owner::Position(frame, cell) => self.mark(frame, cell, rings, &mut marked),
+                Owner::Position(frame, cell) => self.mark(frame, cell, &mut marked),
             }
         }
         let places = (0..marked.len()).filter(|place| marked[*place]);
