@@ -136,3 +136,22 @@ fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)
         })
         .collect()
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Small errors count as squares, large ones as squares of errors ten times larger, beyond all numbers too.
+    #[test]
+    fn the_weight_is_the_derivative_of_the_loss() {
+        const STEP: f64 = 1e-4;
+        assert_eq!(loss(0.0, 0.01), 0.0);
+        for square in [0.5, 3.0, 12.0, 18.0, 25.0, 100.0, 1e4] {
+            let slope = (loss(square + STEP, 0.01) - loss(square - STEP, 0.01)) / (2.0 * STEP);
+            assert!((slope - posterior_weight(square, 0.01)).abs() < 1e-6, "{square}: {slope}");
+        }
+        assert!((loss(2.0, 0.01) - 2.0).abs() < 2e-3 && posterior_weight(2.0, 0.01) > 0.999);
+        let far = loss(1e5, 0.01) - loss(9e4, 0.01);
+        assert!((far - 1e4 / VARIANCE).abs() < 1e-6, "{far}");
+    }
+}

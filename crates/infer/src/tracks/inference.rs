@@ -76,6 +76,7 @@ pub fn infer_tracks(
     let tracked = tracked(&objective, &found);
     let coefficients = space.coefficients(free);
     let means = mean_velocities(&objective, &placed, displacements);
+    let weights = motion_weights(states, objective.weights(&placed, &found.parameters));
     let missed = velocities.iter().zip(&states.motions).filter_map(|(seen, motion)| {
         let mean = means[motion.interval].get(&motion.track)?;
         Some((seen.as_ref()? - mean).norm_squared())
@@ -100,7 +101,7 @@ pub fn infer_tracks(
         degrees_of_freedom: equations.degrees_of_freedom()?,
         nudge_rms: (parts.nudges / states.anchors.len().max(1) as f64).sqrt(),
         contribution_ratio: levels.spring() * parts.nudges / parts.residual,
-        frames: frame_results(placed, states, &means, held_out.as_ref()),
+        frames: frame_results(placed, states, &means, &weights, held_out.as_ref()),
         status: found.status,
         steps: found.steps,
         objective: value,
@@ -152,11 +153,22 @@ fn mean_velocities(
     means
 }
 
+/// How much the motion of each cell of a frame to the next one counts; one where none is explained.
+fn motion_weights(states: &States, of_motions: Vec<f64>) -> Vec<Vec<f64>> {
+    let mut weights: Vec<Vec<f64>> =
+        states.instants.iter().map(|instant| vec![1.0; instant.tracks.len()]).collect();
+    for (motion, weight) in states.motions.iter().zip(of_motions) {
+        weights[motion.interval][motion.cells[0] as usize] = weight;
+    }
+    weights
+}
+
 /// The frames of a movie at their nudged positions; data are the mean velocities up to the next frame.
 fn frame_results(
     placed: Placed<'_>,
     states: &States,
     means: &MeanVelocities,
+    weights: &[Vec<f64>],
     held_out: Option<&HeldOut>,
 ) -> Vec<FrameResult> {
     let instants = states.instants.iter().zip(placed.instants).enumerate();
@@ -167,7 +179,7 @@ fn frame_results(
                 means.get(frame).and_then(|means| means.get(track)).copied()
             };
             FrameResult {
-                weights: Vec::new(),
+                weights: weights[frame].clone(),
                 edges_lost,
                 edges_gained,
                 predicted: evaluated.of_cells,

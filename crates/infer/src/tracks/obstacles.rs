@@ -95,3 +95,57 @@ impl Obstacles for &MovieObjective<'_> {
         (rest <= -KEPT * promised).then(|| places.collect())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::normal_equations::Step;
+    use crate::tracks::first::naive_coefficients;
+    use crate::tracks::rule::Rule;
+    use crate::tracks::sample::Filmed;
+    use crate::tracks::states::States;
+    use crate::{CoefficientSpace, Constraints, NoiseLevels};
+    use voronudge_model::Structure;
+
+    /// A good step in which some cells are led astray: a few of them are named, with their neighbours, and without them the step is good; if
+    /// it is all of them, the step is bad as a whole.
+    #[test]
+    fn a_step_fails_where_cells_go_astray() {
+        let (movie, _) = Filmed { size: [144, 3], step: 0.1, error: 0.02, seed: 3 }.movie();
+        let (states, structure) = (States::new(&movie).unwrap(), Structure::base(1.0));
+        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+        let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
+        let (movie, states, structure, space) = (&movie, &states, &structure, &space);
+        let objective =
+            &MovieObjective { movie, states, rule: Rule::RungeKutta(1), structure, space, levels };
+        let onwards = |at: &[f64]| {
+            let Step { step, promised } = objective.linearise(at).unwrap().step(1e-3, &[]).unwrap();
+            (at.iter().zip(&step).map(|(x, s)| x + s).collect::<Vec<f64>>(), promised)
+        };
+        let (at, _) = onwards(&objective.start(&naive_coefficients(objective).unwrap()));
+        let (good, promised) = onwards(&at);
+        let gained = objective.value(&at) - objective.value(&good);
+        assert!(gained > 0.7 * promised, "{gained} {promised}");
+        let first = space.dimension();
+        let astray = |places: &mut dyn Iterator<Item = usize>| {
+            let mut trial = good.clone();
+            places.for_each(|place| trial[first + 2 * place] += 0.4);
+            trial
+        };
+        let (one, other) = (100, 301);
+        let trial = astray(&mut [one, other].into_iter());
+        let lost = objective.value(&trial) - objective.value(&at);
+        assert!(lost > 0.0, "{lost} {gained} {promised}");
+        let places = objective.obstacles(&at, &trial, promised).unwrap();
+        assert!(places.contains(&one) && places.contains(&other) && places.len() < 150, "{places:?}");
+        let mut without = trial.clone();
+        for place in places {
+            let own = first + 2 * place..first + 2 * place + 2;
+            without[own.clone()].copy_from_slice(&at[own]);
+        }
+        let kept = objective.value(&at) - objective.value(&without);
+        assert!(kept > 0.3 * promised, "{kept} {promised}");
+        let everywhere = astray(&mut (0..states.anchors.len()).step_by(3));
+        assert!(objective.obstacles(&at, &everywhere, promised).is_none());
+    }
+}
