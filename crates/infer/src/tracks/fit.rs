@@ -51,9 +51,9 @@ const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7 };
 const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY };
 const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
 
-/// How often the error of the dynamics is raised to what a fit leaves, and by how much that may exceed what is expected.
+/// How often the error of the dynamics is raised to what a fit leaves, and by how many standard deviations that may exceed what is expected.
 const LOOSENINGS: usize = 5;
-const ACCEPTED_EXCESS: f64 = 1.05;
+const ACCEPTED_EXCESS: f64 = 2.5;
 
 /// Relative decrease of the objective that counts as none: at the end, on the way, and at the first noise levels.
 const TOLERANCE: f64 = 5e-5;
@@ -213,8 +213,10 @@ impl<'a> Course<'a, '_> {
         };
         for _ in 0..LOOSENINGS {
             let optimum = self.optimise(states, start, most, TOLERANCE, (1, 1))?;
-            let excess = optimum.value / self.objective(states).expected();
-            if excess < ACCEPTED_EXCESS || self.request.noise.velocity.is_some() {
+            let expected = self.objective(states).expected();
+            let excess = optimum.value / expected;
+            let deviation = (2.0 * self.levels.velocity.powi(2) / expected).sqrt();
+            if excess < 1.0 + ACCEPTED_EXCESS * deviation || self.request.noise.velocity.is_some() {
                 return Ok((optimum.parameters, error));
             }
             self.levels.velocity *= excess;

@@ -39,7 +39,7 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
             "the objective is {} times its expected value ({} standard deviations above it): the fit is in a wrong minimum, \
              the noise levels are too small, or the model lacks something; try {remedy}, and check the noise levels \
              (intervals are widened accordingly)",
-            significant(result.excess(), 2),
+            significant(result.excess(), 3),
             significant(deviations, 2)
         ),
         Doubt::PositionNoise => {
