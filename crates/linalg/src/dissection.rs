@@ -1,9 +1,17 @@
 //! Nested dissection by places in the plane or in space and time: an order of elimination with little fill.
+//!
+//! Cuts are tried at several places along each axis, never between nodes that are equally far along it (the cells of one frame of a movie,
+//! seen along time), and the fewest nodes that separate the sides of a cut are found exactly: for movies of tracks this takes half the operations of
+//! all nodes next to the cut on one of its sides.
 
 use crate::graph::Graph;
+use crate::separator::{Halves, separate};
 
 /// Nodes that are not cut any further.
 const LEAF: usize = 24;
+
+/// Shares of the nodes that a cut leaves on its first side.
+const SHARES: [f64; 3] = [0.5, 0.42, 0.58];
 
 /// Nodes eliminated together, and the later ones that they couple to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -70,7 +78,7 @@ impl Dissection {
         let mut cut = Cut {
             graph,
             places: places.iter().map(|place| place.unwrap_or_default()).collect(),
-            far: vec![false; nodes],
+            seat: vec![u32::MAX; nodes],
             made: Self {
                 fronts: Vec::new(),
                 order: Vec::with_capacity(nodes),
@@ -108,15 +116,9 @@ impl Dissection {
 struct Cut<'a> {
     graph: &'a Graph,
     places: Vec<[f64; 3]>,
-    /// Nodes on the far side of the cut at hand.
-    far: Vec<bool>,
+    /// Room for a number per node.
+    seat: Vec<u32>,
     made: Dissection,
-}
-
-/// Nodes on both sides of a cut, and those between that keep them apart.
-struct Halves {
-    sides: [Vec<u32>; 2],
-    separator: Vec<u32>,
 }
 
 impl Cut<'_> {
@@ -128,12 +130,12 @@ impl Cut<'_> {
         if nodes.len() <= LEAF {
             return vec![self.front(nodes, Vec::new())];
         }
-        let extents = [0, 1, 2].map(|axis| self.extent(&nodes, axis));
-        let axes = (0..3).filter(|axis| extents[*axis] > 0.0);
-        let best = axes.map(|axis| self.halve(&nodes, axis)).min_by_key(|halves| halves.separator.len());
-        let Halves { sides, separator } = match best {
-            Some(halves) => halves,
-            None => self.halve(&nodes, 0),
+        let cuts = [0, 1, 2].into_iter().flat_map(|axis| self.cuts(&nodes, axis));
+        let cuts: Vec<[Vec<u32>; 2]> = cuts.collect();
+        let halves = cuts.into_iter().map(|sides| separate(self.graph, sides, &mut self.seat));
+        let best = halves.min_by(|a, b| a.cost().total_cmp(&b.cost()));
+        let Some(Halves { sides, separator }) = best else {
+            return vec![self.front(nodes, Vec::new())];
         };
         drop(nodes);
         let mut children = Vec::new();
@@ -143,46 +145,24 @@ impl Cut<'_> {
         if separator.is_empty() { children } else { vec![self.front(separator, children)] }
     }
 
-    /// Cuts nodes across an axis; the nodes next to the cut on one of its sides are the separator, whichever are fewer.
-    fn halve(&mut self, nodes: &[u32], axis: usize) -> Halves {
-        let mut near = nodes.to_vec();
-        let middle = near.len() / 2;
-        let places = &self.places;
-        let along = |node: &u32| places[*node as usize][axis];
-        near.select_nth_unstable_by(middle, |a, b| along(a).total_cmp(&along(b)).then(a.cmp(b)));
-        let far = near.split_off(middle);
-        far.iter().for_each(|&node| self.far[node as usize] = true);
-        let next_to_far: Vec<bool> = near.iter().map(|&node| self.touches_far(node)).collect();
-        near.iter().for_each(|&node| self.far[node as usize] = true);
-        far.iter().for_each(|&node| self.far[node as usize] = false);
-        let next_to_near: Vec<bool> = far.iter().map(|&node| self.touches_far(node)).collect();
-        near.iter().for_each(|&node| self.far[node as usize] = false);
-        let count = |marks: &[bool]| marks.iter().filter(|mark| **mark).count();
-        let split = |nodes: Vec<u32>, marks: Vec<bool>| -> (Vec<u32>, Vec<u32>) {
-            let (apart, rest): (Vec<_>, Vec<_>) = nodes.into_iter().zip(marks).partition(|(_, mark)| *mark);
-            let only = |pairs: Vec<(u32, bool)>| pairs.into_iter().map(|(node, _)| node).collect();
-            (only(apart), only(rest))
-        };
-        match count(&next_to_far) <= count(&next_to_near) {
-            true => {
-                let (separator, near) = split(near, next_to_far);
-                Halves { sides: [near, far], separator }
-            }
-            false => {
-                let (separator, far) = split(far, next_to_near);
-                Halves { sides: [near, far], separator }
-            }
-        }
-    }
-
-    /// Whether a node has a neighbour on the far side.
-    fn touches_far(&self, node: u32) -> bool {
-        self.graph.neighbours(node).iter().any(|&other| self.far[other as usize])
-    }
-
-    fn extent(&self, nodes: &[u32], axis: usize) -> f64 {
-        let along = || nodes.iter().map(|&node| self.places[node as usize][axis]);
-        along().fold(f64::NEG_INFINITY, f64::max) - along().fold(f64::INFINITY, f64::min)
+    /// Cuts nodes across an axis, none of two nodes that are equally far along it.
+    fn cuts(&self, nodes: &[u32], axis: usize) -> Vec<[Vec<u32>; 2]> {
+        let along = |node: u32| self.places[node as usize][axis];
+        let mut sorted = nodes.to_vec();
+        sorted.sort_unstable_by(|&a, &b| along(a).total_cmp(&along(b)).then(a.cmp(&b)));
+        let mut ends: Vec<usize> = SHARES
+            .iter()
+            .filter_map(|share| {
+                let middle = (share * sorted.len() as f64) as usize;
+                let value = along(sorted[middle]);
+                let below = sorted.partition_point(|&node| along(node) < value);
+                let above = sorted.partition_point(|&node| along(node) <= value);
+                let ends = [below, above].into_iter().filter(|end| (1..sorted.len()).contains(end));
+                ends.min_by_key(|end| end.abs_diff(middle))
+            })
+            .collect();
+        ends.dedup();
+        ends.into_iter().map(|end| [sorted[..end].to_vec(), sorted[end..].to_vec()]).collect()
     }
 
     fn front(&mut self, nodes: Vec<u32>, children: Vec<usize>) -> usize {

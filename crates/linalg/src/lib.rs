@@ -23,6 +23,7 @@ mod linear_system;
 mod partial_eigen;
 #[cfg(test)]
 mod sample;
+mod separator;
 mod sparse_lu;
 mod symmetric_matrix;
 
