@@ -84,7 +84,12 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
     let mut ranking = growth.ranking;
     ranking.settle(&selected);
     let last = grown.as_ref().map_or(&base, |grown| &grown.model);
-    let verdict = verdict::decide(testable, &selected, &verdict::Left::new(&setting, last, &after));
+    let proven = match search.fit.cross_validation {
+        CrossValidation::Done => gain.is_some_and(verdict::predicts_better),
+        CrossValidation::Skipped => true,
+    };
+    let left = verdict::Left::new(&setting, last, &after);
+    let verdict = verdict::decide(testable, &selected, &left, proven);
     Ok(Discovery {
         verdict,
         before,

@@ -230,5 +230,12 @@ pub struct Discovery {
     pub null_sets: NullSets,
 }
 
+impl Discovery {
+    /// Whether the effects predict data held out better, by more than the standard error of the difference.
+    pub fn predicts_better(&self) -> bool {
+        self.gain.is_some_and(super::verdict::predicts_better)
+    }
+}
+
 /// Told of progress; may stop the search.
 pub type Observer<'o> = &'o mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;

@@ -12,6 +12,11 @@ const STRUCTURED: f64 = 0.003;
 /// Share of the excess that effects must explain, chance allowed for, to be all that is missing.
 const ENOUGH: f64 = 0.8;
 
+/// Whether the error on data held out falls by more than its standard error: a fit can only get better, a prediction need not.
+pub(super) fn predicts_better(gain: [f64; 2]) -> bool {
+    gain[0] > gain[1]
+}
+
 /// What the last model leaves.
 pub(super) struct Left {
     /// A structure in space or time.
@@ -36,10 +41,12 @@ impl Left {
     }
 }
 
-/// The verdict.
-pub(super) fn decide(testable: bool, selection: &Selection, left: &Left) -> Verdict {
+/// The verdict. Effects are proven by what they predict, unless nobody asked for that.
+pub(super) fn decide(testable: bool, selection: &Selection, left: &Left, proven: bool) -> Verdict {
     match (selection.selected.is_empty(), left) {
-        (false, Left { structured: false, too_much: false }) if selection.largest_share >= ENOUGH => {
+        (false, Left { structured: false, too_much: false })
+            if proven && selection.largest_share >= ENOUGH =>
+        {
             Verdict::Attributed
         }
         (false, _) => Verdict::Partial,

@@ -49,9 +49,10 @@ impl Verdict {
                  the candidates listed were compared, and those of one class cannot be told apart."
             }
             Self::Partial => {
-                "An effect was selected, but it explains less than 80 % of what the base model lacked, or the \
-                 extended model still does not fit. The data are consistent with it; it is not shown to be \
-                 the cause, and the rest is unidentified."
+                "An effect was selected, but it explains less than 80 % of what the base model lacked, the \
+                 extended model still does not fit, or data that the fit has not seen are not predicted better \
+                 by more than a standard error. The data are consistent with it; it is not shown to be the \
+                 cause."
             }
             Self::UnexplainedStructured => {
                 "The base model lacks something that is structured in space, and no candidate explains it. \

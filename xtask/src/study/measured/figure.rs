@@ -14,8 +14,10 @@ const AXIS: f64 = 54.0;
 const WIDE: f64 = 250.0;
 const NARROW: f64 = 130.0;
 const NAMES: f64 = 132.0;
-/// Errors beyond this, in per cent, are drawn at the edge.
-const REACH: f64 = 40.0;
+/// Share of the errors that an axis holds; those beyond are drawn at its edge. How far it reaches, in per cent, at least and at most.
+const HELD: f64 = 0.98;
+const LEAST_REACH: f64 = 0.5;
+const MOST_REACH: f64 = 40.0;
 /// What is wanted of the coverage.
 const WANTED: [f64; 2] = [0.9, 0.98];
 
@@ -48,16 +50,26 @@ pub fn draw(summaries: &[Summary]) -> String {
     svg.finish()
 }
 
+/// How far the axis of errors reaches, in per cent.
+fn reach(rows: &[&Errors]) -> f64 {
+    let mut sizes: Vec<f64> = rows.iter().flat_map(|own| &own.all).map(|error| 100.0 * error.abs()).collect();
+    sizes.sort_by(f64::total_cmp);
+    let held = (HELD * sizes.len() as f64).ceil() as usize;
+    let outermost = held.checked_sub(1).and_then(|last| sizes.get(last));
+    (1.1 * outermost.unwrap_or(&0.0)).clamp(LEAST_REACH, MOST_REACH)
+}
+
 /// Errors in per cent: each set a dot, quartiles a box, the median a line.
 fn distributions(name: &str, colour: &str, rows: &[&Errors], height: f64) -> Option<Chart> {
-    let mut chart = panel(&format!("error of {name} (%)"), [-REACH, REACH], [WIDE, height], rows.len())?;
+    let reach = reach(rows);
+    let mut chart = panel(&format!("error of {name} (%)"), [-reach, reach], [WIDE, height], rows.len())?;
     let [_, vertical] = chart.axes();
     let ends = vertical.range;
     chart.curve(&[[0.0, ends[0]], [0.0, ends[1]]], &format!(r#"stroke="{INK}" stroke-width=".9""#));
     let (mut dots, mut boxes, mut medians) = (PathData::new(), PathData::new(), PathData::new());
     for (row, errors) in rows.iter().enumerate() {
         let place = |error: f64, offset: f64| {
-            let [x, y] = chart.place([(100.0 * error).clamp(-REACH, REACH), -(row as f64)]);
+            let [x, y] = chart.place([(100.0 * error).clamp(-reach, reach), -(row as f64)]);
             [x, y + offset]
         };
         let [low, median, high] = quartiles(errors.all.clone());
@@ -153,6 +165,8 @@ mod tests {
         let document = roxmltree::Document::parse(&svg).unwrap();
         let texts: Vec<&str> = document.descendants().filter_map(|node| node.text()).collect();
         assert!(texts.contains(&"complete") && texts.contains(&"open") && !texts.contains(&"missed-2"));
+        let errors: Vec<&Errors> = summaries.iter().map(|own| &own.k_p_alpha).collect();
+        assert!((reach(&errors[1..2]) - 27.5).abs() < 1e-9 && reach(&errors) == MOST_REACH);
         assert!(draw(&summaries[2..]).contains("no data"));
     }
 }

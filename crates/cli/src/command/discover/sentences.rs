@@ -10,6 +10,9 @@ use voronudge_report::numbers::significant;
 /// How meanings tell which sign of the coefficient is meant.
 const POSITIVE: &str = "(c > 0)";
 
+/// Share of the squared velocities below which a rest is none to speak of.
+const LEAST_REST: f64 = 0.0005;
+
 /// Names of effects as a list, with a word before the last.
 pub(super) fn listed(names: &[&str], joint: &str) -> String {
     match names {
@@ -90,6 +93,26 @@ fn errors(discovery: &Discovery) -> String {
     format!("the error {unit} {course}{alone}")
 }
 
+/// Why effects that were found are not all that is missing.
+fn reservation(discovery: &Discovery) -> String {
+    if !discovery.predicts_better() {
+        let why = discovery.gain.map_or("cannot be predicted with it".into(), |[value, error]| {
+            format!(
+                "are not predicted better by more than the standard error (by {} ± {})",
+                significant(value, 2),
+                significant(error, 1)
+            )
+        });
+        return format!("but data held out {why}, so it is not shown yet");
+    }
+    match discovery.after.budget.unexplained {
+        rest if rest > LEAST_REST => {
+            format!("{} of the squared velocities are unidentified", percent(rest))
+        }
+        _ => "what is left is little, but no mere noise".into(),
+    }
+}
+
 /// The answer in a sentence.
 pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
     let errors = errors(discovery);
@@ -114,14 +137,15 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
             meanings.join("; ")
         ),
         (Verdict::Partial, [meaning]) => format!(
-            "{meaning} ({}): the data are consistent with that, and it explains {share} of what the base model lacks; the \
-             rest is unidentified; {errors}.",
-            names.concat()
+            "{meaning} ({}): the data are consistent with that, and it explains {share} of what the base model lacks; {}; \
+             {errors}.",
+            names.concat(),
+            reservation(discovery)
         ),
         (Verdict::Partial, _) => format!(
-            "The data are consistent with {}, which together explain {share} of what the base model lacks; the rest is \
-             unidentified; {errors}.",
-            listed(&names, "and")
+            "The data are consistent with {}, which together explain {share} of what the base model lacks; {}; {errors}.",
+            listed(&names, "and"),
+            reservation(discovery)
         ),
         (Verdict::UnexplainedStructured, _) => {
             let length =
@@ -167,10 +191,10 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
             format!("{} acts much like the base model's own term ({}).", selected.effect.id, alias.of)
         }));
     }
-    if discovery.verdict == Verdict::Partial {
+    if discovery.verdict == Verdict::Partial && discovery.after.budget.unexplained > LEAST_REST {
         sentences.push(format!(
             "A rest of {} of the squared velocities has no name.",
-            percent(discovery.after.budget.unexplained.max(0.0))
+            percent(discovery.after.budget.unexplained)
         ));
     }
     if !discovery.selected.is_empty() {
