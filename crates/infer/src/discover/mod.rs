@@ -89,7 +89,8 @@ pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) 
         CrossValidation::Skipped => true,
     };
     let left = verdict::Left::new(&setting, last, &after);
-    let verdict = verdict::decide(testable, &selected, &left, proven);
+    let explained = (!selected.selected.is_empty()).then_some(selected.largest_share);
+    let verdict = verdict::decide(testable, explained, &left, proven);
     Ok(Discovery {
         verdict,
         before,

@@ -1,7 +1,6 @@
 //! The answer in a word.
 
 use super::chance::Chance;
-use super::classes::Selection;
 use super::result::{Fitted, Verdict};
 use super::steps::{Model, Setting};
 use crate::{Doubt, NoiseSource};
@@ -41,18 +40,36 @@ impl Left {
     }
 }
 
-/// The verdict. Effects are proven by what they predict, unless nobody asked for that.
-pub(super) fn decide(testable: bool, selection: &Selection, left: &Left, proven: bool) -> Verdict {
-    match (selection.selected.is_empty(), left) {
-        (false, Left { structured: false, too_much: false })
-            if proven && selection.largest_share >= ENOUGH =>
-        {
+/// The verdict. Of effects that were selected the share of the excess is given that they explain, chance allowed for; they are proven by
+/// what they predict, unless nobody asked for that.
+pub(super) fn decide(testable: bool, explained: Option<f64>, left: &Left, proven: bool) -> Verdict {
+    match (explained, left) {
+        (Some(share), Left { structured: false, too_much: false }) if proven && share >= ENOUGH => {
             Verdict::Attributed
         }
-        (false, _) => Verdict::Partial,
+        (Some(_), _) => Verdict::Partial,
         _ if !testable => Verdict::NotTestable,
-        (true, Left { structured: true, .. }) => Verdict::UnexplainedStructured,
-        (true, Left { too_much: true, .. }) => Verdict::UnexplainedWhite,
-        (true, _) => Verdict::NothingMissing,
+        (None, Left { structured: true, .. }) => Verdict::UnexplainedStructured,
+        (None, Left { too_much: true, .. }) => Verdict::UnexplainedWhite,
+        (None, _) => Verdict::NothingMissing,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// An error of .0769 that becomes .0726 ± .0073 has not fallen.
+    #[test]
+    fn effects_that_predict_nothing_better_are_not_attributed() {
+        let left = Left { structured: false, too_much: false };
+        let of = |gain| decide(true, Some(0.95), &left, predicts_better(gain));
+        assert_eq!(of([0.0043, 0.0073]), Verdict::Partial);
+        assert_eq!(of([0.0143, 0.0073]), Verdict::Attributed);
+        assert_eq!(decide(true, Some(0.7), &left, true), Verdict::Partial);
+        let structured = Left { structured: true, too_much: false };
+        assert_eq!(decide(true, Some(0.95), &structured, true), Verdict::Partial);
+        assert_eq!(decide(true, None, &structured, false), Verdict::UnexplainedStructured);
+        assert_eq!(decide(true, None, &left, false), Verdict::NothingMissing);
     }
 }
