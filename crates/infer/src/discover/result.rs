@@ -46,7 +46,7 @@ pub enum Verdict {
     NothingMissing,
     /// An effect, or a class of effects that the data cannot tell apart, explains what the base model lacks.
     Attributed,
-    /// An effect explains a part; the rest has no name.
+    /// An effect explains a part, or predicts nothing better.
     Partial,
     /// Something with a structure in space or time is missing that no effect of the catalogue explains.
     UnexplainedStructured,

@@ -191,11 +191,10 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
             format!("{} acts much like the base model's own term ({}).", selected.effect.id, alias.of)
         }));
     }
-    if discovery.verdict == Verdict::Partial && discovery.after.budget.unexplained > LEAST_REST {
-        sentences.push(format!(
-            "A rest of {} of the squared velocities has no name.",
-            percent(discovery.after.budget.unexplained)
-        ));
+    let rest = discovery.after.budget.unexplained;
+    // Otherwise the sentence says so.
+    if discovery.verdict == Verdict::Partial && !discovery.predicts_better() && rest > LEAST_REST {
+        sentences.push(format!("A rest of {} of the squared velocities has no name.", percent(rest)));
     }
     if !discovery.selected.is_empty() {
         sentences.push(format!(
