@@ -167,6 +167,11 @@ pub(crate) fn estimates(
     })
 }
 
+/// By how many standard deviations an objective, in units of σ_v², is above what is expected.
+pub(crate) fn deviation(value: f64, expected: f64) -> f64 {
+    (value - expected) / (2.0 * expected).sqrt()
+}
+
 /// Reasons not to trust a fit whose objective and its expected value are in units of σ_v².
 pub(crate) fn doubts(
     value: f64,
@@ -175,7 +180,7 @@ pub(crate) fn doubts(
     known: &KnownNoise,
     status: Status,
 ) -> Vec<Doubt> {
-    let deviation = (value - expected) / (2.0 * expected).sqrt();
+    let deviation = deviation(value, expected);
     let doubts = [
         (deviation > ACCEPTED_EXCESS).then_some(Doubt::Objective(deviation)),
         at_limit(levels, known).then_some(Doubt::PositionNoise),

@@ -5,13 +5,13 @@
 //! all nodes next to the cut on one of its sides.
 
 use crate::graph::Graph;
-use crate::separator::{Halves, separate};
+use crate::separator::{Halves, NONE, separate};
 
 /// Nodes that are not cut any further.
 const LEAF: usize = 24;
 
-/// Shares of the nodes that a cut leaves on its first side.
-const SHARES: [f64; 3] = [0.5, 0.42, 0.58];
+/// Shares of the nodes that a cut leaves on its first side, ascending.
+const SHARES: [f64; 3] = [0.42, 0.5, 0.58];
 
 /// Nodes eliminated together, and the later ones that they couple to.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -78,7 +78,7 @@ impl Dissection {
         let mut cut = Cut {
             graph,
             places: places.iter().map(|place| place.unwrap_or_default()).collect(),
-            seat: vec![u32::MAX; nodes],
+            seat: vec![NONE; nodes],
             made: Self {
                 fronts: Vec::new(),
                 order: Vec::with_capacity(nodes),

@@ -17,14 +17,13 @@ impl Halves {
     }
 }
 
-/// Marks nothing.
-const NONE: u32 = u32::MAX;
+/// No number.
+pub(crate) const NONE: u32 = u32::MAX;
 
 /// The couplings across a cut, of which every one has to lose a node.
 ///
 /// The fewest nodes that do so are as many as the pairs of a largest matching, and follow from one (König).
-struct Crossing<'a> {
-    sides: [&'a [u32]; 2],
+struct Crossing {
     /// For each node of the first side, those of the second that it is coupled to, one after the other.
     start: Vec<u32>,
     coupled: Vec<u32>,
@@ -34,7 +33,7 @@ struct Crossing<'a> {
 
 /// Separates two parts of a graph by as few of their nodes as can do it.
 ///
-/// `seat` is room for a number per node of the graph, [`u32::MAX`] each, and is left so.
+/// `seat` is room for a number per node of the graph, [`NONE`] each, and is left so.
 pub(crate) fn separate(graph: &Graph, sides: [Vec<u32>; 2], seat: &mut [u32]) -> Halves {
     let mut crossing = Crossing::new(graph, [&sides[0], &sides[1]], seat);
     crossing.match_all();
@@ -49,9 +48,8 @@ pub(crate) fn separate(graph: &Graph, sides: [Vec<u32>; 2], seat: &mut [u32]) ->
     Halves { sides, separator }
 }
 
-impl<'a> Crossing<'a> {
-    fn new(graph: &Graph, sides: [&'a [u32]; 2], seat: &mut [u32]) -> Self {
-        let [near, far] = sides;
+impl Crossing {
+    fn new(graph: &Graph, [near, far]: [&[u32]; 2], seat: &mut [u32]) -> Self {
         far.iter().zip(0..).for_each(|(&node, k)| seat[node as usize] = k);
         let (mut start, mut coupled) = (vec![0], Vec::new());
         for &node in near {
@@ -60,7 +58,7 @@ impl<'a> Crossing<'a> {
             start.push(coupled.len() as u32);
         }
         far.iter().for_each(|&node| seat[node as usize] = NONE);
-        Self { sides, start, coupled, mate: [vec![NONE; near.len()], vec![NONE; far.len()]] }
+        Self { start, coupled, mate: [vec![NONE; near.len()], vec![NONE; far.len()]] }
     }
 
     fn coupled(&self, near: u32) -> &[u32] {
@@ -73,7 +71,7 @@ impl<'a> Crossing<'a> {
 
     /// Those of the first side that are coupled and have no partner.
     fn alone(&self) -> Vec<u32> {
-        let near = 0..self.sides[0].len() as u32;
+        let near = 0..self.mate[0].len() as u32;
         near.filter(|&a| self.mate[0][a as usize] == NONE && !self.coupled(a).is_empty()).collect()
     }
 
@@ -85,7 +83,7 @@ impl<'a> Crossing<'a> {
                 self.pair(near, far);
             }
         }
-        let far = self.sides[1].len();
+        let far = self.mate[1].len();
         let (mut reached_in, mut reached_from) = (vec![NONE; far], vec![NONE; far]);
         for first in self.alone() {
             let (mut queue, mut next) = (vec![first], 0);
@@ -120,7 +118,7 @@ impl<'a> Crossing<'a> {
     /// second those that one does.
     fn cover(&self) -> [Vec<bool>; 2] {
         let mut queue = self.alone();
-        let mut reached = [vec![false; self.sides[0].len()], vec![false; self.sides[1].len()]];
+        let mut reached = self.mate.each_ref().map(|own| vec![false; own.len()]);
         queue.iter().for_each(|&near| reached[0][near as usize] = true);
         let mut next = 0;
         while next < queue.len() {

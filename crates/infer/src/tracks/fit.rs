@@ -5,6 +5,7 @@ use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
 use super::states::States;
+use crate::inference::deviation;
 use crate::least_squares::invert;
 use crate::noise::{FIRST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
 use crate::normal_equations::NormalEquations;
@@ -214,12 +215,12 @@ impl<'a> Course<'a, '_> {
         for _ in 0..LOOSENINGS {
             let optimum = self.optimise(states, start, most, TOLERANCE, (1, 1))?;
             let expected = self.objective(states).expected();
-            let excess = optimum.value / expected;
-            let deviation = (2.0 * self.levels.velocity.powi(2) / expected).sqrt();
-            if excess < 1.0 + ACCEPTED_EXCESS * deviation || self.request.noise.velocity.is_some() {
+            let variance = self.levels.velocity.powi(2);
+            let above = deviation(optimum.value / variance, expected / variance);
+            if above < ACCEPTED_EXCESS || self.request.noise.velocity.is_some() {
                 return Ok((optimum.parameters, error));
             }
-            self.levels.velocity *= excess;
+            self.levels.velocity *= optimum.value / expected;
             start = (optimum.parameters, Some(optimum.equations.at_levels(self.levels)));
         }
         Ok((self.optimise(states, start, most, TOLERANCE, (1, 1))?.parameters, error))

@@ -5,6 +5,7 @@ use crate::study::seeds::quartiles;
 use voronudge_report::chart::{Axis, Chart, ChartLayout};
 use voronudge_report::colour::{BLUE, GREEN, INK};
 use voronudge_report::figure::no_data;
+use voronudge_report::numbers::quantile;
 use voronudge_report::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Height of the row of a class, and of the axis, in pixels.
@@ -52,11 +53,8 @@ pub fn draw(summaries: &[Summary]) -> String {
 
 /// How far the axis of errors reaches, in per cent.
 fn reach(rows: &[&Errors]) -> f64 {
-    let mut sizes: Vec<f64> = rows.iter().flat_map(|own| &own.all).map(|error| 100.0 * error.abs()).collect();
-    sizes.sort_by(f64::total_cmp);
-    let held = (HELD * sizes.len() as f64).ceil() as usize;
-    let outermost = held.checked_sub(1).and_then(|last| sizes.get(last));
-    (1.1 * outermost.unwrap_or(&0.0)).clamp(LEAST_REACH, MOST_REACH)
+    let sizes = rows.iter().flat_map(|own| &own.all).map(|error| 100.0 * error.abs());
+    (1.1 * quantile(sizes, HELD).unwrap_or(0.0)).clamp(LEAST_REACH, MOST_REACH)
 }
 
 /// Errors in per cent: each set a dot, quartiles a box, the median a line.

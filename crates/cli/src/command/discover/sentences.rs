@@ -96,20 +96,20 @@ fn errors(discovery: &Discovery) -> String {
 /// Why effects that were found are not all that is missing.
 fn reservation(discovery: &Discovery) -> String {
     if !discovery.predicts_better() {
-        let why = discovery.gain.map_or("cannot be predicted with it".into(), |[value, error]| {
+        let why = discovery.gain.map_or("this could not be put to the test".into(), |[value, error]| {
             format!(
-                "are not predicted better by more than the standard error (by {} ± {})",
+                "data held out are not predicted better by more than the standard error (by {} ± {})",
                 significant(value, 2),
                 significant(error, 1)
             )
         });
-        return format!("but data held out {why}, so it is not shown yet");
+        return format!("but {why}, so it is not shown yet");
     }
     match discovery.after.budget.unexplained {
         rest if rest > LEAST_REST => {
             format!("{} of the squared velocities are unidentified", percent(rest))
         }
-        _ => "what is left is little, but no mere noise".into(),
+        _ => "little is left, but this is not all that is missing".into(),
     }
 }
 
