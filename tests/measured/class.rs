@@ -24,6 +24,8 @@ pub struct Recipe {
     pub flaws: Flaws,
     /// What is known of the motion.
     pub motion: Motion,
+    /// Whether cells crawl: each has a velocity of its own whose direction diffuses.
+    pub crawls: bool,
 }
 
 /// How much of a tissue is seen.
@@ -81,7 +83,7 @@ const NONE: Flaws = Flaws { missed: 0.0, merged: 0.0, split: 0.0, gaps: 0.0, bre
 const FRAMES: usize = 6;
 
 const COMPLETE: Recipe =
-    Recipe { view: View::Whole, point: Point::Site, flaws: NONE, motion: Motion::Velocities };
+    Recipe { view: View::Whole, point: Point::Site, flaws: NONE, motion: Motion::Velocities, crawls: false };
 
 const fn missed(missed: f64) -> Recipe {
     Recipe { flaws: Flaws { missed, ..NONE }, ..COMPLETE }
@@ -95,12 +97,16 @@ const fn tracks(step: f64) -> Recipe {
     Recipe { motion: Motion::Tracks { frames: FRAMES, step }, ..COMPLETE }
 }
 
+const fn crawling(frames: usize, step: f64) -> Recipe {
+    Recipe { motion: Motion::Tracks { frames, step }, crawls: true, ..COMPLETE }
+}
+
 const fn class(name: &'static str, words: &'static str, recipe: Recipe) -> Class {
     Class { name, words, recipe }
 }
 
 /// All classes of the study.
-pub const CLASSES: [Class; 17] = [
+pub const CLASSES: [Class; 22] = [
     class("complete", "complete, periodic", COMPLETE),
     class("open", "open field of view", Recipe { view: View::Window, ..COMPLETE }),
     class("missed-2", "2 % not detected", missed(0.02)),
@@ -138,6 +144,15 @@ pub const CLASSES: [Class; 17] = [
             flaws: Flaws { missed: 0.01, gaps: 0.03, breaks: 0.03, ..NONE },
             ..tracks(0.1)
         },
+    ),
+    class("active-05", "crawling cells, 6 frames, steps of 0.05 ℓ₀", crawling(FRAMES, 0.05)),
+    class("active-10", "crawling cells, 6 frames, steps of 0.1 ℓ₀", crawling(FRAMES, 0.1)),
+    class("active-20", "crawling cells, 6 frames, steps of 0.2 ℓ₀", crawling(FRAMES, 0.2)),
+    class("active-long", "crawling cells, 12 frames, steps of 0.1 ℓ₀", crawling(2 * FRAMES, 0.1)),
+    class(
+        "active-missed-2",
+        "crawling cells, 12 frames, steps of 0.1 ℓ₀, 2 % not detected",
+        Recipe { flaws: Flaws { missed: 0.02, ..NONE }, ..crawling(2 * FRAMES, 0.1) },
     ),
 ];
 

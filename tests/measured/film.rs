@@ -4,7 +4,7 @@ use super::Motion;
 use std::error::Error;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
-use voronudge_simulate::{RandomPlacement, Simulation, generator, recommended_time_step};
+use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator, recommended_time_step};
 
 /// Time before the first frame, in 1/K_P.
 const SETTLING: f64 = 10.0;
@@ -36,14 +36,15 @@ impl Film {
     pub fn new(
         side: f64,
         parameters: &Parameters<f64>,
-        seed: u64,
+        driving: Driving,
         motion: Motion,
     ) -> Result<Self, Box<dyn Error>> {
         let cell_box = PeriodicBox::new([side; 2])?;
         let cells = (side * side).round() as usize;
-        let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(1000 + seed))?;
+        let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(1000 + driving.seed))?;
         let model = Model::chiral_voronoi(parameters);
-        let mut simulation = Simulation::new(start, Domain::Periodic(cell_box), model)?;
+        let mut simulation =
+            Simulation::new(start, Domain::Periodic(cell_box), model)?.with_driving(driving)?;
         let recommended = recommended_time_step(parameters, 1.0);
         for _ in 0..(SETTLING / recommended).ceil() as usize {
             simulation.step(recommended)?;

@@ -29,6 +29,7 @@ use std::collections::BTreeMap;
 use std::error::Error;
 use voronudge_geometry::Vector;
 use voronudge_model::Parameters;
+use voronudge_simulate::Driving;
 
 /// Width of the strip of tissue around an open field of view that is not seen, in ℓ₀.
 const UNSEEN: f64 = 4.0;
@@ -67,7 +68,8 @@ impl Class {
     /// Makes the set of a seed, of as many cells as the study takes for it, or another number of them.
     ///
     /// Classes share the tissue of a seed. Parameters are drawn with it: P₀ from 3.8 to 4, α from 0.3 to 3 evenly in its
-    /// logarithm, σ_r from 1 to 2 %.
+    /// logarithm, σ_r from 1 to 2 %. Of crawling cells: P₀ from 3.6 to 4, α from 0.3 to 1.2, v₀ from 0.3 to 1, D_r from
+    /// 0.1 to 1 evenly in its logarithm, σ_r 2 %.
     ///
     /// # Errors
     /// Those of the simulation.
@@ -81,13 +83,25 @@ impl Class {
             chirality: 0.3 * 10f64.powf(drawn.random_range(0.0..1.0)),
         };
         let noise = Noise { position: drawn.random_range(0.01..0.02), velocity: VELOCITY_NOISE };
+        let mut driving = Driving { seed, ..Driving::default() };
+        let (parameters, noise) = match self.recipe.crawls {
+            true => {
+                driving.speed = drawn.random_range(0.3..1.0);
+                driving.rotational_diffusion = 0.1 * 10f64.powf(drawn.random_range(0.0..1.0));
+                let preferred_perimeter = drawn.random_range(3.6..4.0);
+                let chirality = drawn.random_range(0.3..1.2);
+                let noise = Noise { position: 0.02, ..noise };
+                (Parameters { preferred_perimeter, chirality, ..parameters }, noise)
+            }
+            false => (parameters, noise),
+        };
         let seen = cells.unwrap_or(CELLS[seed as usize % CELLS.len()]);
         let side = (seen as f64).sqrt().round();
         let (origin, whole) = match self.recipe.view {
             View::Whole => (0.0, side),
             View::Window => (UNSEEN, side + 2.0 * UNSEEN),
         };
-        let film = Film::new(whole, &parameters, seed, self.recipe.motion)?;
+        let film = Film::new(whole, &parameters, driving, self.recipe.motion)?;
         let mut rng = Pcg64::seed_from_u64(self.stream(seed));
         let seen_from = Vector::new(origin, origin);
         let mut detector = Detector::new(&film, &self.recipe, noise, &mut rng)?;
@@ -111,7 +125,7 @@ impl Class {
         let truth = Truth {
             class: self.name.into(),
             seed,
-            parameters: named(&parameters),
+            parameters: named(&parameters, &driving),
             noise: [noise.position, noise.velocity],
             mean_step: film.mean_step,
             field_of_view: [0.0, 0.0, side, side],
@@ -129,7 +143,7 @@ impl Class {
     }
 }
 
-fn named(parameters: &Parameters<f64>) -> BTreeMap<String, f64> {
+fn named(parameters: &Parameters<f64>, driving: &Driving) -> BTreeMap<String, f64> {
     let k_p_alpha = parameters.perimeter_elasticity * parameters.chirality;
     let values = [
         ("K_A", parameters.area_elasticity),
@@ -137,6 +151,8 @@ fn named(parameters: &Parameters<f64>) -> BTreeMap<String, f64> {
         ("P_0", parameters.preferred_perimeter),
         ("alpha", parameters.chirality),
         ("K_P_alpha", k_p_alpha),
+        ("v_0", driving.speed),
+        ("D_r", driving.rotational_diffusion),
     ];
     values.map(|(name, value)| (name.to_owned(), value)).into()
 }

@@ -3,6 +3,7 @@
 use crate::arguments::Verbosity;
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
+use std::io::IsTerminal;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,9 +12,16 @@ use std::time::{Duration, Instant};
 /// How long a command works in silence.
 const PATIENCE: Duration = Duration::from_secs(1);
 
-/// Shows how far a command has come once it takes longer than a second, and knows whether the user wants it to stop.
+/// Time between lines where there is no terminal, at first and at most, and by what factor it grows.
+const FIRST_GAP: Duration = Duration::from_secs(5);
+const LONGEST_GAP: Duration = Duration::from_secs(60);
+const GROWTH: f64 = 1.5;
+
+/// Shows how far a command has come once it takes longer than a second, and knows whether the user wants it to stop. Where there is no terminal
+/// to draw a bar on, it says so in lines, ever more rarely.
 pub(crate) struct Progress {
     bar: ProgressBar,
+    lines: Option<Lines>,
     begun: Instant,
     interrupted: Arc<AtomicBool>,
     verbosity: Verbosity,
@@ -30,7 +38,8 @@ impl Progress {
                 std::process::exit(130);
             }
         });
-        Self { bar: ProgressBar::hidden(), begun: Instant::now(), interrupted, verbosity }
+        let lines = (!std::io::stderr().is_terminal()).then(Lines::new);
+        Self { bar: ProgressBar::hidden(), lines, begun: Instant::now(), interrupted, verbosity }
     }
 
     /// Reports a step out of a total; tells whether to go on.
@@ -51,6 +60,12 @@ impl Progress {
         }
         self.bar.set_length(total);
         self.bar.set_position(done);
+        let elapsed = self.begun.elapsed();
+        if let Some(lines) = self.lines.as_mut().filter(|_| self.verbosity == Verbosity::Normal)
+            && lines.are_due(elapsed)
+        {
+            eprintln!("{}", line(stage, [done, total], elapsed, self.bar.eta()));
+        }
         if self.interrupted.load(Ordering::SeqCst) {
             ControlFlow::Break(())
         } else {
@@ -69,10 +84,62 @@ impl Progress {
     }
 }
 
+/// When the next line is due.
+#[derive(Debug)]
+struct Lines {
+    next: Duration,
+    gap: Duration,
+}
+
+impl Lines {
+    fn new() -> Self {
+        Self { next: FIRST_GAP, gap: FIRST_GAP }
+    }
+
+    /// Whether one is due so long after the beginning; then the next is due later.
+    fn are_due(&mut self, elapsed: Duration) -> bool {
+        if elapsed < self.next {
+            return false;
+        }
+        self.gap = self.gap.mul_f64(GROWTH).min(LONGEST_GAP);
+        self.next = elapsed + self.gap;
+        true
+    }
+}
+
+/// How far a command has come, in a line.
+fn line(stage: &str, [done, total]: [u64; 2], elapsed: Duration, left: Duration) -> String {
+    let mut line = format!("{stage} {done}/{total}, {:#} elapsed", HumanDuration(elapsed));
+    if !left.is_zero() {
+        let _ = write!(line, ", {:#} left", HumanDuration(left));
+    }
+    line
+}
+
 /// The time left, once a step has been seen.
 fn time_left(state: &ProgressState, text: &mut dyn Write) {
     let left = state.eta();
     if !left.is_zero() {
         let _ = write!(text, ", {:#} left", HumanDuration(left));
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lines_are_ever_rarer() {
+        let mut lines = Lines::new();
+        let due: Vec<u64> = (0..400).filter(|second| lines.are_due(Duration::from_secs(*second))).collect();
+        assert_eq!(due[..5], [5, 13, 25, 42, 68]);
+        assert!(due.windows(2).skip(6).all(|pair| pair[1] - pair[0] == 60), "{due:?}");
+    }
+
+    #[test]
+    fn a_line_tells_stage_and_time() {
+        let [elapsed, left] = [42, 130].map(Duration::from_secs);
+        assert_eq!(line("tracks", [3, 8], elapsed, left), "tracks 3/8, 42s elapsed, 2m left");
+        assert_eq!(line("tracks", [0, 8], elapsed, Duration::ZERO), "tracks 0/8, 42s elapsed");
     }
 }

@@ -30,21 +30,33 @@ impl Chosen<'_> {
     }
 }
 
-/// `JᵀJ` over the chosen rows of each of two matrices J with so many block columns: lower triangles with the whole
-/// diagonal, both on the pattern of their sum.
-pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[SymmetricMatrix; 2], Error> {
+/// Lengths of some columns, their rows, and the values of all matrices there.
+type Part<const N: usize> = (Vec<usize>, Vec<usize>, [Vec<f64>; N]);
+
+/// `JᵀJ` over the chosen rows of each of some matrices J with so many block columns: lower triangles with the whole
+/// diagonal, all on the pattern of their sum and of some links between columns, the later one first.
+pub(crate) fn grams<const N: usize>(
+    chosen: [Chosen<'_>; N],
+    links: impl Iterator<Item = (usize, usize)>,
+    columns: usize,
+) -> Result<[SymmetricMatrix; N], Error> {
+    let mut linked = vec![Vec::new(); columns];
+    links.for_each(|(later, earlier)| linked[earlier].push(later));
     let sorted = chosen.map(|chosen| chosen.sorted());
     let transposed = sorted.each_ref().map(|matrix| (matrix, Transposed::new(matrix, columns)));
-    type Part = (Vec<usize>, Vec<usize>, [Vec<f64>; 2]);
-    let parts: Vec<Part> = (0..columns.div_ceil(CHUNK))
+    let parts: Vec<Part<N>> = (0..columns.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
-            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), [Vec::new(), Vec::new()]);
+            let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), [const { Vec::new() }; N]);
             let mut place = vec![usize::MAX; columns];
-            let mut entries: Vec<(usize, [[f64; 4]; 2])> = Vec::new();
+            let mut entries: Vec<(usize, [[f64; 4]; N])> = Vec::new();
             for column in chunk * CHUNK..((chunk + 1) * CHUNK).min(columns) {
-                entries.push((column, [[0.0; 4]; 2]));
+                entries.push((column, [[0.0; 4]; N]));
                 place[column] = 0;
+                for &other in &linked[column] {
+                    place[other] = entries.len();
+                    entries.push((other, [[0.0; 4]; N]));
+                }
                 for (which, (matrix, transposed)) in transposed.iter().enumerate() {
                     for &(row, at) in transposed.column(column) {
                         let own = &matrix.block[at];
@@ -60,7 +72,7 @@ pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[Symmetri
                             ];
                             if place[other] == usize::MAX {
                                 place[other] = entries.len();
-                                entries.push((other, [[0.0; 4]; 2]));
+                                entries.push((other, [[0.0; 4]; N]));
                             }
                             let sum = &mut entries[place[other]].1[which];
                             sum.iter_mut().zip(product).for_each(|(s, x)| *s += x);
@@ -89,7 +101,7 @@ pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[Symmetri
         .collect();
     let mut column_start = Vec::with_capacity(2 * columns + 1);
     column_start.push(0);
-    let (mut rows, mut values, mut end) = (Vec::new(), [Vec::new(), Vec::new()], 0);
+    let (mut rows, mut values, mut end) = (Vec::new(), [const { Vec::new() }; N], 0);
     for (part_lengths, part_rows, part_values) in parts {
         column_start.extend(part_lengths.iter().map(|length| {
             end += length;
@@ -98,10 +110,12 @@ pub(crate) fn grams(chosen: [Chosen<'_>; 2], columns: usize) -> Result<[Symmetri
         rows.extend(part_rows);
         values.iter_mut().zip(part_values).for_each(|(all, part)| all.extend(part));
     }
-    let [first, second] = values;
-    let first = SymmetricMatrix::new(column_start, rows, first)?;
-    let second = first.with_values(second)?;
-    Ok([first, second])
+    let pattern = SymmetricMatrix::new(column_start, rows, vec![0.0; values[0].len()])?;
+    let mut matrices = [const { None }; N];
+    for (matrix, values) in matrices.iter_mut().zip(values) {
+        *matrix = Some(pattern.with_values(values)?);
+    }
+    Ok(matrices.map(|matrix| matrix.unwrap_or_else(|| pattern.clone())))
 }
 
 /// Where each block column has entries: row and index of the block.

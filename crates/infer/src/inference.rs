@@ -234,6 +234,7 @@ fn frame_result(
         false => Vec::new(),
     };
     FrameResult {
+        polarities: Vec::new(),
         weights,
         edges_lost,
         edges_gained,

@@ -48,11 +48,13 @@ mod sample;
 mod scale;
 mod search;
 mod sites;
+mod stiffness;
 #[cfg(test)]
 mod tests;
 mod tracks;
 mod uncertainty;
 mod verdict;
+mod whitened;
 mod whitening;
 
 pub use coefficients::CoefficientSpace;
@@ -68,12 +70,12 @@ pub use measurement::{Determined, KnownMeasurement, Measurement, RivalWindow, me
 pub use noise::{KnownNoise, NoiseLevels, NoiseSource};
 pub use observation::{Observation, Velocities};
 pub use quantity::Quantity;
-pub use request::{CrossValidation, Examination, Loss, Method, Request};
+pub use request::{Activity, CrossValidation, Examination, Loss, Method, Request};
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;
 pub use sites::{Outlined, Sites, sites};
 pub use tracks::{
-    Drift, Integration, Latent, Movie, Sighting, Track, Tracked, complete_tracks, infer_tracks,
+    Drift, Integration, Latent, Movie, Polarity, Sighting, Track, Tracked, complete_tracks, infer_tracks,
     measure_tracks,
 };
 pub use uncertainty::{Bootstrap, Landscape, Profile, bootstrap, landscape, profile};

@@ -15,8 +15,9 @@
 
 use crate::Error;
 use crate::gram::{Chosen, grams};
-use crate::least_squares::invert;
 use crate::rows::{Group, Rows};
+use crate::stiffness::Stiffness;
+use crate::whitened::Whitened;
 use nalgebra::{DMatrix, DVector};
 use voronudge_linalg::{Cholesky, CholeskyPattern, SymmetricMatrix};
 
@@ -25,8 +26,10 @@ use voronudge_linalg::{Cholesky, CholeskyPattern, SymmetricMatrix};
 pub(crate) struct Linearisation {
     velocities: Group,
     positions: Group,
-    /// Stiffness of each coordinate that is no datum's; empty if there is none.
-    floor: Vec<f64>,
+    /// Rows of what is known of unknowns beforehand, and their weight.
+    known: Option<(Group, f64)>,
+    /// What holds unknowns that no datum holds.
+    stiffness: Stiffness,
     pattern: CholeskyPattern,
     /// The nudges ε at which it was linearised.
     nudges: Vec<f64>,
@@ -38,10 +41,12 @@ pub(crate) struct Local<'a> {
     pub velocities: Rows<'a>,
     /// Measured positions, weight k.
     pub positions: Rows<'a>,
+    /// What is known of unknowns beforehand, and its weight.
+    pub known: Option<(Rows<'a>, f64)>,
     /// ε, x and y of one place after the other.
     pub nudges: &'a [f64],
-    /// Stiffness of each coordinate that is no datum's; empty if there is none.
-    pub floor: Vec<f64>,
+    /// What holds unknowns that no datum holds.
+    pub stiffness: Stiffness,
     /// Number of free coefficients.
     pub free: usize,
     /// Where the coordinates belong, two after the other; those of `None` are coupled to all others.
@@ -61,55 +66,6 @@ pub(crate) struct Eliminated {
     pub gain: f64,
 }
 
-/// `W⁻¹ = (I + JJᵀ/k)⁻¹` between y and X, and its determinant.
-#[derive(Debug, Clone)]
-pub(crate) struct Whitened {
-    /// XᵀW⁻¹X
-    pub free: DMatrix<f64>,
-    /// XᵀW⁻¹y
-    pub mixed: DVector<f64>,
-    /// yᵀW⁻¹y
-    pub data: f64,
-    /// log det W
-    pub log_determinant: f64,
-}
-
-/// What generalised least squares leaves.
-#[derive(Debug, Clone, Copy)]
-pub(crate) struct Leftover {
-    /// yᵀPy
-    pub misfit: f64,
-    /// log det W + log det XᵀW⁻¹X
-    pub log_determinant: f64,
-}
-
-impl Whitened {
-    /// The sum over frames, for p coefficients.
-    pub fn sum<'a>(parts: impl IntoIterator<Item = &'a Self>, p: usize) -> Self {
-        let nothing =
-            Self { free: DMatrix::zeros(p, p), mixed: DVector::zeros(p), data: 0.0, log_determinant: 0.0 };
-        parts.into_iter().fold(nothing, |mut sum, part| {
-            sum.free += &part.free;
-            sum.mixed += &part.mixed;
-            sum.data += part.data;
-            sum.log_determinant += part.log_determinant;
-            sum
-        })
-    }
-
-    /// What the best coefficients leave.
-    ///
-    /// # Errors
-    /// [`Error::Degenerate`] if the data do not determine them.
-    pub fn restricted(&self) -> Result<Leftover, Error> {
-        let inverse = invert(self.free.clone())?;
-        let factor = self.free.clone().cholesky().ok_or(Error::Degenerate)?;
-        let information = 2.0 * factor.l().diagonal().iter().map(|d| d.ln()).sum::<f64>();
-        let misfit = self.data - (self.mixed.transpose() * inverse * &self.mixed).sum();
-        Ok(Leftover { misfit, log_determinant: self.log_determinant + information })
-    }
-}
-
 impl Eliminated {
     /// δε for given δβ.
     pub fn nudge_step(&self, free_step: &DVector<f64>) -> Vec<f64> {
@@ -125,18 +81,32 @@ impl Eliminated {
 }
 
 impl Linearisation {
-    pub fn new(local: &Local<'_>) -> Result<Self, Error> {
-        let Local { velocities, positions, nudges, floor, free, places } = local;
-        let chosen = [velocities, positions].map(|group| Chosen {
+    pub fn new<'a>(local: &Local<'a>) -> Result<Self, Error> {
+        let Local { velocities, positions, known, nudges, stiffness, free, places } = local;
+        let chosen = |group: &Rows<'a>| Chosen {
             matrix: group.jacobian,
             rows: group.rows.iter().map(|row| row.0).collect(),
-        });
-        let [of_velocities, of_positions] = grams(chosen, nudges.len() / 2)?;
+        };
+        let (blocks, links) = (nudges.len() / 2, stiffness.links());
+        let group = |rows: &Rows<'_>, normal: SymmetricMatrix| Group::new(rows, normal, nudges, *free);
+        let (of_velocities, of_positions, known) = match known {
+            None => {
+                let [of_velocities, of_positions] =
+                    grams([chosen(velocities), chosen(positions)], links, blocks)?;
+                (of_velocities, of_positions, None)
+            }
+            Some((rows, weight)) => {
+                let all = [chosen(velocities), chosen(positions), chosen(rows)];
+                let [of_velocities, of_positions, of_known] = grams(all, links, blocks)?;
+                (of_velocities, of_positions, Some((group(rows, of_known), *weight)))
+            }
+        };
         let pattern = CholeskyPattern::dissected(&of_velocities, places)?;
         Ok(Self {
-            velocities: Group::new(velocities, of_velocities, nudges, *free),
-            positions: Group::new(positions, of_positions, nudges, *free),
-            floor: floor.clone(),
+            velocities: group(velocities, of_velocities),
+            positions: group(positions, of_positions),
+            known,
+            stiffness: stiffness.clone(),
             pattern,
             nudges: nudges.to_vec(),
         })
@@ -145,6 +115,20 @@ impl Linearisation {
     /// Whether one factor at a time is enough.
     pub fn is_large(&self) -> bool {
         self.pattern.is_large()
+    }
+
+    /// Holds the unknowns otherwise, with another weight of what is known of them; what is coupled must be the same.
+    pub fn hold(&mut self, stiffness: Stiffness, weight: f64) {
+        self.stiffness = stiffness;
+        if let Some(known) = &mut self.known {
+            known.1 = weight;
+        }
+    }
+
+    /// All groups with their weights.
+    fn groups(&self, spring: f64) -> impl Iterator<Item = (&Group, f64)> {
+        let known = self.known.as_ref().map(|(group, weight)| (group, *weight));
+        [(&self.velocities, 1.0), (&self.positions, spring)].into_iter().chain(known)
     }
 
     /// Number of nudge components.
@@ -181,15 +165,23 @@ impl Linearisation {
 
     fn damped(&self, spring: f64, damping: &[f64]) -> Result<Cholesky, Error> {
         let mut sum: SymmetricMatrix = self.velocities.normal.plus(spring, &self.positions.normal)?;
-        sum.add_to_diagonal(self.floor.iter().copied());
+        if let Some((known, weight)) = &self.known {
+            sum = sum.plus(*weight, &known.normal)?;
+        }
+        self.stiffness.add_to(&mut sum)?;
         sum.add_to_diagonal(damping.iter().copied());
         Ok(self.pattern.factor(&sum)?)
     }
 
-    /// A vector of products, summed over both kinds of data.
+    /// A vector of products, summed over all kinds of data.
     fn sum(&self, spring: f64, of: impl Fn(&Group) -> &[f64]) -> Vec<f64> {
         let pairs = of(&self.velocities).iter().zip(of(&self.positions));
-        pairs.map(|(velocities, positions)| velocities + spring * positions).collect()
+        let mut sum: Vec<f64> =
+            pairs.map(|(velocities, positions)| velocities + spring * positions).collect();
+        if let Some((known, weight)) = &self.known {
+            sum.iter_mut().zip(of(known)).for_each(|(sum, known)| *sum += weight * known);
+        }
+        sum
     }
 
     /// Eliminates the nudges from a damped Gauss–Newton step
@@ -205,8 +197,8 @@ impl Linearisation {
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mut right = self.sum(spring, |group| &group.mixed[..n * p]);
         right.extend(self.sum(spring, |group| &group.gradient));
-        for ((g, stiffness), e) in right[n * p..].iter_mut().zip(&self.floor).zip(&self.nudges) {
-            *g -= stiffness * e;
+        for (g, held) in right[n * p..].iter_mut().zip(self.stiffness.times(&self.nudges)) {
+            *g -= held;
         }
         let mut solved = right.clone();
         factor.solve(&mut solved);
@@ -234,7 +226,7 @@ impl Linearisation {
         Ok(Whitened {
             free: DMatrix::from_fn(p, p, |a, b| free[(a, b)] - dot(a, b)),
             mixed: DVector::from_fn(p, |a, _| data[a] - dot(a, p)),
-            data: velocities.data + spring * positions.data - dot(p, p),
+            data: self.groups(spring).map(|(group, weight)| weight * group.data).sum::<f64>() - dot(p, p),
             log_determinant: factor.log_determinant() - positions.components as f64 * spring.ln(),
         })
     }
@@ -293,6 +285,8 @@ mod tests {
             .collect();
         let nudges: Vec<f64> = (0..cells).flat_map(|i| [0.01 * i as f64, -0.02]).collect();
         let (unseen, floor) = (7, 0.04);
+        // Two places, far from each other.
+        let (coupled, coupling) = ((21, 3), 0.1);
         let stiffness =
             |cell: usize| [1.0_f64, 4.0, 0.0][usize::from(cell == 3) + 2 * usize::from(cell == unseen)];
         let errors: Vec<f64> = (0..cells).map(|cell| stiffness(cell).powf(-0.5)).collect();
@@ -303,14 +297,24 @@ mod tests {
         let local = Local {
             velocities: Rows { jacobian: &jacobian, rows: &rows },
             positions: positions.rows(),
+            known: None,
             nudges: &nudges,
-            floor: (0..2 * cells).map(|i| if i / 2 == unseen { floor } else { 0.0 }).collect(),
+            stiffness: Stiffness {
+                of_blocks: (0..cells).map(|cell| if cell == unseen { floor } else { 0.0 }).collect(),
+                couplings: vec![(coupled.0 as u32, coupled.1 as u32, coupling)],
+            },
             free,
             places: (0..cells).map(|i| Some([(i % 5) as f64, (i / 5) as f64, 0.0])).collect(),
         };
         let springs = |spring: f64| {
             let of = |i: usize| if i / 2 == unseen { floor } else { spring * stiffness(i / 2) };
-            DVector::from_fn(2 * cells, |i, _| of(i))
+            let mut held = DMatrix::from_diagonal(&DVector::from_fn(2 * cells, |i, _| of(i)));
+            for axis in 0..2 {
+                let (later, earlier) = (2 * coupled.0 + axis, 2 * coupled.1 + axis);
+                held[(later, earlier)] -= coupling;
+                held[(earlier, later)] -= coupling;
+            }
+            held
         };
         let linearised = Linearisation::new(&local).unwrap();
         let dense = DMatrix::from_row_slice(2 * cells, 2 * cells, &jacobian.to_dense());
@@ -324,10 +328,11 @@ mod tests {
             full += wide.transpose() * &wide;
             right += wide.transpose() * residual;
         }
-        for (i, stiffness) in springs(spring).iter().enumerate() {
-            full[(i, i)] += stiffness + damping;
-            right[i] -= stiffness * nudges[i];
-        }
+        let held = springs(spring);
+        let mut corner = full.view_mut((0, 0), (n, n));
+        corner += &held + DMatrix::identity(n, n) * damping;
+        let mut pulled = right.rows_mut(0, n);
+        pulled -= &held * DVector::from_column_slice(&nudges);
         let expected = full.lu().solve(&right).unwrap();
         let eliminated = linearised.eliminate(spring, &vec![damping; n]).unwrap();
         let free_step = eliminated.schur.clone().lu().solve(&eliminated.gradient).unwrap();
@@ -340,15 +345,15 @@ mod tests {
         for (k, (cell, ..)) in rows.iter().enumerate() {
             seen.view_mut((2 * k, 0), (2, n)).copy_from(&dense.rows(2 * cell, 2));
         }
-        let inverse =
-            (seen.transpose() * &seen + DMatrix::from_diagonal(&springs(spring))).try_inverse().unwrap();
-        let held: f64 =
+        let inverse = (seen.transpose() * &seen + &held).try_inverse().unwrap();
+        let taken: f64 =
             (0..n).filter(|i| i / 2 != unseen).map(|i| spring * stiffness(i / 2) * inverse[(i, i)]).sum();
         let df = linearised.degrees_of_freedom(spring).unwrap();
-        assert!((df - (n as f64 - held)).abs() < 1e-6, "{df} {}", n as f64 - held);
+        assert!((df - (n as f64 - taken)).abs() < 1e-6, "{df} {}", n as f64 - taken);
         // W = I + J D⁻¹ Jᵀ, dense, with the stiffness D of the springs.
         let m = 2 * rows.len();
-        let compliance = DMatrix::from_diagonal(&springs(spring).map(|stiffness| 1.0 / stiffness));
+        let of_springs = held.determinant().ln();
+        let compliance = held.try_inverse().unwrap();
         let w = DMatrix::identity(m, m) + &seen * compliance * seen.transpose();
         let inverse = w.clone().try_inverse().unwrap();
         let x = DMatrix::from_fn(m, free, |i, j| rows[i / 2].2[(i % 2, j)]);
@@ -359,8 +364,8 @@ mod tests {
         assert!((whitened.mixed - x.transpose() * &inverse * &y).amax() < 1e-9);
         assert!((whitened.data - (y.transpose() * &inverse * &y)[0]).abs() < 1e-9);
         let determinant = w.cholesky().unwrap().l().diagonal().iter().map(|d| 2.0 * d.ln()).sum::<f64>();
-        // det (JᵀJ + D) = det W det D, of which the likelihood needs what depends on k.
-        let constant = springs(1.0).map(f64::ln).sum();
+        // det (JᵀJ + D) = det W det D, without the k of each measured coordinate.
+        let constant = of_springs - (2 * (cells - 1)) as f64 * spring.ln();
         assert!((whitened.log_determinant - determinant - constant).abs() < 1e-9);
         assert!((linearised.stiffness() - (46.0 + 8.0)).abs() < 1e-12);
     }

@@ -10,8 +10,9 @@
 //! For given k the best σ_v² is `yᵀPy / (n − p)`, which leaves a function of k alone.
 
 use crate::Error;
-use crate::linearisation::{Leftover, Linearisation, Whitened};
+use crate::linearisation::Linearisation;
 use crate::normal_equations::NormalEquations;
+use crate::whitened::{Leftover, Whitened};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, State};
 use argmin::solver::brent::BrentOpt;
 use rayon::prelude::*;
@@ -97,6 +98,15 @@ pub(crate) struct Restricted<'a> {
     pub equations: &'a NormalEquations,
     pub components: f64,
     pub known: KnownNoise,
+}
+
+/// The restricted likelihood at some k.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Likelihood {
+    /// −2 log L, up to a constant.
+    pub criterion: f64,
+    /// σ_v²
+    pub variance: f64,
 }
 
 impl Restricted<'_> {
@@ -185,6 +195,11 @@ impl Restricted<'_> {
 
     /// −2 log L, up to a constant.
     pub fn criterion(&self, log_k: f64) -> Result<f64, Error> {
+        Ok(self.likelihood(log_k)?.criterion)
+    }
+
+    /// The same with the σ_v² that belongs to k.
+    pub fn likelihood(&self, log_k: f64) -> Result<Likelihood, Error> {
         let leftover = self.leftover(log_k)?;
         let left = self.left();
         let variance = match self.known {
@@ -192,7 +207,8 @@ impl Restricted<'_> {
             KnownNoise { position: Some(position), .. } => position * position * log_k.exp(),
             _ => leftover.misfit / left,
         };
-        Ok(left * variance.ln() + leftover.log_determinant + leftover.misfit / variance)
+        let criterion = left * variance.ln() + leftover.log_determinant + leftover.misfit / variance;
+        Ok(Likelihood { criterion, variance })
     }
 
     fn leftover(&self, log_k: f64) -> Result<Leftover, Error> {

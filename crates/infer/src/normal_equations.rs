@@ -3,6 +3,7 @@
 use crate::least_squares::{invert, within_bounds};
 use crate::linearisation::Linearisation;
 use crate::quadratic::HalfSpace;
+use crate::stiffness::Stiffness;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -102,6 +103,11 @@ impl NormalEquations {
     /// The same problem at other noise levels.
     pub fn at_levels(self, levels: NoiseLevels) -> Self {
         Self::new(&self.space, levels, self.free.as_slice(), self.frames)
+    }
+
+    /// Holds the unknowns of each part otherwise, with another weight of what is known of them.
+    pub fn hold(&mut self, stiffness: &Stiffness, weight: f64) {
+        self.frames.iter_mut().for_each(|frame| frame.hold(stiffness.clone(), weight));
     }
 
     /// Number of free coefficients.

@@ -8,6 +8,7 @@ use crate::measurement::Unknown;
 use crate::normal_equations::NormalEquations;
 use crate::position_rows::{self, PositionRows};
 use crate::rows::Rows;
+use crate::stiffness::Stiffness;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use nalgebra::{DMatrix, DVector};
@@ -265,10 +266,11 @@ impl<'a> Objective<'a> {
                 Linearisation::new(&Local {
                     velocities: Rows { jacobian: &jacobian, rows: &rows },
                     positions: positions.rows(),
+                    known: None,
                     nudges,
-                    floor: match frame.unseen() {
-                        0 => Vec::new(),
-                        _ => (0..nudges.len()).map(|i| of_cell(i / 2)).collect(),
+                    stiffness: match frame.unseen() {
+                        0 => Stiffness::default(),
+                        _ => Stiffness::of_blocks((0..nudges.len() / 2).map(of_cell)),
                     },
                     free: p,
                     places: nudged.positions.iter().map(|r| Some([r[0], r[1], 0.0])).collect(),

@@ -11,9 +11,9 @@
 //! errors of the positions included, which dominate the error itself.
 
 use crate::cross_validation::{Split, training};
-use crate::linearisation::Whitened;
 use crate::objective::Objective;
 use crate::search::Watch;
+use crate::whitened::Whitened;
 use crate::{Error, Observation};
 
 /// `−2 log p` of the velocities of each fold, given all others.

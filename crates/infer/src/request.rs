@@ -21,6 +21,8 @@ pub struct Request {
     pub examination: Examination,
     /// Time between frames where velocities are differences of positions.
     pub frame_interval: Option<f64>,
+    /// Whether cells crawl.
+    pub activity: Activity,
     /// Seed of further starts.
     pub seed: u64,
 }
@@ -53,6 +55,16 @@ pub enum Loss {
     Squares,
 }
 
+/// Whether cells crawl: whether what the model leaves of their motion goes on from one frame to the next. For tracks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub enum Activity {
+    /// It is new in each interval.
+    #[default]
+    None,
+    /// Each cell has a polarity of its own that it forgets at some rate.
+    Polarity,
+}
+
 /// Whether to predict velocities left out of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrossValidation {
@@ -82,6 +94,7 @@ impl Request {
             cross_validation: CrossValidation::Done,
             examination: Examination::Done,
             frame_interval: None,
+            activity: Activity::None,
             seed: 0,
         }
     }

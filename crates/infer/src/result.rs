@@ -102,6 +102,8 @@ pub struct FrameResult {
     /// What fits that did not see a velocity predict of it, at the measured positions and with the background as measured;
     /// one for each datum, `None` where it was not held out.
     pub held_out: Vec<Option<Vector<f64>>>,
+    /// Polarities of the cells (N), where cells crawl, `None` of those without; empty otherwise.
+    pub polarities: Vec<Option<Vector<f64>>>,
     /// Weight of each velocity in the fit, between nought and one; empty if all are one.
     pub weights: Vec<f64>,
     /// Delaunay edges of the measured positions that the nudges removed, and those they made, as pairs of cells.

@@ -92,6 +92,21 @@ impl SymmetricMatrix {
         }
     }
 
+    /// Adds a value to an entry of the lower triangle.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if the pattern has no such entry.
+    pub fn add(&mut self, row: usize, column: usize, value: f64) -> Result<(), Error> {
+        let absent = Error::Malformed("the pattern has no such entry");
+        let starts = &self.places.column_start;
+        let (Some(&begin), Some(&end)) = (starts.get(column), starts.get(column + 1)) else {
+            return Err(absent);
+        };
+        let at = self.places.row[begin..end].binary_search(&row).map_err(|_| absent)?;
+        self.value[begin + at] += value;
+        Ok(())
+    }
+
     /// Column starts and rows.
     pub(crate) fn places(&self) -> (&[usize], &[usize]) {
         (&self.places.column_start, &self.places.row)

@@ -34,6 +34,8 @@ pub struct CellView {
     pub measured: Option<[f64; 2]>,
     /// Velocity that the fitted model gives.
     pub predicted: Option<[f64; 2]>,
+    /// Polarity: the velocity that the cell has of itself, where cells crawl.
+    pub polarity: Option<[f64; 2]>,
     /// Velocity that fits predict which did not see it.
     pub held_out: Option<[f64; 2]>,
     /// Displacement of the centre in the fit (nudged minus measured position).

@@ -55,6 +55,7 @@ pub(crate) fn cell_view(
         status: CellStatus::Used,
         measured: None,
         predicted: None,
+        polarity: None,
         held_out: None,
         nudge: [0.0; 2],
     };

@@ -55,6 +55,18 @@ fn priors_that_are_no_priors_are_refused() {
 }
 
 #[test]
+fn a_polarity_takes_tracks_of_three_frames() {
+    assert_infer_refuses("--active", &["--active is for tracks"]);
+    let flags = ["--active", "--frames", "0..2"];
+    assert_refused(
+        "infer",
+        &fixture("open-field"),
+        &flags,
+        &["--active", "three frames or more", "2 frames"],
+    );
+}
+
+#[test]
 fn methods_and_their_options_belong_together() {
     assert_infer_refuses("--method luck", &["--method", "luck"]);
     assert_infer_refuses("--loss norms", &["--loss is for --method descent"]);

@@ -11,10 +11,10 @@
 //! candidate by positions is needed. Where σ_v was estimated, T is compared with what is left (an F test).
 
 use super::candidate::Candidate;
-use crate::linearisation::Whitened;
 use crate::objective::Objective;
 use crate::quantity::BASE;
 use crate::uncertainty::nudges;
+use crate::whitened::Whitened;
 use crate::{Error, Inference, NoiseSource, Observation, Request};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

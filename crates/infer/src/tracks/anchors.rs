@@ -91,7 +91,8 @@ mod tests {
         let states = States::new(&movie).unwrap();
         let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
         let (movie, states, structure, space) = (&movie, &states, &structure, &space);
-        let objective = MovieObjective { movie, states, rule: Rule::Trapezoid, structure, space, levels };
+        let objective =
+            MovieObjective { movie, states, rule: Rule::Trapezoid, structure, space, levels, memory: None };
         let at = |step: f64| -> Vec<f64> {
             let free = [0.1, 2.0, 0.5, 1.0];
             let places = (0..2 * states.blocks())

@@ -1,6 +1,7 @@
 //! Coefficients, trajectories and noise levels together, in as many steps of integration as it takes.
 
 use super::first::{forward_coefficients, naive_coefficients};
+use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
@@ -45,12 +46,15 @@ struct Settling {
     steps: u64,
     /// Change of log σ that counts as none.
     enough: f64,
+    /// Whether the error of the dynamics falls in each round where cells crawl, be it likely or not: with a loose one, fits end that write
+    /// off motions which a polarity explains.
+    tightens: bool,
 }
 
 /// At first; on the way; at the end.
-const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7 };
-const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY };
-const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06 };
+const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7, tightens: true };
+const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY, tightens: false };
+const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06, tightens: false };
 
 /// How often the error of the dynamics is raised to what a fit leaves, and by how many standard deviations that may exceed what is expected.
 const LOOSENINGS: usize = 5;
@@ -70,6 +74,7 @@ pub(super) struct Fit {
     pub rule: Rule,
     pub parameters: Vec<f64>,
     pub levels: NoiseLevels,
+    pub memory: Option<Memory>,
     pub naive: Vec<f64>,
     pub value: f64,
     pub status: Status,
@@ -92,6 +97,7 @@ pub(super) struct Course<'a, 'w> {
     /// How the cells are followed from frame to frame.
     rule: Rule,
     levels: NoiseLevels,
+    memory: Option<Memory>,
     value: f64,
     status: Status,
     steps: u64,
@@ -108,8 +114,8 @@ pub(super) fn fit(
 ) -> Result<Fit, Error> {
     let Begun { mut course, at, naive } = Begun::new(movie, &states, request, space, watch)?;
     let (at, error) = course.finish(&states, at)?;
-    let Course { rule, levels, value, status, steps, trace, .. } = course;
-    Ok(Fit { states, rule, parameters: at, levels, naive, value, status, steps, trace, error })
+    let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
+    Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })
 }
 
 /// A fit whose noise levels are settled roughly.
@@ -141,13 +147,22 @@ impl<'a, 'w> Begun<'a, 'w> {
             watch,
             rule: Rule::Trapezoid,
             levels: first,
+            memory: (states.polarities.count() > 0).then(Memory::first),
             value: f64::INFINITY,
             status: Status::StepLimit,
             steps: 0,
             trace: Vec::new(),
         };
         let naive = naive_coefficients(&course.objective(states))?;
-        let at = course.foresee(states, naive.clone())?;
+        let at = match course.memory {
+            // Where cells crawl, what moves them beside the model leads them astray until it is known.
+            Some(_) => {
+                course.rule = Rule::RungeKutta(FEWEST_STEPS);
+                course.resolve(states, &naive);
+                course.objective(states).start(&naive)
+            }
+            None => course.foresee(states, naive.clone())?,
+        };
         let at = course.approach(states, at)?;
         let at = course.settle(states, at, ROUGH)?;
         Ok(Self { course, at, naive })
@@ -166,6 +181,7 @@ impl<'a> Course<'a, '_> {
             structure: &self.request.structure,
             space: self.space,
             levels: self.levels,
+            memory: self.memory,
         }
     }
 
@@ -182,15 +198,32 @@ impl<'a> Course<'a, '_> {
     /// Fit and noise levels in turn; the problem is linearised at the end.
     fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
         let mut start = (at, None);
-        let mut last = None;
+        let (mut last, mut looked) = (None, None);
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
-            let next = self.next_levels(&self.objective(states), &optimum, &mut last)?;
+            let Optimum { parameters, mut equations, .. } = optimum;
+            let components = self.objective(states).explained_components(&parameters)?;
+            let (wanted, memory) = match self.memory {
+                Some(_) => {
+                    let noise = self.request.noise;
+                    let likely = self.objective(states).likely(&mut equations, components, noise, looked)?;
+                    looked = Some(likely.looked);
+                    (likely.levels, Some(likely.memory))
+                }
+                None => (self.likely_levels(&equations, components, &mut last)?, None),
+            };
+            let longer = memory.zip(self.memory).map_or(0.0, |(next, present)| next.change(present));
+            let next = self.tightened(wanted, how);
             let change = (next.position / self.levels.position).ln().abs()
-                + (next.velocity / self.levels.velocity).ln().abs();
-            self.levels = next;
-            start = (optimum.parameters, Some(optimum.equations.at_levels(next)));
+                + (next.velocity / self.levels.velocity).ln().abs()
+                + longer;
+            (self.levels, self.memory) = (next, memory);
+            if let Some(memory) = memory {
+                let free = self.objective(states).free_share(&parameters, memory.speed)?;
+                self.memory = Some(Memory { free, ..memory });
+            }
+            start = (parameters, Some(self.renewed(states, equations)));
             if change < how.enough {
                 break;
             }
@@ -221,7 +254,7 @@ impl<'a> Course<'a, '_> {
                 return Ok((optimum.parameters, error));
             }
             self.levels.velocity *= optimum.value / expected;
-            start = (optimum.parameters, Some(optimum.equations.at_levels(self.levels)));
+            start = (optimum.parameters, Some(self.renewed(states, optimum.equations)));
         }
         Ok((self.optimise(states, start, most, TOLERANCE, (1, 1))?.parameters, error))
     }
@@ -248,31 +281,38 @@ impl<'a> Course<'a, '_> {
         Ok(optimum)
     }
 
-    /// The levels of the next round: more likely ones, the dynamics tightened step by step.
-    fn next_levels(
+    /// A linearised problem at the present levels.
+    fn renewed(&self, states: &States, equations: NormalEquations) -> NormalEquations {
+        let objective = self.objective(states);
+        let mut equations = equations.at_levels(self.levels);
+        equations.hold(&objective.stiffness(), objective.weight_of_outset());
+        equations
+    }
+
+    /// More likely levels, where cells do not crawl.
+    fn likely_levels(
         &self,
-        objective: &MovieObjective<'_>,
-        optimum: &Optimum,
+        equations: &NormalEquations,
+        components: f64,
         earlier: &mut Option<f64>,
     ) -> Result<NoiseLevels, Error> {
-        let wanted = match self.request.noise {
+        match self.request.noise {
             KnownNoise { position: Some(position), velocity: Some(velocity) } => {
-                NoiseLevels { position, velocity }
+                Ok(NoiseLevels { position, velocity })
             }
-            known => {
-                let components = objective.explained_components(&optimum.parameters)?;
-                Restricted { equations: &optimum.equations, components, known }.towards(
-                    self.levels,
-                    SPACING,
-                    earlier,
-                )?
-            }
-        };
+            known => Restricted { equations, components, known }.towards(self.levels, SPACING, earlier),
+        }
+    }
+
+    /// The levels of the next round: the dynamics are tightened step by step.
+    fn tightened(&self, wanted: NoiseLevels, how: Settling) -> NoiseLevels {
         let least = match self.request.noise.velocity {
             Some(_) => 0.0,
             None => LEAST_SHARE * wanted.position / self.movie.interval(),
         };
-        Ok(NoiseLevels { velocity: wanted.velocity.max(FALL * self.levels.velocity).max(least), ..wanted })
+        let fallen = FALL * self.levels.velocity;
+        let most = if how.tightens && self.memory.is_some() { fallen } else { f64::INFINITY };
+        NoiseLevels { velocity: wanted.velocity.min(most).max(fallen).max(least), ..wanted }
     }
 
     /// The coefficients that follow the cells best from where they were seen in one frame to where they were seen in the next, in as many

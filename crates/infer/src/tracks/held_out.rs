@@ -32,11 +32,12 @@ pub(super) struct AsMeasured<'a> {
 }
 
 impl<'a> AsMeasured<'a> {
-    /// `drifts` are the unknowns of the translations of a fit.
-    pub fn new(objective: MovieObjective<'a>, drifts: &[f64]) -> Self {
+    /// With the translations among the unknowns of a fit.
+    pub fn new(objective: MovieObjective<'a>, of_fit: &[f64]) -> Self {
         let mut displacements = vec![0.0; 2 * objective.states.blocks()];
-        let first = 2 * objective.states.drifts.0;
-        displacements[first..].copy_from_slice(drifts);
+        let (first, count) = objective.states.drifts;
+        let drifts = 2 * first..2 * (first + count);
+        displacements[drifts.clone()].copy_from_slice(&of_fit[drifts]);
         let MovieObjective { movie, states, .. } = objective;
         let velocity = |motion: &Motion| {
             let track = &movie.tracks[motion.track as usize];
@@ -53,14 +54,24 @@ impl<'a> AsMeasured<'a> {
     }
 
     /// The unknowns for some β.
-    fn at(&self, free: &[f64]) -> Vec<f64> {
+    fn with(&self, free: &[f64]) -> Vec<f64> {
         free.iter().chain(&self.displacements).copied().collect()
+    }
+
+    /// The unknowns for β and the polarities of a fit.
+    fn at(&self, of_fit: &[f64]) -> Vec<f64> {
+        let (free, of_fit) = self.objective.split(of_fit);
+        let mut at = self.with(free);
+        let polarities = 2 * self.objective.states.polarities.range().start
+            ..2 * self.objective.states.polarities.range().end;
+        at[free.len()..][polarities.clone()].copy_from_slice(&of_fit[polarities]);
+        at
     }
 
     /// Sum of the squares of what some β leave of these velocities, if the cells are followed by a rule from where they were seen.
     pub fn missed(&self, free: &[f64], rule: Rule) -> Result<f64, Error> {
         let objective = MovieObjective { rule, ..self.objective };
-        let placed = objective.place(&self.at(free))?;
+        let placed = objective.place(&self.with(free))?;
         let missed = objective.states.motions.iter().zip(&self.velocities).filter_map(|(motion, seen)| {
             Some(
                 (seen.as_ref()? - objective.mean_velocity(&placed, motion, &self.displacements))
@@ -122,7 +133,7 @@ pub(super) fn cross_validate(
         let without: Vec<f64> = at.iter().zip(&step).map(|(at, step)| at + step).collect();
         let (rule, point) = match objective.rule.steps() > FEW_STEPS {
             true => (objective.rule, without),
-            false => (Rule::Trapezoid, measured.at(&without[..p])),
+            false => (Rule::Trapezoid, measured.at(&without)),
         };
         let objective = MovieObjective { rule, ..*objective };
         let placed = objective.place(&point)?;

@@ -14,7 +14,7 @@ use crate::inference::{changed_edges, doubts, estimates};
 use crate::noisy_fit::at_limit;
 use crate::position_rows::PositionRows;
 use crate::search::Watch;
-use crate::{CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, Progress, Request};
+use crate::{Activity, CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, Progress, Request};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
@@ -38,7 +38,10 @@ pub fn infer_tracks(
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<(Inference, Tracked), Error> {
     let space = request.space()?;
-    let states = States::new(movie)?;
+    let mut states = States::new(movie)?;
+    if request.activity == Activity::Polarity {
+        states = states.crawling(movie, request.structure.terms.len());
+    }
     let (explained, required) = (states.motions.len(), 2 * space.dimension() + 2);
     if explained < required {
         return Err(Error::TooFewVelocities { used: explained, required });
@@ -47,9 +50,10 @@ pub fn infer_tracks(
     let found = fit(movie, states, request, &space, &mut watch)?;
     let levels = found.levels;
     let (states, structure) = (&found.states, &request.structure);
-    let objective = MovieObjective { movie, states, rule: found.rule, structure, space: &space, levels };
+    let (rule, memory) = (found.rule, found.memory);
+    let objective = MovieObjective { movie, states, rule, structure, space: &space, levels, memory };
     let (free, displacements) = objective.split(&found.parameters);
-    let measured = AsMeasured::new(objective, &displacements[2 * states.drifts.0..]);
+    let measured = AsMeasured::new(objective, displacements);
     let velocities = &measured.velocities;
     let total: f64 = velocities.iter().flatten().map(|v| v.norm_squared()).sum();
     let used = velocities.iter().flatten().count();
@@ -59,7 +63,7 @@ pub fn infer_tracks(
     let parts = objective.parts(&found.parameters)?;
     let variance = levels.velocity.powi(2);
     let (value, expected) = (found.value / variance, objective.expected() / variance);
-    let equations = objective.linearise(&found.parameters)?;
+    let mut equations = objective.linearise(&found.parameters)?;
     let reduced = equations.reduced()?;
     let variance_of_fit = variance * (value / expected).max(1.0);
     let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit)?;
@@ -73,7 +77,7 @@ pub fn infer_tracks(
     };
     let placed = objective.place(&found.parameters)?;
     let stray = tails(&strays(&objective, &placed, displacements)).map(Doubt::Tails);
-    let tracked = tracked(&objective, &found);
+    let mut tracked = tracked(&objective, &found);
     let coefficients = space.coefficients(free);
     let means = mean_velocities(&objective, &placed, displacements);
     let weights = motion_weights(states, objective.weights(&placed, &found.parameters));
@@ -98,10 +102,17 @@ pub fn infer_tracks(
         coefficients,
         noise: levels,
         noise_source: request.noise.source(),
-        degrees_of_freedom: equations.degrees_of_freedom()?,
+        degrees_of_freedom: equations.degrees_of_freedom()? - 2.0 * states.polarities.count() as f64,
         nudge_rms: (parts.nudges / states.anchors.len().max(1) as f64).sqrt(),
         contribution_ratio: levels.spring() * parts.nudges / parts.residual,
-        frames: frame_results(placed, states, &means, &weights, held_out.as_ref()),
+        frames: frame_results(
+            placed,
+            states,
+            &means,
+            &weights,
+            &objective.polarities(displacements),
+            held_out.as_ref(),
+        ),
         status: found.status,
         steps: found.steps,
         objective: value,
@@ -118,6 +129,8 @@ pub fn infer_tracks(
         used,
         total,
     };
+    let components = objective.explained_components(&found.parameters)?;
+    tracked.polarity = objective.polarity(&mut equations, components, request.noise)?;
     Ok((inference, tracked))
 }
 
@@ -169,6 +182,7 @@ fn frame_results(
     states: &States,
     means: &MeanVelocities,
     weights: &[Vec<f64>],
+    polarities: &[Vec<Option<Vector<f64>>>],
     held_out: Option<&HeldOut>,
 ) -> Vec<FrameResult> {
     let instants = states.instants.iter().zip(placed.instants).enumerate();
@@ -179,6 +193,7 @@ fn frame_results(
                 means.get(frame).and_then(|means| means.get(track)).copied()
             };
             FrameResult {
+                polarities: polarities[frame].clone(),
                 weights: weights[frame].clone(),
                 edges_lost,
                 edges_gained,
@@ -220,6 +235,7 @@ fn tracked(objective: &MovieObjective<'_>, found: &Fit) -> Tracked {
             order: found.rule.order(),
             error: found.error,
         },
+        polarity: None,
     }
 }
 

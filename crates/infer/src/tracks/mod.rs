@@ -14,13 +14,16 @@ mod fit;
 mod held_out;
 mod inference;
 mod join;
+mod likely;
 mod linearised;
 mod measurement;
+mod memory;
 mod missed;
 mod movie;
 mod neighbours;
 mod objective;
 mod obstacles;
+mod outset;
 mod passage;
 mod result;
 mod row_builder;
@@ -28,12 +31,14 @@ mod rule;
 #[cfg(test)]
 mod sample;
 mod states;
+mod surface;
 mod tangent;
 #[cfg(test)]
 mod tests;
 mod turn;
 
 pub use inference::infer_tracks;
+pub use likely::Polarity;
 pub use measurement::measure_tracks;
 pub use missed::{Latent, complete_tracks};
 pub use movie::{Drift, Movie, Sighting, Track};

@@ -9,6 +9,7 @@
 //! translation of the stage. What the model misses of a displacement is a random walk: its variance grows
 //! with the time, so that σ_v is the error of a mean velocity over T.
 
+use super::memory::Memory;
 use super::movie::Movie;
 use super::passage::Passage;
 use super::rule::Rule;
@@ -40,6 +41,8 @@ pub(crate) struct MovieObjective<'a> {
     pub structure: &'a Structure,
     pub space: &'a CoefficientSpace,
     pub levels: NoiseLevels,
+    /// How what the model leaves of the motion of a cell goes on from one interval to the next, if it does.
+    pub memory: Option<Memory>,
 }
 
 /// Cells at some time, with the velocities that the model gives them.
@@ -59,7 +62,7 @@ pub(crate) struct MovieParts {
     pub residual: f64,
     /// Sum of the squares of what is left of the measured positions, each over the square of its error in units of σ_r.
     pub nudges: f64,
-    /// What keeps places that were not seen.
+    /// What keeps places that were not seen, and polarities.
     pub floor: f64,
     /// Penalty of the priors.
     pub priors: f64,
@@ -81,7 +84,8 @@ impl<'a> MovieObjective<'a> {
     /// Number of measured components that no unknown without a measurement takes up.
     pub fn components(&self) -> usize {
         let rows = 2 * self.states.motions.len();
-        rows.saturating_sub(2 * (self.states.blocks() - self.states.anchors.len()))
+        let held = self.states.anchors.len() + self.states.polarities.count();
+        rows.saturating_sub(2 * (self.states.blocks() - held))
     }
 
     /// The same without the components of motions that nothing explains.
@@ -143,8 +147,8 @@ impl<'a> MovieObjective<'a> {
             .collect::<Result<Vec<Moving<'_>>, Error>>()?;
         let passage = |(interval, pair): (usize, &[Moving<'_>])| {
             let ends = [&pair[0].0.positions[..], &pair[1].0.positions[..]];
-            let drift = self.drift(interval, displacements);
-            Passage::new(*self, interval, self.rule.steps(), ends, drift, coefficients.as_slice())
+            let beside = self.beside(interval, ends, displacements);
+            Passage::new(*self, interval, self.rule.steps(), ends[0], &beside, coefficients.as_slice())
         };
         let passages = match self.rule {
             Rule::Trapezoid => Vec::new(),
@@ -153,6 +157,20 @@ impl<'a> MovieObjective<'a> {
             }
         };
         Ok(Placed { instants, passages })
+    }
+
+    /// The velocity of each cell of an interval that is not the model's: of its polarity and of the stage, or of a straight way between both ends.
+    fn beside(&self, interval: usize, ends: [&[Vector<f64>]; 2], displacements: &[f64]) -> Vec<Vector<f64>> {
+        let between = &self.states.intervals[interval];
+        let (span, drift) = (self.span(interval), self.drift(interval, displacements));
+        let of_cell = |(number, own): (usize, &[u32; 2])| match between.led[number] {
+            true => {
+                let motion = Motion { interval, track: 0, cells: *own, between: number as u32 };
+                drift / span + self.states.crawled(&motion, displacements) / self.movie.interval()
+            }
+            false => (ends[1][own[1] as usize] - ends[0][own[0] as usize]) / span,
+        };
+        between.ends.iter().enumerate().map(of_cell).collect()
     }
 
     /// The mean velocity of a motion, without the translation.
@@ -166,7 +184,7 @@ impl<'a> MovieObjective<'a> {
                 let at = |end: usize| {
                     placed.instants[motion.interval + end].1.of_cells[motion.cells[end] as usize]
                 };
-                (at(0) + at(1)) * 0.5
+                (at(0) + at(1)) * 0.5 + self.states.crawled(motion, displacements) / self.movie.interval()
             }
         }
     }
@@ -220,13 +238,6 @@ impl<'a> MovieObjective<'a> {
         (self.levels.velocity / FAR).powi(2)
     }
 
-    /// Whether each block has a measured position.
-    pub fn anchored(&self) -> Vec<bool> {
-        let mut anchored = vec![false; self.states.blocks()];
-        self.states.anchors.iter().for_each(|place| anchored[*place as usize] = true);
-        anchored
-    }
-
     /// The parts of Φ.
     pub fn parts(&self, parameters: &[f64]) -> Result<MovieParts, Error> {
         let placed = self.place(parameters)?;
@@ -237,10 +248,10 @@ impl<'a> MovieObjective<'a> {
             squares(cells, &nudged.tessellation, &nudged.positions, nudges).sum::<f64>()
         });
         let nudges = of_seen.iter().sum();
-        let unseen = displacements.chunks_exact(2).zip(self.anchored()).filter(|(_, anchored)| !anchored);
-        let loose: f64 = unseen.map(|(e, _)| e[0] * e[0] + e[1] * e[1]).sum();
+        let surprise = self.weight_of_outset() * self.surprise(&placed, displacements);
+        let floor = self.stiffness().of(displacements) + surprise;
         let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);
-        Ok(MovieParts { residual, nudges, floor: self.floor() * loose, priors })
+        Ok(MovieParts { residual, nudges, floor, priors })
     }
 
     /// Φ; infinite where there is no tessellation.

@@ -116,8 +116,8 @@ mod tests {
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
         let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
         let (movie, states, structure, space) = (&movie, &states, &structure, &space);
-        let objective =
-            &MovieObjective { movie, states, rule: Rule::RungeKutta(1), structure, space, levels };
+        let rule = Rule::RungeKutta(1);
+        let objective = &MovieObjective { movie, states, rule, structure, space, levels, memory: None };
         let onwards = |at: &[f64]| {
             let Step { step, promised } = objective.linearise(at).unwrap().step(1e-3, &[]).unwrap();
             (at.iter().zip(&step).map(|(x, s)| x + s).collect::<Vec<f64>>(), promised)

@@ -5,8 +5,8 @@
 //! F_1 = F(x),   F_2 = F(x + h/2 F_1),   F_3 = F(x + h/2 F_2),   F_4 = F(x + h F_3)
 //! ```
 //!
-//! Cells whose motion is explained go as the model says, with their share of the translation of the stage; the others go straight from
-//! where they are in one frame to where they are in the next. What changes of neighbours within a step add is in [`super::turn`].
+//! Cells whose motion is explained go as the model says, with their polarity, if cells crawl, and their share of the translation of the stage;
+//! the others go straight from where they are in one frame to where they are in the next. What changes of neighbours within a step add is in [`super::turn`].
 
 use super::objective::{MovieObjective, Moving};
 use super::turn::{Turn, single_terms};
@@ -38,36 +38,28 @@ pub(crate) struct Passage<'a> {
 struct Way<'a, 's> {
     objective: MovieObjective<'a>,
     interval: usize,
-    /// Velocity of each cell that goes straight; that of the stage for the others.
-    beside: Vec<Vector<f64>>,
+    /// Velocity of each cell besides that of the model, or of its straight way.
+    beside: &'s [Vector<f64>],
     coefficients: &'s [f64],
     terms: Vec<Model<f64>>,
 }
 
 impl<'a> Passage<'a> {
-    /// The motion over an interval in some steps; `ends` are the positions of the cells of both frames.
+    /// The motion over an interval in some steps; `first` are the positions of the cells of its first frame, `beside` the velocities that the cells
+    /// of the interval have besides those of the model.
     pub fn new(
         objective: MovieObjective<'a>,
         interval: usize,
         count: usize,
-        ends: [&[Vector<f64>]; 2],
-        drift: Vector<f64>,
+        first: &[Vector<f64>],
+        beside: &[Vector<f64>],
         coefficients: &[f64],
     ) -> Result<Self, Error> {
         let between = &objective.states.intervals[interval];
         let span = objective.span(interval);
-        let beside = |(own, led): (&[u32; 2], &bool)| match led {
-            true => drift / span,
-            false => (ends[1][own[1] as usize] - ends[0][own[0] as usize]) / span,
-        };
-        let way = Way {
-            objective,
-            interval,
-            beside: between.ends.iter().zip(&between.led).map(beside).collect(),
-            coefficients,
-            terms: single_terms(objective.structure, between.halfway.environment()),
-        };
-        let begin: Vec<Vector<f64>> = between.ends.iter().map(|own| ends[0][own[0] as usize]).collect();
+        let terms = single_terms(objective.structure, between.halfway.environment());
+        let way = Way { objective, interval, beside, coefficients, terms };
+        let begin: Vec<Vector<f64>> = between.ends.iter().map(|own| first[own[0] as usize]).collect();
         let mut moving = MovingTessellation::new(&begin, objective.movie.domain)
             .map_err(|source| Error::Geometry { frame: interval, source })?;
         let (mut at, mut steps) = (begin.clone(), Vec::with_capacity(count));

@@ -1,5 +1,6 @@
 //! What the fit of a movie answers beyond parameters.
 
+use super::likely::Polarity;
 use voronudge_geometry::Vector;
 
 /// How the motion between frames is integrated.
@@ -22,4 +23,6 @@ pub struct Tracked {
     pub drifts: Vec<Vector<f64>>,
     /// How the motion is integrated.
     pub integration: Integration,
+    /// Polarity of the cells, if it was asked for.
+    pub polarity: Option<Polarity>,
 }

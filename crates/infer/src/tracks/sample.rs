@@ -4,7 +4,7 @@ use super::movie::{Drift, Movie};
 use rand_distr::{Distribution, Normal};
 use voronudge_geometry::{CellPolygon, Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
 use voronudge_model::{Model, Parameters};
-use voronudge_simulate::{RandomPlacement, Simulation, generator};
+use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator};
 
 /// P_0 and α of the tissue.
 pub const TRUTH: [f64; 2] = [4.0, 2.9];
@@ -29,10 +29,12 @@ enum Point {
 impl Filmed {
     /// Positions in each frame, the box, and K_P α in units of the velocities.
     pub fn film(&self) -> (Vec<Vec<Option<Vector<f64>>>>, Domain, f64) {
-        self.film_of(Point::Site)
+        let (film, domain, unit) = self.film_of(Point::Site, Driving::default());
+        (film, domain, TRUTH[1] * unit)
     }
 
-    fn film_of(&self, point: Point) -> (Vec<Vec<Option<Vector<f64>>>>, Domain, f64) {
+    /// The same, and the velocity of one in units of the velocities.
+    fn film_of(&self, point: Point, driving: Driving) -> (Vec<Vec<Option<Vector<f64>>>>, Domain, f64) {
         let [cells, frames] = self.size;
         let side = (cells as f64).sqrt();
         let domain = Domain::Periodic(PeriodicBox::new([side, side]).unwrap());
@@ -47,6 +49,7 @@ impl Filmed {
             chirality: TRUTH[1],
         };
         let mut tissue = Simulation::new(start, domain, Model::chiral_voronoi(&truth)).unwrap();
+        tissue = tissue.with_driving(Driving { seed: self.seed, ..driving }).unwrap();
         (0..1000).for_each(|_| tissue.step(0.01).unwrap());
         let speed = tissue.velocities().iter().map(|v| v.norm_squared()).sum::<f64>() / cells as f64;
         let interval = self.step / speed.sqrt();
@@ -71,22 +74,34 @@ impl Filmed {
             }
             film.push(places.iter().map(&mut seen).collect());
         }
-        (film, domain, TRUTH[1] / speed.sqrt())
+        (film, domain, 1.0 / speed.sqrt())
+    }
+
+    /// The same of cells that crawl, as a movie; K_P α, v₀ and D_r in its units.
+    pub fn movie_of_crawling(&self, speed: f64, rotational_diffusion: f64) -> (Movie, [f64; 3]) {
+        let driving = Driving { speed, rotational_diffusion, ..Driving::default() };
+        let (movie, unit) = self.movie_of(Point::Site, driving);
+        (movie, [TRUTH[1], speed, rotational_diffusion].map(|own| own * unit))
     }
 
     /// The same as a movie whose velocities are of order one, and K_P α.
     pub fn movie(&self) -> (Movie, f64) {
-        self.movie_of(Point::Site)
+        self.movie_with_chirality(Point::Site)
     }
 
     /// The same of the centroids of cells.
     pub fn movie_of_centroids(&self) -> (Movie, f64) {
-        self.movie_of(Point::Centroid)
+        self.movie_with_chirality(Point::Centroid)
     }
 
-    fn movie_of(&self, point: Point) -> (Movie, f64) {
-        let (film, domain, truth) = self.film_of(point);
+    fn movie_with_chirality(&self, point: Point) -> (Movie, f64) {
+        let (movie, unit) = self.movie_of(point, Driving::default());
+        (movie, TRUTH[1] * unit)
+    }
+
+    fn movie_of(&self, point: Point, driving: Driving) -> (Movie, f64) {
+        let (film, domain, unit) = self.film_of(point, driving);
         let times = (0..film.len()).map(|k| k as f64 * self.step).collect();
-        (Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap(), truth)
+        (Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap(), unit)
     }
 }

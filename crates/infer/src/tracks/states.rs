@@ -3,6 +3,7 @@
 //! A cell has a place of its own at a frame if it was seen there or if its motion to or from there is explained. Elsewhere (in gaps at the
 //! rim of an open field) it is on the straight line between its nearest places before and after, if there are both.
 
+use super::memory::{NONE, Polarities};
 use super::movie::{Drift, Movie};
 use crate::{Error, Observation};
 use rayon::prelude::*;
@@ -78,6 +79,8 @@ pub(crate) struct States {
     pub start: Vec<Vector<f64>>,
     /// First of the translations, one for each interval, which stand behind the places; their number.
     pub drifts: (usize, usize),
+    /// Polarities, where cells have them.
+    pub polarities: Polarities,
 }
 
 /// Marks an absent cell.
@@ -142,7 +145,9 @@ impl States {
             Drift::None => 0,
             Drift::PerInterval => movie.frames() - 1,
         };
-        Ok(Self { drifts: (start.len(), drifts), instants, intervals, motions, anchors, start })
+        let drifts = (start.len(), drifts);
+        let polarities = Polarities::default();
+        Ok(Self { drifts, instants, intervals, motions, anchors, start, polarities })
     }
 
     /// The same with positions measured at another share of the way to the centroids.
@@ -151,6 +156,32 @@ impl States {
             instant.cells = instant.cells.clone().at_share(share);
         }
         self
+    }
+
+    /// The same with a polarity of each cell, for a model of so many terms.
+    pub fn crawling(self, movie: &Movie, terms: usize) -> Self {
+        let polarities = Polarities::new(movie, &self.instants, &self.motions, self.blocks(), terms);
+        Self { polarities, ..self }
+    }
+
+    /// The polarity of a cell at both ends of its motion.
+    pub fn polarity(&self, motion: &Motion) -> Option<[usize; 2]> {
+        let block = |end: usize| {
+            let of_frame = self.polarities.block.get(motion.interval + end)?;
+            of_frame
+                .get(motion.cells[end] as usize)
+                .filter(|block| **block != NONE)
+                .map(|block| *block as usize)
+        };
+        Some([block(0)?, block(1)?])
+    }
+
+    /// How far a cell crawls in a usual interval, by its polarity at both ends of its motion.
+    pub fn crawled(&self, motion: &Motion, displacements: &[f64]) -> Vector<f64> {
+        let mean = |ends: [usize; 2]| {
+            ends.iter().map(|block| Self::vector(displacements, *block)).sum::<Vector<f64>>() * 0.5
+        };
+        self.polarity(motion).map_or(Vector::zeros(), mean)
     }
 
     /// The two unknowns of one block.
@@ -167,6 +198,13 @@ impl States {
                     let r = self.start[*own as usize];
                     places[*own as usize] = Some([r[0], r[1], *time]);
                 }
+            }
+        }
+        for ((of_frame, instant), time) in self.polarities.block.iter().zip(&self.instants).zip(times) {
+            for (block, r) in
+                of_frame.iter().zip(&instant.cells.positions).filter(|(block, _)| **block != NONE)
+            {
+                places[*block as usize] = Some([r[0], r[1], *time]);
             }
         }
         places
@@ -188,9 +226,9 @@ impl States {
         shares.map(|(at, share)| Self::vector(displacements, at) * share).sum()
     }
 
-    /// Number of places and translations: blocks of two unknowns.
+    /// Number of places, translations and polarities: blocks of two unknowns.
     pub fn blocks(&self) -> usize {
-        self.start.len() + self.drifts.1
+        self.start.len() + self.drifts.1 + self.polarities.blocks()
     }
 
     /// The unknown of an interval's translation.

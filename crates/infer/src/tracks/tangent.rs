@@ -19,6 +19,9 @@ use voronudge_model::BlockMatrix;
 const RINGS: usize = 2;
 const RINGS_IF_LONG: usize = 3;
 
+/// The same of cells whose polarities count.
+const RINGS_OF_POLARITY: usize = 2;
+
 /// Steps of integration up to which an interval is short.
 const FEW_STEPS: usize = 1;
 
@@ -33,7 +36,7 @@ const NONE: u32 = u32::MAX;
 pub(super) struct Tangent {
     /// First entry of each row, and the number of entries.
     start: Vec<usize>,
-    /// By the place of a cell of the interval in the first frame, or (behind all of these) in the second.
+    /// By the place of a cell of the interval in the first frame, or (behind all of these) in the second, or by the way that it crawls.
     column: Vec<u32>,
     block: Vec<Block>,
     /// By the translation and the free coefficients: matrices (2, 2 + p), row by row.
@@ -77,15 +80,17 @@ impl Tangent {
         let led = &objective.states.intervals[interval].led;
         let count = passage.steps.len() as f64;
         let span = objective.span(interval);
-        let advance = Advance { led, span, length: span / count, along: objective.along() };
+        let crawls = objective.memory.is_some();
+        let advance = Advance { crawls, led, span, length: span / count, along: objective.along() };
         let basis = objective.space.basis();
         let environment = objective.states.intervals[interval].halfway.environment();
         let model = objective.structure.model(coefficients, environment);
         let mut tangent = Self::still(
             led,
             &passage.steps[0].stages[0].0.tessellation,
-            rings,
+            [rings, if crawls { rings.min(RINGS_OF_POLARITY) } else { 0 }],
             DRIFT + objective.space.dimension(),
+            crawls,
         );
         let [mut slope, mut next, mut stage] = [0, 1, 2].map(|_| tangent.clone());
         for (number, step) in passage.steps.iter().enumerate() {
@@ -126,7 +131,13 @@ impl Tangent {
     }
 
     /// At the beginning: each cell by its own place. Rows have room for what is within reach.
-    fn still(led: &[bool], tessellation: &Tessellation, rings: usize, width: usize) -> Self {
+    fn still(
+        led: &[bool],
+        tessellation: &Tessellation,
+        [rings, of_polarity]: [usize; 2],
+        width: usize,
+        crawls: bool,
+    ) -> Self {
         let cells = led.len();
         let mut own = Self {
             start: vec![0],
@@ -140,9 +151,12 @@ impl Tangent {
             let first = own.column.len();
             own.column.push(cell as u32);
             seen[cell] = cell;
-            let mut ring = first;
-            for _ in 0..rings {
+            let (mut ring, mut crawling) = (first, first + 1);
+            for number in 0..rings {
                 let end = own.column.len();
+                if number == of_polarity {
+                    crawling = end;
+                }
                 for at in ring..end {
                     for next in tessellation.neighbours(own.column[at] as usize) {
                         if seen[*next as usize] != cell {
@@ -154,10 +168,15 @@ impl Tangent {
                 ring = end;
             }
             let last = own.column.len();
+            if of_polarity >= rings {
+                crawling = last;
+            }
             for at in first..last {
                 let other = own.column[at];
                 if !led[other as usize] {
                     own.column.push(other + cells as u32);
+                } else if crawls && at < crawling {
+                    own.column.push(other + 2 * cells as u32);
                 }
             }
             own.block.resize(own.column.len(), [0.0; 4]);
@@ -231,6 +250,8 @@ impl Tangent {
 
 /// What does not change from step to step.
 struct Advance<'a> {
+    /// Whether cells crawl.
+    crawls: bool,
     led: &'a [bool],
     /// Time between the frames, and of a step.
     span: f64,
@@ -240,12 +261,12 @@ struct Advance<'a> {
 }
 
 impl Advance<'_> {
-    /// J dx + X dβ + dd / T for the cells that are led.
+    /// J dx + X dβ + (dd + du) / T for the cells that are led.
     fn slope(&self, to: &mut Tangent, from: &Tangent, jacobian: &BlockMatrix, at: &Moving<'_>) {
         to.block.fill([0.0; 4]);
         to.dense.fill(0.0);
         let width = to.width;
-        let mut index = vec![NONE; 2 * self.led.len()];
+        let mut index = vec![NONE; 3 * self.led.len()];
         for cell in (0..self.led.len()).filter(|cell| self.led[*cell]) {
             to.dense[2 * width * cell] = 1.0 / self.span;
             to.dense[2 * width * cell + width + 1] = 1.0 / self.span;
@@ -255,6 +276,10 @@ impl Advance<'_> {
             let own = to.start[cell]..to.start[cell + 1];
             for (at, column) in own.clone().zip(&to.column[own.clone()]) {
                 index[*column as usize] = at as u32;
+            }
+            if self.crawls {
+                let at = index[2 * self.led.len() + cell] as usize;
+                to.block[at] = IDENTITY.map(|one| one / self.span);
             }
             for (other, block) in jacobian.row(cell) {
                 for (column, b) in from.row(other) {

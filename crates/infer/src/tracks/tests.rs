@@ -1,6 +1,6 @@
 use super::sample::{Filmed, TRUTH};
 use super::{infer_tracks, measure_tracks};
-use crate::{Constraints, KnownMeasurement, Quantity, Request};
+use crate::{Activity, Constraints, KnownMeasurement, Quantity, Request};
 use std::ops::ControlFlow;
 
 /// Cells that move a fifth of their size from frame to frame: parameters within their intervals, where differences miss a third.
@@ -44,4 +44,44 @@ fn centroids_are_told_from_sites() {
         assert!(p.preferred_perimeter.covers(TRUTH[0]), "{:?}", p.preferred_perimeter);
         assert!((found.noise.position / 0.01 - 1.0).abs() < 0.3, "{:?}", found.noise);
     }
+}
+
+fn crawling() -> Request {
+    let constraints =
+        Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+    Request { activity: Activity::Polarity, ..Request::new(constraints) }
+}
+
+/// Cells that crawl: what they move by of themselves is told from what the model does to them, and does not bias it.
+#[test]
+fn polarities_are_told_from_forces() {
+    let filmed = Filmed { size: [144, 6], step: 0.1, error: 0.01, seed: 5 };
+    let (movie, [chiral, speed, rate]) = filmed.movie_of_crawling(1.0, 1.0);
+    let (found, tracked) = infer_tracks(&movie, &crawling(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let p = &found.parameters;
+    assert!((p.chiral_coefficient.value / chiral - 1.0).abs() < 0.04, "{:?} {chiral}", p.chiral_coefficient);
+    assert!((p.preferred_perimeter.value / TRUTH[0] - 1.0).abs() < 0.03, "{:?}", p.preferred_perimeter);
+    assert!((found.noise.position / 0.01 - 1.0).abs() < 0.2, "{:?}", found.noise);
+    let polarity = tracked.polarity.unwrap();
+    assert!((polarity.speed / speed - 1.0).abs() < 0.15, "{polarity:?} {speed}");
+    let within = |[low, high]: [f64; 2], value: f64| low < value && value < high;
+    assert!(within(polarity.speed_interval, speed), "{polarity:?} {speed}");
+    assert!(polarity.rate_interval.is_some_and(|ends| within(ends, rate)), "{polarity:?} {rate}");
+    let of_cells: Vec<_> = found.frames[2].polarities.iter().flatten().collect();
+    assert_eq!(of_cells.len(), 144);
+    let mean = of_cells.iter().map(|p| p.norm_squared()).sum::<f64>() / 144.0;
+    assert!((0.5..1.1).contains(&(mean / speed.powi(2))), "{mean} {speed}");
+}
+
+/// Of cells that do not crawl no polarity is reported.
+#[test]
+fn no_polarity_is_made_of_errors() {
+    let (movie, chiral) = Filmed { size: [100, 5], step: 0.1, error: 0.02, seed: 6 }.movie();
+    let (found, tracked) = infer_tracks(&movie, &crawling(), &mut |_| ControlFlow::Continue(())).unwrap();
+    let own = found.parameters.chiral_coefficient;
+    assert!((own.value / chiral - 1.0).abs() < 0.04, "{own:?} {chiral}");
+    assert!((found.noise.position / 0.02 - 1.0).abs() < 0.15, "{:?}", found.noise);
+    let polarity = tracked.polarity.unwrap();
+    assert!(polarity.speed_interval[0] == 0.0 && polarity.speed_interval[1] < 0.6, "{polarity:?}");
+    assert_eq!(polarity.rate_interval, None);
 }

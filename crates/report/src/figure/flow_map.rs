@@ -134,7 +134,7 @@ pub(super) fn draw_flow(
     }
     map.layer.path(&crosses, &cross_style());
     arrows.draw(&mut map.layer, field.colour());
-    let mut legend = arrow_legend(map, flow.frame, (field, scale), units);
+    let mut legend = arrow_legend(map, flow.frame, (field.colour(), scale), units);
     let x = if flow.frame.cells.iter().all(|cell| cell.is_used()) { 4.0 } else { 160.0 };
     missing_entry(&mut legend, x, missing);
     legend.svg.finish()

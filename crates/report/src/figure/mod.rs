@@ -72,7 +72,7 @@ pub use predicted_against_measured::{Prediction, VelocityPair, predicted_against
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
 pub use shape_scatter::{ShapeMeasure, shape_scatter};
-pub use velocity_map::{VelocityField, velocity_map};
+pub use velocity_map::{VelocityField, polarity_map, velocity_map};
 
 use crate::svg::{Anchor, Svg, TextStyle};
 

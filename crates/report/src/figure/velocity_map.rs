@@ -2,7 +2,7 @@
 
 use super::no_data;
 use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
-use crate::colour::{BLUE, INK, VERMILLION};
+use crate::colour::{BLUE, GREEN, INK, VERMILLION};
 use crate::map::{Legend, Map};
 use crate::units::Units;
 use crate::view::{CellView, FrameView, residual};
@@ -69,38 +69,60 @@ pub fn velocity_map(
     }
 }
 
+/// Arrows of the polarities over faint cell outlines, on the scale of the velocities.
+#[must_use]
+pub fn polarity_map(frame: &FrameView, scale: Option<&ArrowScale>, units: &Units) -> String {
+    const CAPTION: &str = "polarities";
+    match (Map::new(frame, CAPTION), scale) {
+        (Some(map), Some(scale)) => draw(map, frame, CAPTION, (|cell| cell.polarity, GREEN), scale, units),
+        _ => no_data(CAPTION),
+    }
+}
+
 /// Draws the arrows of one field on an empty map, and its legend.
 pub(super) fn draw_velocities(
-    mut map: Map,
+    map: Map,
     frame: &FrameView,
     (field, scale): (VelocityField, &ArrowScale),
     units: &Units,
 ) -> String {
-    if frame.cells.iter().all(|cell| field.of(cell).is_none()) {
-        return no_data(field.caption());
+    draw(map, frame, field.caption(), (|cell| field.of(cell), field.colour()), scale, units)
+}
+
+/// Draws arrows of a colour on an empty map, and its legend.
+fn draw(
+    mut map: Map,
+    frame: &FrameView,
+    caption: &str,
+    (of, colour): (impl Fn(&CellView) -> Option<[f64; 2]>, &str),
+    scale: &ArrowScale,
+    units: &Units,
+) -> String {
+    if frame.cells.iter().all(|cell| of(cell).is_none()) {
+        return no_data(caption);
     }
     map.outlines(frame);
     let mut arrows = Arrows::default();
     for cell in &frame.cells {
-        if let Some(velocity) = field.of(cell) {
+        if let Some(velocity) = of(cell) {
             arrows.push_on(&map.view, cell.centre, velocity, scale);
         }
     }
-    arrows.draw(&mut map.layer, field.colour());
-    arrow_legend(map, frame, (field, scale), units).svg.finish()
+    arrows.draw(&mut map.layer, colour);
+    arrow_legend(map, frame, (colour, scale), units).svg.finish()
 }
 
-/// Scale bar, reference arrow and the entry for cells left out, beneath a map of velocities.
+/// Scale bar, reference arrow and the entry for cells left out, beneath a map of arrows of a colour.
 pub(super) fn arrow_legend(
     map: Map,
     frame: &FrameView,
-    (field, scale): (VelocityField, &ArrowScale),
+    (colour, scale): (&str, &ArrowScale),
     units: &Units,
 ) -> Legend {
     let mut legend = map.with_legend(48.0);
     legend.scale_bar(units);
     let unit = units.velocity_text();
-    let mark = ReferenceMark { unit: &unit, remark: "", colour: field.colour() };
+    let mark = ReferenceMark { unit: &unit, remark: "", colour };
     legend.reference_arrow(160.0, scale, &mark);
     legend.left_out(4.0, frame);
     legend

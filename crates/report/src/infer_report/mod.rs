@@ -3,6 +3,7 @@
 //! Field names are the interface that scripts use; [`INFER_SCHEMA`] describes them. Numbers that
 //! are not finite are written as `null`.
 
+mod activity;
 mod constraints;
 mod implied;
 mod latent;
@@ -12,6 +13,7 @@ mod tracks;
 mod uncertainty;
 mod verdict;
 
+pub use activity::ActivityReport;
 pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
 pub use latent::LatentCells;
@@ -83,6 +85,8 @@ pub struct InferReport {
     pub constraints: GivenConstraints,
     /// The nudged estimate.
     pub parameters: Parameters,
+    /// Polarity of the cells, where it was asked for.
+    pub activity: Option<ActivityReport>,
     /// Moduli and phase diffusivities that the parameters imply by the mean-field theory; `null` where it has none.
     pub implied_moduli: Option<ImpliedByMeanField>,
     /// The estimate at the measured positions.

@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use super::parameter_table::{TableRow, parameter_rows};
+use super::parameter_table::{TableRow, activity_rows, parameter_rows};
 use super::uncertainty::{Known, Uncertainty};
 use super::words::{data, fit_status, mean_removed, noise_source, warnings};
 use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
@@ -10,7 +10,7 @@ use crate::arrows::ArrowScale;
 use crate::error::ReportError;
 use crate::figure::{
     CellScalar, Emphasis, ErrorBar, FlowMap, NudgeHistogram, ObjectiveTrace, ParameterRow, Prediction,
-    VelocityField, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
+    VelocityField, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace, polarity_map,
     predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
@@ -47,6 +47,7 @@ impl InferPage<'_> {
     pub fn render(&self) -> Result<String, ReportError> {
         let report = self.report;
         let rows = parameter_rows(&report.parameters, Some(&report.naive));
+        let of_activity = report.activity.as_ref().map(activity_rows).unwrap_or_default();
         let head = PageHead {
             title: self.title,
             headline: &report.verdict.sentence,
@@ -68,7 +69,7 @@ impl InferPage<'_> {
             is_finding: report.verdict.kind.is_finding(),
             cell_size: cell_size(report),
             known: Known::new(report, &rows, self.uncertainty),
-            parameters: rows.iter().map(TableRow::new).collect(),
+            parameters: rows.iter().chain(&of_activity).map(TableRow::new).collect(),
             error_figure: self.error_figure(),
             trace_figure: self.trace_figure(),
             scatter_figure: self.scatter_figure(),
@@ -158,6 +159,10 @@ impl InferPage<'_> {
                 Figure::new(map, &caption(field, [&velocities, &residuals]))
             };
             let mut figures: Vec<Figure> = VelocityField::ALL.map(velocity).into();
+            if self.report.activity.is_some() {
+                let map = polarity_map(frame, velocities.as_ref(), units);
+                figures.push(Figure::new(map, "polarities: what the cells move by of themselves"));
+            }
             figures.extend([
                 Figure::new(nudge_map(frame, nudges.as_ref(), units), "nudges, magnified as stated"),
                 Figure::new(cell_map(frame, &area, units), "cell areas"),

@@ -3,7 +3,7 @@
 use serde::Serialize;
 
 use crate::figure::{Estimate, ParameterRow};
-use crate::infer_report::{NaiveParameters, Parameter, Parameters};
+use crate::infer_report::{ActivityReport, NaiveParameters, Parameter, Parameters};
 use crate::numbers::{NO_VALUE, as_given, interval_text, significant};
 use crate::units::unit_text;
 
@@ -48,6 +48,7 @@ pub(super) fn symbol_of(name: &str) -> String {
         "K_P_alpha" => "K_P α".to_owned(),
         "K_P_P_0" => "K_P P_0".to_owned(),
         "shape_index" => "P_0/ℓ_0".to_owned(),
+        "v_0" => "v_0".to_owned(),
         effect if effect.starts_with(char::is_lowercase) => effect.replace('_', " "),
         other => other.to_owned(),
     }
@@ -110,5 +111,15 @@ pub(super) fn parameter_rows(fitted: &Parameters, naive: Option<&NaiveParameters
         row("K_P", &fitted.K_P, |naive| naive.K_P, "stiffness of the cell outline"),
         row("P_0", &fitted.P_0, |naive| naive.P_0, "preferred length of the cell outline"),
         row("K_A", &fitted.K_A, |naive| naive.K_A, "stiffness of the cell area; often not determined"),
+    ]
+}
+
+/// The rows of cells that crawl.
+pub(super) fn activity_rows(activity: &ActivityReport) -> Vec<ParameterRow> {
+    let row =
+        |name: &str, parameter: &Parameter, meaning: &str| parameter_row(name, parameter, None, meaning);
+    vec![
+        row("v_0", &activity.v_0, "speed that a cell has of itself: root mean square of the polarity"),
+        row("D_r", &activity.D_r, "rate at which a cell forgets the direction of its polarity"),
     ]
 }

@@ -37,11 +37,13 @@ fn the_page_is_self_contained() {
         "estimated from these data",
         "<li>K<sub>P</sub> α is known to 2 %.</li>",
         "2 starts ended at objectives from 871.0 to 873.5",
+        "v<sub>0</sub>",
+        "polarities: what the cells move by of themselves",
     ] {
         let found = html.contains(text);
         assert!(found, "{text}");
     }
-    assert_eq!(html.matches("<svg xmlns").count(), 1 + 3 + 2 * 6 + 1);
+    assert_eq!(html.matches("<svg xmlns").count(), 1 + 3 + 2 * 7 + 1);
 }
 
 #[test]

@@ -3,10 +3,10 @@
 use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
-    BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid, FlowWindow,
-    GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells, MeanRemoved,
-    MeasuredPositions, MeasuredWindow, Measurement, MeasurementSource, NaiveParameters, Nmse, Noise,
-    NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, Quantity, RegionSource,
+    ActivityReport, BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid,
+    FlowWindow, GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells,
+    MeanRemoved, MeasuredPositions, MeasuredWindow, Measurement, MeasurementSource, NaiveParameters, Nmse,
+    Noise, NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, Quantity, RegionSource,
     RunRecord, SeenRegion, Transitions, TriedWindow, Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
@@ -57,6 +57,7 @@ pub fn frame(label: &str, side: usize) -> FrameView {
             },
             measured: (index % 41 != 7).then_some(measured),
             predicted: (!rim).then_some(predicted),
+            polarity: Some([0.2, -0.1]),
             held_out: (!rim).then_some([0.9 * predicted[0], 0.9 * predicted[1]]),
             nudge: if rim { [0.0; 2] } else { [0.2 * noise(index, 7), 0.2 * noise(index, 8)] },
         }
@@ -83,6 +84,7 @@ pub fn degenerate_frame() -> FrameView {
         status: CellStatus::Used,
         measured: Some([f64::NAN, 0.1]),
         predicted: Some([0.1, f64::INFINITY]),
+        polarity: None,
         held_out: Some([f64::NAN, 0.1]),
         nudge: [nudge, 0.0],
     };
@@ -186,6 +188,11 @@ pub fn report() -> InferReport {
             K_P_alpha: fitted(0.0714, 0.0031, "1/min"),
             shape_index: fitted(3.97, 0.14, ""),
         },
+        activity: Some(ActivityReport {
+            v_0: fitted(0.31, 0.04, "um min⁻¹"),
+            D_r: held(0.02, "min⁻¹"),
+            correlation: 0.93,
+        }),
         implied_moduli: None,
         naive: NaiveParameters {
             K_A: f64::NAN,

@@ -73,6 +73,7 @@ fn frame(cells: usize) -> FrameView {
             status: CellStatus::Used,
             measured: None,
             predicted: None,
+            polarity: None,
             held_out: None,
             nudge: [0.0; 2],
         }

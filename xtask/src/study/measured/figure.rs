@@ -150,6 +150,7 @@ mod tests {
                 doubts: Vec::new(),
                 verdict: None,
                 recall: None,
+                activity: None,
             }),
             message: String::new(),
             discovery: None,

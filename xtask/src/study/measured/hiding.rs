@@ -133,7 +133,7 @@ fn found(program: &Program, data: &DataSet, folder: &Path) -> Result<Found, Box<
     let mut directory = OutputDirectory::create(&input)?;
     data.save(&mut directory)?;
     directory.commit()?;
-    let Run { report, seconds, message } = program.run("infer", &input, &out)?;
+    let Run { report, seconds, message } = program.run(&["infer"], &input, &out)?;
     let report = report.ok_or(message)?;
     let unit = report["length_scale"]["value"].as_f64().ok_or("a report without a length scale")?;
     let latent =

@@ -43,6 +43,16 @@ pub struct Fit {
     pub verdict: Option<String>,
     /// Hidden cells that were found, of those that could be; `None` if the program names none.
     pub recall: Option<Recovery>,
+    /// Of cells that crawl.
+    #[serde(default)]
+    pub activity: Option<Activity>,
+}
+
+/// What `infer` reports of cells that crawl.
+#[derive(Debug, Clone, Copy, Serialize, Deserialize)]
+pub struct Activity {
+    pub v_0: Estimate,
+    pub d_r: Estimate,
 }
 
 /// An estimate and its truth.
@@ -115,7 +125,9 @@ impl fmt::Display for Record {
         let Some(fit) = &self.fit else {
             return write!(out, ", {}", self.message);
         };
-        for (name, estimate) in [("K_P α", &fit.k_p_alpha), ("P_0", &fit.p_0)] {
+        let of_model = [("K_P α", &fit.k_p_alpha), ("P_0", &fit.p_0)];
+        let of_activity = fit.activity.iter().flat_map(|own| [("v_0", &own.v_0), ("D_r", &own.d_r)]);
+        for (name, estimate) in of_model.into_iter().chain(of_activity) {
             let (error, deviation) = (100.0 * estimate.error(), estimate.deviation());
             write!(out, ", {name} {error:+.1} % ({deviation:.1} s.e.)")?;
         }

@@ -12,6 +12,9 @@ pub struct Summary {
     pub sets: usize,
     pub k_p_alpha: Errors,
     pub p_0: Errors,
+    /// Of cells that crawl.
+    pub v_0: Errors,
+    pub d_r: Errors,
     pub trustworthy: Count,
     /// Of the fits that are off, those that are called not trustworthy.
     pub flagged: Count,
@@ -59,6 +62,8 @@ impl Summary {
             sets: records.len(),
             k_p_alpha: Errors::of(fits.iter().map(|fit| &fit.k_p_alpha)),
             p_0: Errors::of(fits.iter().map(|fit| &fit.p_0)),
+            v_0: Errors::of(fits.iter().filter_map(|fit| fit.activity.as_ref()).map(|own| &own.v_0)),
+            d_r: Errors::of(fits.iter().filter_map(|fit| fit.activity.as_ref()).map(|own| &own.d_r)),
             trustworthy: Count::of(fits.iter().map(|fit| fit.trustworthy)),
             flagged: Count::of(fits.iter().filter(|fit| fit.is_off()).map(|fit| !fit.trustworthy)),
             recall: recoveries().map(|own| own.recall()).sum(),
@@ -88,12 +93,12 @@ pub fn print(summaries: &[Summary]) {
         "s",
     ];
     println!("| {} |\n|{}", HEAD.join(" | "), "---|".repeat(HEAD.len()));
+    let errors = |errors: &Errors| {
+        let [low, median, high] = quartiles(errors.all.clone()).map(|error| 100.0 * error);
+        let size = 100.0 * errors.size();
+        format!("{median:+.1} ({low:+.1} to {high:+.1}) | {size:.1} | {}", errors.covered)
+    };
     for own in summaries {
-        let errors = |errors: &Errors| {
-            let [low, median, high] = quartiles(errors.all.clone()).map(|error| 100.0 * error);
-            let size = 100.0 * errors.size();
-            format!("{median:+.1} ({low:+.1} to {high:+.1}) | {size:.1} | {}", errors.covered)
-        };
         let sets = if own.failed == 0 {
             own.sets.to_string()
         } else {
@@ -110,6 +115,13 @@ pub fn print(summaries: &[Summary]) {
             own.precision,
             own.seconds
         );
+    }
+    if summaries.iter().any(|own| own.v_0.covered.total > 0) {
+        println!("\n| data | v_0: error % | size % | covered | D_r: error % | size % | covered |");
+        println!("|{}", "---|".repeat(7));
+    }
+    for own in summaries.iter().filter(|own| own.v_0.covered.total > 0) {
+        println!("| {} | {} | {} |", own.class.words, errors(&own.v_0), errors(&own.d_r));
     }
     if summaries.iter().all(|own| own.false_findings.total == 0) {
         return;

@@ -1,7 +1,7 @@
 //! One set: made, given to the program as a user would, and compared with its truth.
 
 use super::latent;
-use super::record::{Discovery, Estimate, Fit, Record};
+use super::record::{Activity, Discovery, Estimate, Fit, Record};
 use claims::measured::{Class, View, Written};
 use serde_json::Value;
 use sha2::{Digest, Sha256};
@@ -40,14 +40,14 @@ impl Program {
     }
 
     /// Runs a command on a data set, on one thread.
-    pub fn run(&self, command: &str, data: &Path, out: &Path) -> Result<Run, Box<dyn Error>> {
+    pub fn run(&self, command: &[&str], data: &Path, out: &Path) -> Result<Run, Box<dyn Error>> {
         let report = out.join("report.json");
         if out.exists() {
             std::fs::remove_dir_all(out)?;
         }
         let begun = Instant::now();
         let Output { stderr, status, .. } = Command::new(&self.path)
-            .arg(command)
+            .args(command)
             .arg(data)
             .args(self.flags.split_whitespace())
             .args(["--threads", "1", "--quiet", "--out"])
@@ -81,13 +81,14 @@ pub fn run(
     let cells = present.rows().into_iter().filter(|row| row[0].is_finite()).count();
     let written = set.write(folder)?;
     let out = folder.join("infer");
-    let Run { report, seconds, message } = program.run("infer", &written.data, &out)?;
+    let command: &[&str] = if class.recipe.crawls { &["infer", "--active"] } else { &["infer"] };
+    let Run { report, seconds, message } = program.run(command, &written.data, &out)?;
     let fit = match report {
         Some(report) => Some(fit(&report, &written, class.recipe.view, &out)?),
         None => None,
     };
     let discovery = if discover {
-        Some(discovery(&program.run("discover", &written.data, &folder.join("discover"))?)?)
+        Some(discovery(&program.run(&["discover"], &written.data, &folder.join("discover"))?)?)
     } else {
         None
     };
@@ -105,8 +106,8 @@ pub fn run(
 }
 
 fn fit(report: &Value, written: &Written, view: View, out: &Path) -> Result<Fit, Box<dyn Error>> {
-    let estimate = |name: &str| -> Result<Estimate, Box<dyn Error>> {
-        let found = &report["parameters"][name];
+    let estimate = |of: &str, name: &str| -> Result<Estimate, Box<dyn Error>> {
+        let found = &report[of][name];
         let value = found["value"].as_f64().unwrap_or(f64::NAN);
         let ci95 = [0, 1].map(|end| found["ci95"][end].as_f64());
         let truth = *written.truth.parameters.get(name).ok_or("a parameter without a truth")?;
@@ -114,12 +115,16 @@ fn fit(report: &Value, written: &Written, view: View, out: &Path) -> Result<Fit,
     };
     let doubts = report["fit"]["doubts"].as_array().into_iter().flatten();
     Ok(Fit {
-        k_p_alpha: estimate("K_P_alpha")?,
-        p_0: estimate("P_0")?,
+        k_p_alpha: estimate("parameters", "K_P_alpha")?,
+        p_0: estimate("parameters", "P_0")?,
         trustworthy: report["fit"]["trustworthy"].as_bool().ok_or("a report without `trustworthy`")?,
         doubts: doubts.map(|doubt| doubt.as_str().map_or_else(|| doubt.to_string(), String::from)).collect(),
         verdict: report["verdict"]["kind"].as_str().map(String::from),
         recall: latent::recovery(written, view, out)?,
+        activity: match report["activity"].is_object() {
+            true => Some(Activity { v_0: estimate("activity", "v_0")?, d_r: estimate("activity", "D_r")? }),
+            false => None,
+        },
     })
 }
 

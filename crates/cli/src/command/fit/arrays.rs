@@ -34,6 +34,9 @@ pub(crate) fn write(
             }
         }
     }
+    if result.frames.iter().any(|frame| !frame.polarities.is_empty()) {
+        of_cells.push(("polarities.npy", Prepared::polarities));
+    }
     for (name, field) in of_cells {
         let fields = all(field);
         let frames = prepared.snapshots.iter().zip(&fields).map(|(snapshot, f)| (snapshot, f.as_slice()));

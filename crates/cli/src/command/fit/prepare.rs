@@ -67,6 +67,13 @@ impl Prepared {
         self.of_detections(index, predicted.map(|v| v * self.scale.velocity()).collect())
     }
 
+    /// Polarities of the cells of one frame; NaN where there is none.
+    pub fn polarities(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
+        let own = result.frames[index].polarities.iter();
+        let velocity = |p: &Option<Vector<f64>>| p.map_or(NOWHERE, |p| p * self.scale.velocity());
+        self.of_detections(index, own.map(velocity).collect())
+    }
+
     /// The data of one frame as the model predicts them, of cells or on the grid; NaN out of its reach.
     pub fn predicted_data(&self, result: &Inference, index: usize) -> Vec<Vector<f64>> {
         let observation = &self.observations[index];

@@ -85,6 +85,7 @@ pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) 
                 },
                 measured: target.map(velocity),
                 predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
+                polarity: frame.polarities.get(cell).copied().flatten().map(velocity),
                 held_out: if on_grid { None } else { frame.held_out[cell].map(velocity) },
                 nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
             }

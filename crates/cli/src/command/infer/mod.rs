@@ -1,5 +1,6 @@
 //! `voronudge infer`: parameters of the model from snapshots, by nudged inference.
 
+mod activity;
 mod answers;
 mod method;
 mod page;
@@ -20,7 +21,7 @@ use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
-use voronudge_infer::{infer, infer_tracks};
+use voronudge_infer::{Activity, infer, infer_tracks};
 use voronudge_io::{Difference, OutputDirectory};
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
@@ -36,6 +37,9 @@ pub(crate) struct Arguments {
     /// Derive velocities from tracked positions by differences, where none are given [default: fit the tracks themselves].
     #[arg(long, value_name = "central|forward|backward")]
     difference: Option<Difference>,
+    /// Let cells crawl: each has a polarity of its own that it forgets at some rate. Fits v_0 and D_r together with the model; for tracks.
+    #[arg(long)]
+    active: bool,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -99,6 +103,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         _ => (question.prepare(velocities, frames, &mut run)?, None),
     };
+    if arguments.active {
+        activity::check(movie.as_ref())?;
+        prepared.request.activity = Activity::Polarity;
+    }
     let mut progress = Progress::new(arguments.common.verbosity());
     // Windows make the data of a flow field; what a position is can be told of complete cells only.
     let understood = match (&mut movie, prepared.velocities.flow()) {
@@ -139,8 +147,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if let Some((tracks, tracked)) = &tracked {
         tracks.write(&mut out, &data, &prepared, tracked)?;
     }
-    let tracks = tracked.map(|(tracks, tracked)| tracks.report(&prepared, &result, &tracked));
-    let report = report::report(&run, &data, &prepared, &result, &answers, tracks);
+    let told = tracked.map(|(tracks, tracked)| {
+        (tracks.report(&prepared, &result, &tracked), activity::report(&data, &prepared, &tracked))
+    });
+    let report = report::report(&run, &data, &prepared, &result, &answers, told);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;

@@ -9,7 +9,7 @@ use crate::run::Run;
 use voronudge_infer::{Inference, NoiseSource, Quantity as What};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{
-    InferReport, Measurement, NaiveParameters, Nmse, Quantity, TracksReport,
+    ActivityReport, InferReport, Measurement, NaiveParameters, Nmse, Quantity, TracksReport,
 };
 
 pub(super) fn report(
@@ -18,8 +18,9 @@ pub(super) fn report(
     prepared: &Prepared,
     result: &Inference,
     answers: &Answers,
-    tracks: Option<TracksReport>,
+    tracks: Option<(TracksReport, Option<ActivityReport>)>,
 ) -> InferReport {
+    let (tracks, activity) = tracks.map_or((None, None), |(tracks, activity)| (Some(tracks), activity));
     let units = outcome::units(data);
     let scale = &prepared.scale;
     let naive = &result.naive;
@@ -34,6 +35,7 @@ pub(super) fn report(
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         parameters,
+        activity,
         implied_moduli: implied::implied(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),

@@ -58,6 +58,13 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
         let _ = writeln!(text, "{}", row.trim_end());
     }
+    for (name, own) in report.activity.iter().flat_map(|own| [("v_0", &own.v_0), ("D_r", &own.D_r)]) {
+        let [value, interval] = match own.interval() {
+            Some(ends) => interval_text(own.value, ends),
+            None => ["–".into(), "not determined".into()],
+        };
+        let _ = writeln!(text, "{name:<13} {value:>12}  {interval:<26} {:>12}  {}", "–", own.unit);
+    }
     if !is_finding {
         let _ = writeln!(text, "in brackets: a model that explains nothing has no parameters to be found");
     }

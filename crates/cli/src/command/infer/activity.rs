@@ -1,0 +1,55 @@
+//! Cells that crawl: what a fit says of their polarity.
+
+use crate::command::fit::{Prepared, PreparedTracks, outcome};
+use crate::failure::Failure;
+use voronudge_infer::{Polarity, Tracked};
+use voronudge_io::DataSet;
+use voronudge_report::infer_report::{ActivityReport, Parameter};
+
+/// Frames below which nothing goes on.
+const FEWEST_FRAMES: usize = 3;
+
+/// Refuses data in which no polarity could show.
+pub(super) fn check(movie: Option<&PreparedTracks>) -> Result<(), Failure> {
+    let problem = match movie.map(|tracks| tracks.movie.frames()) {
+        None => "--active is for tracks, and velocities are given or derived".to_owned(),
+        Some(frames) if frames < FEWEST_FRAMES => {
+            format!("--active takes tracks of three frames or more, and there are {frames} frames")
+        }
+        Some(_) => return Ok(()),
+    };
+    let hint =
+        "a polarity shows in motions that go on: give positions of three frames or more, without velocities";
+    Err(Failure::new(problem).with_hint(hint))
+}
+
+/// The polarity of the cells, in the units of the data.
+pub(super) fn report(data: &DataSet, prepared: &Prepared, tracked: &Tracked) -> Option<ActivityReport> {
+    let Polarity { speed, speed_interval, rate, rate_interval, correlation, .. } =
+        tracked.polarity.as_ref()?;
+    let (units, scale) = (outcome::units(data), &prepared.scale);
+    let parameter = |value: f64, ends: Option<[f64; 2]>, factor: f64, unit: String, words: &str| Parameter {
+        value: value * factor,
+        ci95: ends.map(|ends| ends.map(|end| end * factor)),
+        fixed: false,
+        unit,
+        words: words.into(),
+    };
+    Some(ActivityReport {
+        v_0: parameter(
+            *speed,
+            Some(*speed_interval),
+            scale.velocity(),
+            units.powers(1, -1),
+            "v_0 is the root mean square of the velocities that the cells have of themselves",
+        ),
+        D_r: parameter(
+            *rate,
+            *rate_interval,
+            1.0 / scale.time,
+            units.powers(0, -1),
+            "D_r is the rate at which cells forget the direction of their polarity",
+        ),
+        correlation: *correlation,
+    })
+}

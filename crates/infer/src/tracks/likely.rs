@@ -1,0 +1,241 @@
+//! Which noise levels and which memory of the polarities are likely, and how well they are known.
+
+use super::memory::{Memory, NONE};
+use super::objective::MovieObjective;
+use super::states::States;
+use super::surface::{CLOSE, ENOUGH, POINTS, Surface};
+use crate::noise::{
+    LARGEST_POSITION_NOISE, Likelihood, Restricted, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE,
+};
+use crate::normal_equations::NormalEquations;
+use crate::{Error, KnownNoise, NoiseLevels};
+use nalgebra::{Matrix3, Vector3};
+use voronudge_geometry::Vector;
+
+/// x and log σ_v²/σ_p²: at least and at most.
+const TIMES: [f64; 2] = [1e-4, 20.0];
+const RATIO: [f64; 2] = [-9.0, 6.0];
+
+/// The likelihood is a function of log (x + c): what lasts far longer than a movie is one and the same.
+const LASTING: f64 = 0.01;
+
+/// Spacings of log k, log (x + c) and the log of the ratio at which the likelihood is looked at.
+const SPACINGS: [f64; 3] = [1.0, 0.5, 1.0];
+
+/// Quantile of the normal distribution for intervals of 95 %, and the square of it.
+const QUANTILE: f64 = 1.959_963_984_540_054;
+const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
+
+/// Half the width of an interval of log v₀ from which on its ends are looked for one by one; in how many steps.
+const BROAD: f64 = 0.5;
+const BISECTIONS: usize = 8;
+
+/// Step in log (x + c) for a derivative.
+const STEP: f64 = 0.01;
+
+/// Polarity of the cells of a movie, in the units of the movie.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Polarity {
+    /// Speed v₀: the root mean square of the polarity.
+    pub speed: f64,
+    /// Its 95 % interval.
+    pub speed_interval: [f64; 2],
+    /// Rate D_r = 1/τ at which the polarity is forgotten.
+    pub rate: f64,
+    /// Its 95 % interval; `None` if the data do not show that there is a polarity.
+    pub rate_interval: Option<[f64; 2]>,
+    /// Correlation of the mean polarity of an interval with that of the next.
+    pub correlation: f64,
+}
+
+/// What stands for x in the likelihood.
+fn of_times(x: f64) -> f64 {
+    (x + LASTING).ln()
+}
+
+/// Levels and memory of greatest likelihood near the present ones, and how well they are known.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Likely {
+    pub levels: NoiseLevels,
+    pub memory: Memory,
+    /// Covariance of log k, log (x + c) and the log of the ratio.
+    covariance: Matrix3<f64>,
+    /// Derivatives of log σ_v² by these, and its variance at given ones.
+    of_variance: (Vector3<f64>, f64),
+    /// For the next round.
+    pub looked: Looked,
+}
+
+/// −2 log of the likelihood and log σ_v² about a point, in units of the spacings.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Looked {
+    at: Vector3<f64>,
+    criterion: Surface,
+    log_variance: Surface,
+}
+
+impl MovieObjective<'_> {
+    /// Noise levels and memory of greatest restricted likelihood near the present ones: one step of Newton's method on points around them,
+    /// with second derivatives as they were if these are given.
+    pub(super) fn likely(
+        &self,
+        equations: &mut NormalEquations,
+        components: f64,
+        known: KnownNoise,
+        earlier: Option<Looked>,
+    ) -> Result<Likely, Error> {
+        let memory = self.memory.unwrap_or(Memory::first());
+        let ratio = 2.0 * (self.levels.velocity / memory.speed).ln();
+        let within =
+            |value: f64, [least, most]: [f64; 2], spacing: f64| value.clamp(least + spacing, most - spacing);
+        let centre = [
+            self.levels.spring().ln(),
+            within(of_times(memory.times), TIMES.map(of_times), SPACINGS[1]),
+            within(ratio, RATIO, SPACINGS[2]),
+        ];
+        let at = |point: [f64; 3]| {
+            let [log_k, times, ratio] = [0, 1, 2].map(|k| centre[k] + point[k] * SPACINGS[k]);
+            [log_k, times_of(times), ratio.clamp(RATIO[0], RATIO[1]).exp()]
+        };
+        let points: Vec<Vector3<f64>> = match earlier {
+            None => POINTS.iter().map(|point| (*point).into()).collect(),
+            Some(_) => POINTS[..ENOUGH].iter().map(|point| Vector3::from(*point) * CLOSE).collect(),
+        };
+        let mut values = Vec::with_capacity(points.len());
+        for point in points {
+            values.push(self.likelihood(equations, components, known, at(point.into()))?);
+        }
+        let at_centre = Vector3::from_fn(|k, _| centre[k] / SPACINGS[k]);
+        let criteria: Vec<f64> = values.iter().map(|own| own.criterion).collect();
+        let variances: Vec<f64> = values.iter().map(|own| own.variance.ln()).collect();
+        let (criterion, log_variance) = match earlier {
+            None => (Surface::new(&criteria), Surface::new(&variances)),
+            Some(Looked { at, criterion, log_variance }) => (
+                Surface::again(&criteria, criterion.bend).updated(&criterion, at_centre - at),
+                Surface::again(&variances, log_variance.bend),
+            ),
+        };
+        let held = [known.position.is_some() && known.velocity.is_some(), false, false];
+        let step = criterion.newton(held);
+        let [log_k, times, ratio] = at(step.into());
+        let velocity = known
+            .velocity
+            .unwrap_or_else(|| (0.5 * log_variance.at(step)).exp())
+            .max(SMALLEST_VELOCITY_NOISE);
+        let position = known.position.unwrap_or_else(|| {
+            (velocity / (0.5 * log_k).exp()).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)
+        });
+        let found = Memory { times, speed: velocity / ratio.sqrt(), ..memory };
+        let scales = Matrix3::from_diagonal(&Vector3::from(SPACINGS));
+        let slope = Vector3::from_fn(|k, _| {
+            if known.velocity.is_some() { 0.0 } else { log_variance.slope[k] / SPACINGS[k] }
+        });
+        let likely = Likely {
+            levels: NoiseLevels { position, velocity },
+            memory: found,
+            covariance: scales * criterion.covariance(held) * scales,
+            of_variance: (slope, 2.0 / components),
+            looked: Looked { at: at_centre, criterion, log_variance },
+        };
+        Ok(likely)
+    }
+
+    /// The likelihood at some log k, x and σ_v²/σ_p².
+    fn likelihood(
+        &self,
+        equations: &mut NormalEquations,
+        components: f64,
+        known: KnownNoise,
+        [log_k, times, ratio]: [f64; 3],
+    ) -> Result<Likelihood, Error> {
+        let memory = self.memory.unwrap_or(Memory::first());
+        let speed = self.levels.velocity / ratio.sqrt();
+        let objective = MovieObjective { memory: Some(Memory { times, speed, ..memory }), ..*self };
+        equations.hold(&objective.stiffness(), objective.weight_of_outset());
+        let own = Restricted { equations, components, known }.likelihood(log_k)?;
+        let of_lengths = ratio / self.movie.interval().powi(2);
+        let determinant = self.states.polarities.log_determinant(times, of_lengths, memory.free);
+        Ok(Likelihood { criterion: own.criterion - determinant, ..own })
+    }
+
+    /// The polarities of the cells of each frame, as velocities; empty where cells do not crawl.
+    pub(super) fn polarities(&self, displacements: &[f64]) -> Vec<Vec<Option<Vector<f64>>>> {
+        let of_cell = |block: &u32| {
+            (*block != NONE).then(|| States::vector(displacements, *block as usize) / self.movie.interval())
+        };
+        let of_frame = |frame: usize| {
+            let blocks = self.states.polarities.block.get(frame);
+            blocks.into_iter().flatten().map(of_cell).collect()
+        };
+        (0..self.movie.frames()).map(of_frame).collect()
+    }
+
+    /// The polarity of the cells at a fit, about which the problem is linearised.
+    pub(super) fn polarity(
+        &self,
+        equations: &mut NormalEquations,
+        components: f64,
+        known: KnownNoise,
+    ) -> Result<Option<Polarity>, Error> {
+        let Some(memory) = self.memory else { return Ok(None) };
+        let Likely { covariance, of_variance: (of_variance, further), .. } =
+            self.likely(equations, components, known, None)?;
+        let interval = self.movie.interval();
+        let own = memory.root_mean_square();
+        let log_times = of_times(memory.times);
+        let longer = Memory { times: times_of(log_times + STEP), ..memory };
+        let mut slope = 0.5 * of_variance;
+        slope[1] += (longer.root_mean_square() / own).ln() / STEP;
+        slope[2] -= 0.5;
+        let spread = QUANTILE * (slope.dot(&(covariance * slope)) + 0.25 * further).max(0.0).sqrt();
+        let speed_interval = match spread < BROAD {
+            true => [own * (-spread).exp(), own * spread.exp()],
+            false => self.slowest_and_fastest(equations, components, known, memory)?.map(|share| own * share),
+        };
+        let error = QUANTILE * covariance[(1, 1)].max(0.0).sqrt();
+        let [slowest, fastest] = [-error, error].map(|aside| (log_times + aside).exp() - LASTING);
+        Ok(Some(Polarity {
+            speed: own,
+            speed_interval,
+            rate: memory.times / interval,
+            rate_interval: (speed_interval[0] > 0.0)
+                .then(|| [slowest.max(0.0) / interval, fastest.min(TIMES[1]) / interval]),
+            correlation: memory.correlation(),
+        }))
+    }
+
+    /// Between which multiples of v₀ the likelihood falls by less than an interval of 95 % allows, k and memory held.
+    fn slowest_and_fastest(
+        &self,
+        equations: &mut NormalEquations,
+        components: f64,
+        known: KnownNoise,
+        memory: Memory,
+    ) -> Result<[f64; 2], Error> {
+        let own = 2.0 * (self.levels.velocity / memory.speed).ln();
+        // −2 log L and the multiple of v₀ at some log σ_v²/σ_p².
+        let mut at = |ratio: f64| -> Result<(f64, f64), Error> {
+            let point = [self.levels.spring().ln(), memory.times, ratio.exp()];
+            let Likelihood { criterion, variance } = self.likelihood(equations, components, known, point)?;
+            Ok((criterion, (variance / ratio.exp()).sqrt() / memory.speed))
+        };
+        let least = at(own)?.0;
+        let none = at(RATIO[1])?.0 - least < LESS_LIKELY;
+        let mut ends = [1.0; 2];
+        for (share, mut outside) in ends.iter_mut().zip([RATIO[1], RATIO[0]]) {
+            let mut inside = own;
+            for _ in 0..BISECTIONS {
+                let middle = 0.5 * (inside + outside);
+                let (criterion, multiple) = at(middle)?;
+                *share = multiple;
+                if criterion - least < LESS_LIKELY { inside = middle } else { outside = middle }
+            }
+        }
+        Ok([if none { 0.0 } else { ends[0].min(1.0) }, ends[1].max(1.0)])
+    }
+}
+
+/// x for what stands for it.
+fn times_of(log: f64) -> f64 {
+    (log.exp() - LASTING).clamp(TIMES[0], TIMES[1])
+}

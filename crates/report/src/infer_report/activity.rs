@@ -1,0 +1,16 @@
+//! Cells that crawl.
+
+use super::Parameter;
+use serde::Serialize;
+
+/// The polarity of the cells: a velocity that each has of itself.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "the names of the file")]
+pub struct ActivityReport {
+    /// Speed of self-propulsion.
+    pub v_0: Parameter,
+    /// Rate of rotational diffusion.
+    pub D_r: Parameter,
+    /// Correlation of the mean polarity over the time between two frames with that over the next.
+    pub correlation: f64,
+}
