@@ -20,7 +20,8 @@ const GROWTH: f64 = 1.5;
 /// Shows how far a command has come once it takes longer than a second, and knows whether the user wants it to stop. Where there is no terminal
 /// to draw a bar on, it says so in lines, ever more rarely.
 pub(crate) struct Progress {
-    bar: ProgressBar,
+    /// Where there is no terminal, it counts but is not drawn.
+    bar: Option<ProgressBar>,
     lines: Option<Lines>,
     begun: Instant,
     interrupted: Arc<AtomicBool>,
@@ -39,32 +40,33 @@ impl Progress {
             }
         });
         let lines = (!std::io::stderr().is_terminal()).then(Lines::new);
-        Self { bar: ProgressBar::hidden(), lines, begun: Instant::now(), interrupted, verbosity }
+        Self { bar: None, lines, begun: Instant::now(), interrupted, verbosity }
     }
 
     /// Reports a step out of a total; tells whether to go on.
     pub fn step(&mut self, stage: &str, done: u64, total: u64) -> ControlFlow<()> {
-        if self.verbosity == Verbosity::Normal && self.bar.is_hidden() && self.begun.elapsed() > PATIENCE {
-            self.bar = ProgressBar::new(total).with_elapsed(self.begun.elapsed());
+        let elapsed = self.begun.elapsed();
+        if self.verbosity == Verbosity::Normal && self.bar.is_none() && elapsed > PATIENCE {
+            let bar = ProgressBar::new(total).with_elapsed(elapsed);
             let style =
                 ProgressStyle::with_template("{msg:24} {bar:30} {pos}/{len}  {elapsed} elapsed{left}");
             if let Ok(style) = style {
-                self.bar.set_style(style.with_key("left", time_left));
+                bar.set_style(style.with_key("left", time_left));
             }
+            self.bar = Some(bar);
         }
-        // The time left is that of a stage; one that begins again is timed anew.
-        if self.bar.message() != stage || done < self.bar.position() {
-            self.bar.set_message(stage.to_owned());
-            self.bar.set_position(done);
-            self.bar.reset_eta();
-        }
-        self.bar.set_length(total);
-        self.bar.set_position(done);
-        let elapsed = self.begun.elapsed();
-        if let Some(lines) = self.lines.as_mut().filter(|_| self.verbosity == Verbosity::Normal)
-            && lines.are_due(elapsed)
-        {
-            eprintln!("{}", line(stage, [done, total], elapsed, self.bar.eta()));
+        if let Some(bar) = &self.bar {
+            // The time left is that of a stage; one that begins again is timed anew.
+            if bar.message() != stage || done < bar.position() {
+                bar.set_message(stage.to_owned());
+                bar.set_position(done);
+                bar.reset_eta();
+            }
+            bar.set_length(total);
+            bar.set_position(done);
+            if self.lines.as_mut().is_some_and(|lines| lines.are_due(elapsed)) {
+                eprintln!("{}", line(stage, [done, total], elapsed, bar.eta()));
+            }
         }
         if self.interrupted.load(Ordering::SeqCst) {
             ControlFlow::Break(())
@@ -80,7 +82,7 @@ impl Progress {
 
     /// Removes the bar.
     pub fn finish(&self) {
-        self.bar.finish_and_clear();
+        self.bar.iter().for_each(ProgressBar::finish_and_clear);
     }
 }
 

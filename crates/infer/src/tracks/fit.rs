@@ -147,7 +147,7 @@ impl<'a, 'w> Begun<'a, 'w> {
             watch,
             rule: Rule::Trapezoid,
             levels: first,
-            memory: (states.polarities.count() > 0).then(Memory::first),
+            memory: (states.polarities.count() > 0).then_some(Memory::FIRST),
             value: f64::INFINITY,
             status: Status::StepLimit,
             steps: 0,
@@ -203,15 +203,17 @@ impl<'a> Course<'a, '_> {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
             let Optimum { parameters, mut equations, .. } = optimum;
-            let components = self.objective(states).explained_components(&parameters)?;
+            let objective = self.objective(states);
             let (wanted, memory) = match self.memory {
                 Some(_) => {
-                    let noise = self.request.noise;
-                    let likely = self.objective(states).likely(&mut equations, components, noise, looked)?;
+                    let placed = objective.place(&parameters)?;
+                    let components = objective.explained_components(&placed, &parameters);
+                    let likely = objective.likely(&mut equations, components, self.request.noise, looked)?;
                     looked = Some(likely.looked);
-                    (likely.levels, Some(likely.memory))
+                    let free = objective.free_share(&placed, &parameters, likely.memory.speed);
+                    (likely.levels, Some(Memory { free, ..likely.memory }))
                 }
-                None => (self.likely_levels(&equations, components, &mut last)?, None),
+                None => (self.likely_levels(&objective, &parameters, &equations, &mut last)?, None),
             };
             let longer = memory.zip(self.memory).map_or(0.0, |(next, present)| next.change(present));
             let next = self.tightened(wanted, how);
@@ -219,10 +221,6 @@ impl<'a> Course<'a, '_> {
                 + (next.velocity / self.levels.velocity).ln().abs()
                 + longer;
             (self.levels, self.memory) = (next, memory);
-            if let Some(memory) = memory {
-                let free = self.objective(states).free_share(&parameters, memory.speed)?;
-                self.memory = Some(Memory { free, ..memory });
-            }
             start = (parameters, Some(self.renewed(states, equations)));
             if change < how.enough {
                 break;
@@ -292,15 +290,19 @@ impl<'a> Course<'a, '_> {
     /// More likely levels, where cells do not crawl.
     fn likely_levels(
         &self,
+        objective: &MovieObjective<'_>,
+        parameters: &[f64],
         equations: &NormalEquations,
-        components: f64,
         earlier: &mut Option<f64>,
     ) -> Result<NoiseLevels, Error> {
         match self.request.noise {
             KnownNoise { position: Some(position), velocity: Some(velocity) } => {
                 Ok(NoiseLevels { position, velocity })
             }
-            known => Restricted { equations, components, known }.towards(self.levels, SPACING, earlier),
+            known => {
+                let components = objective.explained_components(&objective.place(parameters)?, parameters);
+                Restricted { equations, components, known }.towards(self.levels, SPACING, earlier)
+            }
         }
     }
 

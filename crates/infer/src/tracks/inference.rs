@@ -80,6 +80,7 @@ pub fn infer_tracks(
     let mut tracked = tracked(&objective, &found);
     let coefficients = space.coefficients(free);
     let means = mean_velocities(&objective, &placed, displacements);
+    let components = objective.explained_components(&placed, &found.parameters);
     let weights = motion_weights(states, objective.weights(&placed, &found.parameters));
     let missed = velocities.iter().zip(&states.motions).filter_map(|(seen, motion)| {
         let mean = means[motion.interval].get(&motion.track)?;
@@ -129,7 +130,6 @@ pub fn infer_tracks(
         used,
         total,
     };
-    let components = objective.explained_components(&found.parameters)?;
     tracked.polarity = objective.polarity(&mut equations, components, request.noise)?;
     Ok((inference, tracked))
 }

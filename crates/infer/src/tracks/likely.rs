@@ -84,7 +84,7 @@ impl MovieObjective<'_> {
         known: KnownNoise,
         earlier: Option<Looked>,
     ) -> Result<Likely, Error> {
-        let memory = self.memory.unwrap_or(Memory::first());
+        let memory = self.memory.unwrap_or(Memory::FIRST);
         let ratio = 2.0 * (self.levels.velocity / memory.speed).ln();
         let within =
             |value: f64, [least, most]: [f64; 2], spacing: f64| value.clamp(least + spacing, most - spacing);
@@ -148,7 +148,7 @@ impl MovieObjective<'_> {
         known: KnownNoise,
         [log_k, times, ratio]: [f64; 3],
     ) -> Result<Likelihood, Error> {
-        let memory = self.memory.unwrap_or(Memory::first());
+        let memory = self.memory.unwrap_or(Memory::FIRST);
         let speed = self.levels.velocity / ratio.sqrt();
         let objective = MovieObjective { memory: Some(Memory { times, speed, ..memory }), ..*self };
         equations.hold(&objective.stiffness(), objective.weight_of_outset());

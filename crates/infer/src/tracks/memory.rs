@@ -19,9 +19,6 @@ use super::objective::MovieObjective;
 use super::states::{Instant, Motion};
 use crate::stiffness::Stiffness;
 
-/// Before anything is known.
-const FIRST: Memory = Memory { times: 0.1, speed: 0.5, free: 1.0 };
-
 /// Marks a cell without a polarity.
 pub(super) const NONE: u32 = u32::MAX;
 
@@ -38,9 +35,7 @@ pub(crate) struct Memory {
 
 impl Memory {
     /// Before anything is known.
-    pub fn first() -> Self {
-        FIRST
-    }
+    pub const FIRST: Self = Self { times: 0.1, speed: 0.5, free: 1.0 };
 
     /// v₀, the root mean square of the polarity.
     pub fn root_mean_square(self) -> f64 {

@@ -89,10 +89,9 @@ impl<'a> MovieObjective<'a> {
     }
 
     /// The same without the components of motions that nothing explains.
-    pub fn explained_components(&self, parameters: &[f64]) -> Result<f64, Error> {
-        let placed = self.place(parameters)?;
-        let missing: f64 = self.weights(&placed, parameters).iter().map(|weight| 2.0 * (1.0 - weight)).sum();
-        Ok((self.components() as f64 - missing).max(1.0))
+    pub fn explained_components(&self, placed: &Placed<'_>, parameters: &[f64]) -> f64 {
+        let missing: f64 = self.weights(placed, parameters).iter().map(|weight| 2.0 * (1.0 - weight)).sum();
+        (self.components() as f64 - missing).max(1.0)
     }
 
     /// What Φ is expected to be if model and noise levels are right.

@@ -15,7 +15,6 @@ use super::memory::First;
 use super::objective::{MovieObjective, Placed};
 use super::row_builder::{IDENTITY, RowBuilder};
 use super::states::{Place, States};
-use crate::Error;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -120,10 +119,10 @@ impl MovieObjective<'_> {
 
     /// Which share of the variance of the first polarities is left by what is expected at a point, if a component has the standard deviation
     /// `speed`.
-    pub(super) fn free_share(&self, parameters: &[f64], speed: f64) -> Result<f64, Error> {
-        let expected = self.expected_polarities(&self.place(parameters)?, self.split(parameters).1);
+    pub(super) fn free_share(&self, placed: &Placed<'_>, parameters: &[f64], speed: f64) -> f64 {
+        let expected = self.expected_polarities(placed, self.split(parameters).1);
         let count = expected.len().max(1) as f64;
         let mean = 0.5 * expected.iter().map(Vector::norm_squared).sum::<f64>() / count;
-        Ok((1.0 - mean / (speed * self.movie.interval()).powi(2)).max(LEAST_FREE))
+        (1.0 - mean / (speed * self.movie.interval()).powi(2)).max(LEAST_FREE)
     }
 }

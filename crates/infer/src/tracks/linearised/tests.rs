@@ -38,7 +38,7 @@ fn objective<'a>(
     rule: Rule,
 ) -> MovieObjective<'a> {
     let levels = NoiseLevels { position: 0.02, velocity: 0.1 };
-    let memory = (states.polarities.count() > 0).then(Memory::first);
+    let memory = (states.polarities.count() > 0).then_some(Memory::FIRST);
     MovieObjective { movie, states, rule, structure, space, levels, memory }
 }
 
