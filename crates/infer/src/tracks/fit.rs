@@ -5,6 +5,7 @@ use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
+use super::settling::{FINAL, PASSING, ROUGH, Settling};
 use super::states::States;
 use crate::inference::deviation;
 use crate::least_squares::invert;
@@ -36,25 +37,6 @@ const FALL: f64 = 0.4;
 /// Least error of the dynamics over the usual interval, in units of that of a position. Less would change no parameter, but hold cells so
 /// stiffly to the model that a fit cannot get past changes of neighbours.
 const LEAST_SHARE: f64 = 0.15;
-
-/// How far fit and noise levels are brought together.
-#[derive(Debug, Clone, Copy)]
-struct Settling {
-    /// Rounds of both at most.
-    rounds: u64,
-    /// Steps of the optimiser in a round.
-    steps: u64,
-    /// Change of log σ that counts as none.
-    enough: f64,
-    /// Whether the error of the dynamics falls in each round where cells crawl, be it likely or not: with a loose one, fits end that write
-    /// off motions which a polarity explains.
-    tightens: bool,
-}
-
-/// At first; on the way; at the end.
-const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7, tightens: true };
-const PASSING: Settling = Settling { rounds: 1, steps: 2, enough: f64::INFINITY, tightens: false };
-const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06, tightens: false };
 
 /// How often the error of the dynamics is raised to what a fit leaves, and by how many standard deviations that may exceed what is expected.
 const LOOSENINGS: usize = 5;

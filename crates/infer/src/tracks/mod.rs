@@ -30,6 +30,7 @@ mod row_builder;
 mod rule;
 #[cfg(test)]
 mod sample;
+mod settling;
 mod states;
 mod surface;
 mod tangent;
