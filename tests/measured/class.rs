@@ -26,6 +26,8 @@ pub struct Recipe {
     pub motion: Motion,
     /// Whether cells crawl: each has a velocity of its own whose direction diffuses.
     pub crawls: bool,
+    /// Whether something acts that the model lacks: an effect that changes from seed to seed.
+    pub lacks: bool,
 }
 
 /// How much of a tissue is seen.
@@ -82,8 +84,14 @@ const NONE: Flaws = Flaws { missed: 0.0, merged: 0.0, split: 0.0, gaps: 0.0, bre
 /// Frames of a film of tracks.
 const FRAMES: usize = 6;
 
-const COMPLETE: Recipe =
-    Recipe { view: View::Whole, point: Point::Site, flaws: NONE, motion: Motion::Velocities, crawls: false };
+const COMPLETE: Recipe = Recipe {
+    view: View::Whole,
+    point: Point::Site,
+    flaws: NONE,
+    motion: Motion::Velocities,
+    crawls: false,
+    lacks: false,
+};
 
 const fn missed(missed: f64) -> Recipe {
     Recipe { flaws: Flaws { missed, ..NONE }, ..COMPLETE }
@@ -105,8 +113,12 @@ const fn class(name: &'static str, words: &'static str, recipe: Recipe) -> Class
     Class { name, words, recipe }
 }
 
+/// What may act that the model lacks, in the order of the seeds.
+pub const EFFECTS: [&str; 6] =
+    ["nematic_stress", "drift", "alpha_area", "odd_nematic_stress", "p0_gradient", "nonlinear_area"];
+
 /// All classes of the study.
-pub const CLASSES: [Class; 22] = [
+pub const CLASSES: [Class; 23] = [
     class("complete", "complete, periodic", COMPLETE),
     class("open", "open field of view", Recipe { view: View::Window, ..COMPLETE }),
     class("missed-2", "2 % not detected", missed(0.02)),
@@ -144,6 +156,11 @@ pub const CLASSES: [Class; 22] = [
             flaws: Flaws { missed: 0.01, gaps: 0.03, breaks: 0.03, ..NONE },
             ..tracks(0.1)
         },
+    ),
+    class(
+        "tracks-effect",
+        "tracks, steps of 0.1 ℓ₀, an effect of 15 %",
+        Recipe { lacks: true, ..tracks(0.1) },
     ),
     class("active-05", "crawling cells, 6 frames, steps of 0.05 ℓ₀", crawling(FRAMES, 0.05)),
     class("active-10", "crawling cells, 6 frames, steps of 0.1 ℓ₀", crawling(FRAMES, 0.1)),

@@ -3,11 +3,15 @@
 use super::Motion;
 use std::error::Error;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_model::{Model, Parameters};
+use voronudge_model::{Column, Effect, Environment, Model, Parameters};
 use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator, recommended_time_step};
 
 /// Time before the first frame, in 1/K_P.
 const SETTLING: f64 = 10.0;
+/// Time between the onset of an effect and the first frame, in 1/K_P.
+const SETTLING_OF_EFFECT: f64 = 1.0;
+/// Root mean square velocity of each coefficient of an effect, of that of the tissue without it.
+const SHARE: f64 = 0.15;
 /// Steps of the integration between frames are this much finer than those recommended, at least.
 const FINER: f64 = 4.0;
 /// Steps of the integration between two frames, at least.
@@ -37,6 +41,7 @@ impl Film {
         side: f64,
         parameters: &Parameters<f64>,
         driving: Driving,
+        effect: Option<&str>,
         motion: Motion,
     ) -> Result<Self, Box<dyn Error>> {
         let cell_box = PeriodicBox::new([side; 2])?;
@@ -48,6 +53,12 @@ impl Film {
         let recommended = recommended_time_step(parameters, 1.0);
         for _ in 0..(SETTLING / recommended).ceil() as usize {
             simulation.step(recommended)?;
+        }
+        if let Some(effect) = effect {
+            simulation = with_effect(&simulation, Domain::Periodic(cell_box), effect)?;
+            for _ in 0..(SETTLING_OF_EFFECT / recommended).ceil() as usize {
+                simulation.step(recommended)?;
+            }
         }
         let frame = |simulation: &Simulation| Frame {
             sites: simulation.positions().iter().map(|site| cell_box.wrap(*site)).collect(),
@@ -77,6 +88,20 @@ impl Film {
         }
         Ok(film)
     }
+}
+
+/// The tissue with an effect of so large a share of its velocities.
+fn with_effect(before: &Simulation, domain: Domain, effect: &str) -> Result<Simulation, Box<dyn Error>> {
+    let effect = Effect::from_id(effect).ok_or("no such effect")?;
+    let mut model = before.model().clone();
+    for column in effect.columns(&Environment::default(), domain)? {
+        let Column::Term(term) = column else { return Err("not a term".into()) };
+        let lone = Model::single(term);
+        let alone = Simulation::new(before.positions().to_vec(), domain, lone)?;
+        let size = root_mean_square(alone.velocities());
+        model = model.with(column, SHARE * root_mean_square(before.velocities()) / size);
+    }
+    Ok(Simulation::new(before.positions().to_vec(), domain, model)?)
 }
 
 fn mean_norm<'a>(pairs: impl ExactSizeIterator<Item = (&'a Vector<f64>, &'a Vector<f64>)>) -> f64 {

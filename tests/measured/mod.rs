@@ -14,7 +14,7 @@ mod polygon;
 mod truth;
 mod writing;
 
-pub use class::{CLASSES, Class, Flaws, Motion, Point, Recipe, View};
+pub use class::{CLASSES, Class, EFFECTS, Flaws, Motion, Point, Recipe, View};
 pub use flow::Window;
 pub use truth::{Hidden, Kind, Truth};
 pub use writing::Written;
@@ -101,7 +101,8 @@ impl Class {
             View::Whole => (0.0, side),
             View::Window => (UNSEEN, side + 2.0 * UNSEEN),
         };
-        let film = Film::new(whole, &parameters, driving, self.recipe.motion)?;
+        let effect = self.recipe.lacks.then(|| EFFECTS[seed as usize % EFFECTS.len()]);
+        let film = Film::new(whole, &parameters, driving, effect, self.recipe.motion)?;
         let mut rng = Pcg64::seed_from_u64(self.stream(seed));
         let seen_from = Vector::new(origin, origin);
         let mut detector = Detector::new(&film, &self.recipe, noise, &mut rng)?;
@@ -126,6 +127,7 @@ impl Class {
             class: self.name.into(),
             seed,
             parameters: named(&parameters, &driving),
+            effect: effect.or(self.recipe.crawls.then_some("polarity")).map(String::from),
             noise: [noise.position, noise.velocity],
             mean_step: film.mean_step,
             field_of_view: [0.0, 0.0, side, side],

@@ -13,6 +13,9 @@ pub struct Truth {
     pub seed: u64,
     /// Parameters of the model, by the names of reports.
     pub parameters: BTreeMap<String, f64>,
+    /// What acts that the base model lacks, by the names of reports.
+    #[serde(default)]
+    pub effect: Option<String>,
     /// σ_r of a coordinate, and σ_v of a component in units of the root mean square velocity.
     pub noise: [f64; 2],
     /// Mean distance that a cell moves from the first frame to the second; 0 of a single frame.

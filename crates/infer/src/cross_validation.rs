@@ -56,6 +56,11 @@ impl Folds {
         Self { of_frames, folds, velocities }
     }
 
+    /// From squared errors and sums of squares alone.
+    pub fn of_squares(of_frames: bool, folds: Vec<(f64, f64)>) -> Self {
+        Self { of_frames, folds, velocities: Vec::new() }
+    }
+
     pub fn count(&self) -> usize {
         self.folds.len()
     }

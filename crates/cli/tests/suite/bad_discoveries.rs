@@ -62,7 +62,10 @@ fn a_statement_on_velocities_that_are_not_given_is_refused() {
 #[test]
 fn frames_without_velocities_are_refused() {
     let facts = ["positions.npy, frame 4", "no cell has a velocity"];
-    assert_refused("discover", &fixture("open-field"), &["--frames", "4"], &facts);
+    let flags = ["--frames", "4", "--difference", "forward"];
+    assert_refused("discover", &fixture("open-field"), &flags, &facts);
+    let facts = ["positions.npy, frame 4", "tracks take two frames or more"];
+    assert_refused("discover", &fixture("open-field"), &flags[..2], &facts);
 }
 
 #[test]
@@ -95,4 +98,11 @@ fn external_fields_that_are_none_are_refused() {
     vectors[[1, 2, 1]] = f64::NAN;
     data.write_array("field.npy", &vectors);
     refused(&all, &["field.npy", "1 vectors are missing"]);
+}
+
+#[test]
+fn what_is_for_velocities_is_refused_of_tracks() {
+    for [option, value] in [["--null-sets", "3"], ["--background", "1"], ["--predict", "."]] {
+        assert_refused("discover", &fixture("open-field"), &[option, value], &[option, "only tracks"]);
+    }
 }

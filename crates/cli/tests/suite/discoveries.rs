@@ -168,13 +168,29 @@ fn the_page_needs_nothing_from_elsewhere() {
     }
 }
 
+/// Positions alone, of cells that move as the model says: the tracks themselves are searched.
+#[test]
+fn tracks_that_lack_nothing_lead_to_nothing() {
+    let out = discover(&fixture("open-field"), "");
+    let told = report(out.path());
+    assert_valid(&told);
+    assert_eq!(told["verdict"], "nothing_missing");
+    assert!(told["measurement"]["tracks"]["tracks"].as_u64() > Some(100));
+    let reason = |id: &str| {
+        let all = told["ranking"].as_array().unwrap();
+        all.iter().find(|own| own["effect"] == id).unwrap()["reason"].as_str().unwrap().to_owned()
+    };
+    assert!(reason("persistence").contains("polarity"));
+    assert!(reason("polarity").contains("no more than chance"));
+    assert!(out.file("before_trajectories.npy").is_file());
+}
+
 #[test]
 fn earlier_velocities_never_share_time_with_those_explained() {
     // Positions alone: forward differences of frames 0 to 3, of which frame 0 has no past.
     let data = fixture("open-field");
     let out = Folder::new();
-    let line =
-        "discover --effects persistence,alignment --null-sets 0 --position-noise 1% --velocity-noise 60%";
+    let line = "discover --effects persistence,alignment --difference forward --null-sets 0 --position-noise 1% --velocity-noise 60%";
     let outcome = succeed(line, &[("", &data), ("--out", out.path())]);
     let warned =
         |text: &str| assert!(outcome.stderr.contains(text), "\"{text}\" is not in {}", outcome.stderr);
@@ -190,7 +206,8 @@ fn earlier_velocities_never_share_time_with_those_explained() {
     let residual: Array3<f64> = read(&out.file("after_residual_velocities.npy"));
     assert_eq!(residual.dim().0, 3);
     // Without effects that remember, every frame with a velocity is used.
-    let out = discover(&data, "--effects drift --null-sets 0 --position-noise 1% --velocity-noise 60%");
+    let flags = "--effects drift --difference forward --null-sets 0 --position-noise 1% --velocity-noise 60%";
+    let out = discover(&data, flags);
     let told = report(out.path());
     assert_eq!(told["cells"]["frames"], serde_json::json!([0, 1, 2, 3]));
     assert!(told["predictors"].is_null());

@@ -57,6 +57,11 @@ pub struct Structure {
 }
 
 impl Structure {
+    /// Nothing was tested.
+    pub(crate) fn untested() -> Self {
+        Self { tests: Vec::new(), p: 1.0 }
+    }
+
     /// Whether the residual has structure at the level of 5 % for all tests together.
     pub fn is_significant(&self) -> bool {
         self.p < LEVEL

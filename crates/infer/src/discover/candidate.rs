@@ -4,6 +4,9 @@ use crate::Observation;
 use voronudge_model::effect::Kind;
 use voronudge_model::{Column, Effect};
 
+/// Frames below which nothing goes on.
+const FEWEST_FRAMES: usize = 3;
+
 /// An effect on offer.
 #[derive(Debug, Clone)]
 pub(super) struct Candidate {
@@ -16,6 +19,11 @@ impl Candidate {
     /// Whether its columns are there whatever the coefficients are.
     pub fn is_linear(&self) -> bool {
         self.columns.iter().flatten().all(|column| matches!(column, Column::Term(_)))
+    }
+
+    /// Whether it is the polarity of cells, which has no columns.
+    pub fn is_polarity(&self) -> bool {
+        self.effect.is_state()
     }
 
     /// Whether it may be named as what is missing.
@@ -43,4 +51,32 @@ pub(super) fn candidates(frames: &[Observation], effects: &[&'static Effect]) ->
         Candidate { effect, columns: shared }
     };
     effects.iter().map(of).collect()
+}
+
+/// The same for tracks, which are followed from frame to frame: a polarity is an unknown state of each cell, what a velocity may be is no
+/// question, and what would need the velocities of all cells at once is not followed.
+pub(super) fn candidates_of_tracks(frames: &[Observation], effects: &[&'static Effect]) -> Vec<Candidate> {
+    let mut all = candidates(frames, effects);
+    for own in &mut all {
+        own.columns = match own.effect.id {
+            _ if own.is_polarity() && frames.len() < FEWEST_FRAMES => {
+                Err("it shows in how cells go on, which takes three frames or more")
+            }
+            _ if own.is_polarity() => Ok(Vec::new()),
+            "persistence" => Err("with tracks, what persists is the polarity of the cells: see there"),
+            "alignment" => Err(
+                "with tracks, polarities of neighbours are not coupled; --difference central asks of velocities",
+            ),
+            "time_lag" => Err("cells are followed from frame to frame: there is no lag"),
+            "flow_gain" | "flow_blur" => Err("there is no flow field"),
+            "centroid_bias" => {
+                Err("where in a cell its position is belongs to the measurement, and is determined with it")
+            }
+            _ if !own.is_linear() => {
+                Err("it is not followed from frame to frame; --difference central asks of velocities")
+            }
+            _ => continue,
+        };
+    }
+    all
 }

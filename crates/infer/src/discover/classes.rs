@@ -1,6 +1,7 @@
 //! What was added against everything that could stand in its place.
 
 use super::chance::Chance;
+use super::crawling::Crawling;
 use super::lineup::added_places;
 use super::result::Selected;
 use super::steps::{Model, Setting};
@@ -34,10 +35,10 @@ pub(super) struct Tested {
     pub candidate: usize,
     pub p: f64,
     pub adjusted_p: f64,
-    statistic: f64,
-    size: f64,
+    pub(super) statistic: f64,
+    pub(super) size: f64,
     /// Other candidates in its place: lead over them in the linear problem, and their coefficients.
-    others: Vec<(usize, f64, Vec<f64>)>,
+    pub(super) others: Vec<(usize, f64, Vec<f64>)>,
 }
 
 /// Tests each effect added, with all others in the model.
@@ -51,6 +52,10 @@ pub(super) fn without_each(
     let mut all = Vec::with_capacity(model.added.len());
     for (candidate, places) in model.added.iter().zip(&places.effects) {
         let others: Vec<usize> = model.added.iter().copied().filter(|k| k != candidate).collect();
+        if let Some(crawling) = Crawling::of(setting, *candidate, model) {
+            all.push(crawling.tested(setting, base, &others));
+            continue;
+        }
         let own_lineup;
         let lineup = if others.is_empty() {
             &base.lineup
@@ -100,17 +105,17 @@ pub(super) fn selection(
     watch: &mut Watch<'_>,
 ) -> Result<Selection, Error> {
     let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
-    let excess = Excess::new(setting, base, model)?;
+    let excess = Excess::new(setting, base, model, watch)?;
     let mut selected = Vec::with_capacity(tested.len());
     for (tested, places) in tested.iter().zip(&places.effects) {
         let candidate = &setting.candidates[tested.candidate];
         selected.push(Selected {
             effect: candidate.effect,
             columns: candidate.columns.clone().unwrap_or_default(),
-            coefficients: places
-                .iter()
-                .map(|k| model.inference.effects[k - Quantity::COEFFICIENTS])
-                .collect(),
+            coefficients: match Crawling::of(setting, tested.candidate, model) {
+                Some(crawling) => crawling.estimates(),
+                None => places.iter().map(|k| model.inference.effects[k - Quantity::COEFFICIENTS]).collect(),
+            },
             adjusted_p: tested.adjusted_p,
             share_of_excess: (tested.statistic / excess.before).clamp(0.0, 1.0),
             size: tested.size,
@@ -118,7 +123,15 @@ pub(super) fn selection(
             partial: partial(setting, model, places)?,
         });
     }
-    Ok(Selection { selected, share: excess.share(0.0), largest_share: excess.share(1.645) })
+    let share = excess.share(0.0);
+    if setting.movie.is_some() {
+        // Their noise is that of the model without the effects: it tells shares of each other, not of all.
+        let sum: f64 = tested.iter().map(|own| own.statistic).sum();
+        for (own, tested) in selected.iter_mut().zip(tested) {
+            own.share_of_excess = share * tested.statistic / sum.max(f64::MIN_POSITIVE);
+        }
+    }
+    Ok(Selection { selected, share, largest_share: excess.share(1.645) })
 }
 
 /// Effects that could as well stand in the place of one that was added.
@@ -149,6 +162,10 @@ fn class(
 
 /// What an effect predicts beyond the terms of the base model, and that with what the whole model leaves, in each target.
 fn partial(setting: &Setting<'_>, model: &Model, places: &[usize]) -> Result<Vec<[Vector<f64>; 2]>, Error> {
+    // Along tracks there is no velocity to set against another.
+    if model.followed.is_some() {
+        return Ok(Vec::new());
+    }
     let frames = setting.frames;
     let objective = model.objective(frames);
     let coefficients = model.inference.coefficients.as_slice();
@@ -180,9 +197,9 @@ struct Excess {
 }
 
 impl Excess {
-    fn new(setting: &Setting<'_>, base: &Model, model: &Model) -> Result<Self, Error> {
+    fn new(setting: &Setting<'_>, base: &Model, model: &Model, watch: &mut Watch<'_>) -> Result<Self, Error> {
         let before =
-            setting.refined(base, model.inference.noise, &[], None)? - base.inference.expected_objective;
+            setting.at_levels(base, model.inference.noise, watch)? - base.inference.expected_objective;
         let after = model.inference.objective - model.inference.expected_objective;
         let deviation = (2.0 * model.inference.expected_objective).sqrt();
         Ok(Self { before: before.max(before - after).max(f64::MIN_POSITIVE), after, deviation })

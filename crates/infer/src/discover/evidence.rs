@@ -3,10 +3,10 @@
 use super::result::{Budget, Fitted, HeldOut};
 use super::steps::Model;
 use crate::cross_validation::Folds;
-use crate::diagnostics::{CellData, ResidualField, diagnose};
+use crate::diagnostics::{CellData, ResidualField, Structure, diagnose};
 use crate::doubts::examine_residuals;
 use crate::whitening::whitened_residuals;
-use crate::{Error, Inference, Observation, Velocities};
+use crate::{Error, FrameResult, Inference, Observation, Velocities};
 use voronudge_geometry::{Vector, areas};
 
 /// Areas and velocities of cells.
@@ -17,7 +17,7 @@ type Moving = (Vec<f64>, Vec<Vector<f64>>);
 pub(super) struct Evidence<'a> {
     pub frames: &'a [Observation],
     pub identities: Option<&'a [Vec<i64>]>,
-    /// Error of the base model at the measured positions.
+    /// Error of the base model: see [`error`].
     pub base_error: f64,
 }
 
@@ -25,14 +25,23 @@ impl Evidence<'_> {
     pub fn of(&self, model: &Model, folds: Option<&Folds>) -> Result<Fitted, Error> {
         let frames = self.frames;
         let mut inference = model.inference.clone();
-        let residuals = whitened_residuals(frames, &model.request, &inference)?;
-        inference.doubts.extend(examine_residuals(frames, &model.request, &inference, &residuals)?);
+        let tracked = model.followed.as_ref().map(|followed| followed.tracked.clone());
+        let residuals = match tracked {
+            Some(_) => along_tracks(frames, &inference),
+            None => {
+                let residuals = whitened_residuals(frames, &model.request, &inference)?;
+                inference.doubts.extend(examine_residuals(frames, &model.request, &inference, &residuals)?);
+                residuals
+            }
+        };
         let places: Vec<Vec<Vector<f64>>> = frames
             .iter()
             .map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect())
             .collect();
         let cells: Vec<Option<Moving>> = frames.iter().map(cell_data).collect();
-        let fields = (0..frames.len())
+        // The cells of the last frame of tracks go nowhere.
+        let frames_that_move = frames.iter().rposition(|frame| frame.targets().next().is_some());
+        let fields = (0..frames_that_move.map_or(0, |last| last + 1))
             .map(|k| {
                 let domain = frames[k].tessellation.domain();
                 let field = ResidualField::new(k, &places[k], &residuals[k], domain, 1.0)?;
@@ -48,22 +57,49 @@ impl Evidence<'_> {
             };
             frames.iter().zip(all).map(own).collect()
         });
-        let diagnostics = diagnose(&fields, identities.as_deref(), model.request.seed);
+        let mut diagnostics = diagnose(&fields, identities.as_deref(), model.request.seed);
+        if tracked.is_some() {
+            // These residuals are correlated by the errors of the positions that they share.
+            diagnostics.structure = Structure::untested();
+        }
         let held_out = folds.map(HeldOut::of);
-        Ok(Fitted { budget: self.budget(&inference), held_out, residuals, diagnostics, inference })
+        let budget = self.budget(&inference, error(model, folds));
+        Ok(Fitted { budget, held_out, residuals, diagnostics, inference, tracked })
     }
 
-    fn budget(&self, inference: &Inference) -> Budget {
+    fn budget(&self, inference: &Inference, error: f64) -> Budget {
         let components: usize = self.frames.iter().map(Observation::components).sum();
         let velocity_noise = components as f64 * inference.noise.velocity.powi(2) / inference.total;
         Budget {
             position_noise: inference.nmse.noise_floor - velocity_noise,
             velocity_noise,
             base: 1.0 - self.base_error,
-            effects: self.base_error - inference.nmse.un_nudged,
-            unexplained: inference.nmse.un_nudged - inference.nmse.noise_floor,
+            effects: self.base_error - error,
+            unexplained: error - inference.nmse.noise_floor,
         }
     }
+}
+
+/// What a model leaves of the squared velocities: at the measured positions, or, of tracks, on motions held out, because a polarity is fitted to
+/// each cell.
+pub(super) fn error(model: &Model, folds: Option<&Folds>) -> f64 {
+    match (&model.followed, folds) {
+        (Some(_), Some(folds)) => folds.error()[0],
+        _ => model.inference.nmse.un_nudged,
+    }
+}
+
+/// What the motions along fitted tracks differ by from those seen, in units of the root mean square of a component.
+fn along_tracks(frames: &[Observation], inference: &Inference) -> Vec<Vec<Vector<f64>>> {
+    let of_frame = |(frame, fitted): (&Observation, &FrameResult)| -> Vec<Vector<f64>> {
+        frame.targets().map(|(datum, v)| v - fitted.predicted_data[datum]).collect()
+    };
+    let mut all: Vec<Vec<Vector<f64>>> = frames.iter().zip(&inference.frames).map(of_frame).collect();
+    let sum: f64 = all.iter().flatten().map(Vector::norm_squared).sum();
+    let count = 2 * all.iter().map(Vec::len).sum::<usize>();
+    let unit = (count as f64 / sum.max(f64::MIN_POSITIVE)).sqrt();
+    all.iter_mut().flatten().for_each(|rest| *rest *= unit);
+    all
 }
 
 /// Areas and velocities of the cells with a target; nothing for velocities on a grid.

@@ -1,17 +1,21 @@
 //! The model grows: what it lacks is added, and what does not stand the test is taken back.
 
 use super::classes::{Tested, without_each};
+use super::crawling::{self, Crawling};
 use super::null_data;
 use super::ranking::Ranking;
-use super::result::NullSets;
+use super::result::{NullSets, Ranked};
 use super::steps::{Model, Setting};
 use crate::Error;
-use crate::cross_validation::Split;
+use crate::cross_validation::{Folds, Split};
 use crate::predictive::Predictive;
 use crate::search::Watch;
 
 /// Effects refused because of velocities held out before the search ends.
 const MOST_REFUSED: usize = 3;
+
+/// Fall of −2 log L, linearised about a fit without polarities, below which none is fitted: what is better than chance has more.
+const LEAST_HINT: f64 = 6.0;
 
 /// A search under way.
 pub(super) struct Growth<'a> {
@@ -19,8 +23,52 @@ pub(super) struct Growth<'a> {
     pub base: &'a Model,
     pub ranking: Ranking,
     split: &'a Split,
-    /// How probable the base model makes velocities held out, where that can be said.
-    by_base: Option<Predictive>,
+    /// What the base model says of data held out.
+    by_base: Unseen,
+}
+
+/// What a model says of data that its fit has not seen: how probable they are, or, of tracks, the errors.
+struct Unseen {
+    probability: Option<Predictive>,
+    errors: Option<Folds>,
+}
+
+impl Unseen {
+    fn new(
+        setting: &Setting<'_>,
+        model: &Model,
+        split: &Split,
+        watch: &mut Watch<'_>,
+    ) -> Result<Self, Error> {
+        if let Some(followed) = &model.followed {
+            return Ok(Self { probability: None, errors: followed.held_out.clone() });
+        }
+        let (objective, point) = (model.objective(setting.frames), model.point(setting.frames));
+        Ok(Self { probability: Predictive::new(&objective, &point, split, watch)?, errors: None })
+    }
+
+    /// By how much more probable another model makes them.
+    fn likelihood_gain(&self, after: &Self) -> Option<[f64; 2]> {
+        self.probability.as_ref().zip(after.probability.as_ref()).map(|(before, after)| before.gain(after))
+    }
+
+    /// Why another model is refused, if it is: they are not more probable, or, where that cannot be said, its errors are larger. (A small
+    /// effect does not show in errors of single motions, which are mostly those of the positions.)
+    fn reason_against(&self, after: &Self) -> Option<&'static str> {
+        let is_no_better = self.likelihood_gain(after).is_some_and(|[value, error]| value <= error);
+        let errors = self.errors.as_ref().zip(after.errors.as_ref());
+        let is_worse = errors.is_some_and(|(before, after)| {
+            let [value, error] = before.gain(after);
+            value < -error
+        });
+        match (is_no_better, is_worse) {
+            (true, _) => {
+                Some("velocities held out do not become more probable by more than the standard error")
+            }
+            (_, true) => Some("motions held out are predicted worse by more than the standard error"),
+            _ => None,
+        }
+    }
 }
 
 /// A model with effects added.
@@ -38,29 +86,45 @@ impl<'a> Growth<'a> {
         split: &'a Split,
         watch: &mut Watch<'_>,
     ) -> Result<Self, Error> {
-        let by_base = predictive(&setting, base, split, watch)?;
+        let by_base = Unseen::new(&setting, base, split, watch)?;
         Ok(Self { setting, base, ranking: Ranking::new(&setting, &base.lineup), split, by_base })
     }
 
     /// Adds what the model lacks, one effect after another, as long as velocities held out become more probable, and takes
     /// back what others make superfluous.
     pub fn grow(&mut self, watch: &mut Watch<'_>) -> Result<Option<Grown>, Error> {
-        let mut grown: Option<(Model, Option<Predictive>)> = None;
+        let mut grown: Option<(Model, Unseen)> = None;
         let mut refused: Vec<usize> = Vec::new();
         while refused.len() < MOST_REFUSED
             && grown.as_ref().map_or(0, |(model, _)| model.added.len()) < self.setting.search.most_effects
         {
             let (current, before) =
                 grown.as_ref().map_or((self.base, &self.by_base), |(model, own)| (model, own));
-            let Some(candidate) = self.setting.lacking(current, &refused, watch)? else { break };
+            let (candidate, hinted) = self.lacking(current, &refused, watch)?;
+            let Some(candidate) = candidate else {
+                hinted.into_iter().for_each(|ranked| self.ranking.put(ranked));
+                break;
+            };
             let added = current.added.iter().copied().chain([candidate]).collect();
             let model = self.setting.fit(added, watch)?;
-            let after = predictive(&self.setting, &model, self.split, watch)?;
-            if gain(before, &after).is_some_and(|[value, error]| value <= error) {
-                self.refuse(
-                    candidate,
-                    "velocities held out do not become more probable by more than the standard error",
-                );
+            let after = Unseen::new(&self.setting, &model, self.split, watch)?;
+            let against = before.reason_against(&after);
+            let crawling = Crawling::of(&self.setting, candidate, &model);
+            if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(hinted) {
+                let is_chance = ranked.adjusted_p >= self.setting.search.level;
+                let is_tried = self.setting.candidates[candidate].is_polarity();
+                if is_tried && !is_chance && against.is_none() {
+                    // What goes on from frame to frame made the other tests too sure of themselves.
+                    self.ranking = Ranking::new(&self.setting, &model.lineup);
+                }
+                self.ranking.put(ranked);
+                if is_tried && is_chance {
+                    refused.push(candidate);
+                    continue;
+                }
+            }
+            if let Some(reason) = against {
+                self.refuse(candidate, reason);
                 refused.push(candidate);
                 continue;
             }
@@ -92,7 +156,26 @@ impl<'a> Growth<'a> {
 
     /// By how much velocities held out become more probable with effects than without, and the standard error.
     pub fn likelihood_gain(&self, with: &Model, watch: &mut Watch<'_>) -> Result<Option<[f64; 2]>, Error> {
-        Ok(gain(&self.by_base, &predictive(&self.setting, with, self.split, watch)?))
+        Ok(self.by_base.likelihood_gain(&Unseen::new(&self.setting, with, self.split, watch)?))
+    }
+
+    /// What a model lacks most: the polarity of cells, if more speaks for it than for any other candidate, because it makes all other tests
+    /// too sure of themselves; otherwise the best of these. With the polarity as it ranks beside the base model, to first order.
+    fn lacking(
+        &self,
+        model: &Model,
+        refused: &[usize],
+        watch: &mut Watch<'_>,
+    ) -> Result<(Option<usize>, Option<Ranked>), Error> {
+        let setting = self.setting;
+        let best = setting.lacking(model, refused, watch)?;
+        let open = |candidate: &usize| !model.added.contains(candidate) && !refused.contains(candidate);
+        let Some(polarity) = setting.polarity().filter(open) else { return Ok((best, None)) };
+        let hint = setting.hint_of_polarity(model)?;
+        let ranked = model.added.is_empty().then(|| crawling::hinted(&setting, polarity, hint));
+        let projected = model.lineup.beyond(&model.added);
+        let rival = best.map_or(0.0, |candidate| projected.score(candidate).statistic);
+        Ok((if hint >= LEAST_HINT && hint > rival { Some(polarity) } else { best }, ranked))
     }
 
     /// Takes back the effect with the largest p as long as it is chance.
@@ -126,18 +209,4 @@ impl<'a> Growth<'a> {
     fn refuse(&mut self, candidate: usize, reason: &'static str) {
         self.ranking.refuse(self.setting.candidates[candidate].effect, reason);
     }
-}
-
-/// How probable a model makes velocities held out.
-fn predictive(
-    setting: &Setting<'_>,
-    model: &Model,
-    split: &Split,
-    watch: &mut Watch<'_>,
-) -> Result<Option<Predictive>, Error> {
-    Predictive::new(&model.objective(setting.frames), &model.point(setting.frames), split, watch)
-}
-
-fn gain(before: &Option<Predictive>, after: &Option<Predictive>) -> Option<[f64; 2]> {
-    before.as_ref().zip(after.as_ref()).map(|(before, after)| before.gain(after))
 }

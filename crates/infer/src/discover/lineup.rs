@@ -13,9 +13,10 @@
 use super::candidate::Candidate;
 use crate::objective::Objective;
 use crate::quantity::BASE;
+use crate::tracks::{Followed, Movie};
 use crate::uncertainty::nudges;
 use crate::whitened::Whitened;
-use crate::{Error, Inference, NoiseSource, Observation, Request};
+use crate::{CoefficientSpace, Error, Inference, NoiseSource, Observation, Request};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
@@ -112,10 +113,19 @@ pub(super) fn added_places(model: &Structure, candidates: &[Candidate], added: &
     Places { structure, model, effects }
 }
 
-impl Lineup {
-    /// Linearises about a fit of the base model with some candidates added. `request` is that of the base model.
-    pub fn new(
-        frames: &[Observation],
+/// A fit of the base model with some candidates added as one of a model with all candidates, most of them zero.
+struct Widened {
+    structure: Structure,
+    space: CoefficientSpace,
+    coefficients: Vec<f64>,
+    /// Where the columns of the base model and of each candidate are among the free directions.
+    model: Vec<usize>,
+    groups: Vec<Vec<usize>>,
+}
+
+impl Widened {
+    /// `request` is that of the base model.
+    fn new(
         request: &Request,
         candidates: &[Candidate],
         added: &[usize],
@@ -130,6 +140,30 @@ impl Lineup {
             let pairs = groups[*candidate].iter().zip(from);
             pairs.for_each(|(to, from)| coefficients[*to] = result.coefficients[*from]);
         }
+        // Free directions of the base model come first; each effect has one of its own.
+        let base = space.base_dimension();
+        let free = |coefficient: &usize| base + coefficient - BASE;
+        Ok(Self {
+            model: (0..base).chain(own.iter().filter(|c| **c >= BASE).map(free)).collect(),
+            groups: groups.iter().map(|group: &Vec<usize>| group.iter().map(free).collect()).collect(),
+            structure,
+            space,
+            coefficients,
+        })
+    }
+}
+
+impl Lineup {
+    /// Linearises about a fit of the base model with some candidates added. `request` is that of the base model.
+    pub fn new(
+        frames: &[Observation],
+        request: &Request,
+        candidates: &[Candidate],
+        added: &[usize],
+        result: &Inference,
+    ) -> Result<Self, Error> {
+        let Widened { structure, space, coefficients, model, groups } =
+            Widened::new(request, candidates, added, result)?;
         let mut at = space.nearest(&coefficients);
         at.extend(nudges(frames, result).concat());
         let objective = Objective { frames, structure: &structure, space: &space, levels: result.noise };
@@ -140,18 +174,38 @@ impl Lineup {
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         let p = space.dimension();
         let Whitened { free: information, mixed: score, data, .. } = Whitened::sum(&parts, p);
-        // Free directions of the base model come first; each effect has one of its own.
-        let base = space.base_dimension();
-        let free = |coefficient: &usize| base + coefficient - BASE;
         Ok(Self {
             information,
             score,
             data,
             sizes: equations.frames.iter().map(|f| f.free_normal() / result.total).sum(),
-            model: (0..base).chain(own.iter().filter(|c| **c >= BASE).map(free)).collect(),
-            groups: groups.iter().map(|group: &Vec<usize>| group.iter().map(free).collect()).collect(),
+            model,
+            groups,
             components: objective.components() as f64,
-            variance: (result.noise_source == NoiseSource::Given).then(|| result.noise.velocity.powi(2)),
+            variance: given_variance(result),
+        })
+    }
+
+    /// The same about a fit of tracks, in which the places of the cells at all frames, and their polarities, are eliminated.
+    pub fn of_tracks(
+        (movie, followed): (&Movie, &Followed),
+        request: &Request,
+        candidates: &[Candidate],
+        added: &[usize],
+        result: &Inference,
+    ) -> Result<Self, Error> {
+        let Widened { structure, space, coefficients, model, groups } =
+            Widened::new(request, candidates, added, result)?;
+        let beside = followed.beside(movie, &structure, &space, &coefficients)?;
+        Ok(Self {
+            information: beside.information,
+            score: beside.gradient,
+            data: beside.value,
+            sizes: beside.normal / result.total,
+            model,
+            groups,
+            components: beside.components,
+            variance: given_variance(result),
         })
     }
 
@@ -201,6 +255,10 @@ impl Lineup {
     pub fn left(&self) -> f64 {
         self.components - self.model.len() as f64
     }
+}
+
+fn given_variance(result: &Inference) -> Option<f64> {
+    (result.noise_source == NoiseSource::Given).then(|| result.noise.velocity.powi(2))
 }
 
 /// The inverse of a scaled positive matrix on the directions that are not degenerate, and their number.

@@ -12,6 +12,7 @@
 mod candidate;
 mod chance;
 mod classes;
+mod crawling;
 mod evidence;
 mod growth;
 mod lineup;
@@ -31,8 +32,9 @@ pub use transfer::{Absent, Transfer};
 
 use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
 use crate::search::Watch;
+use crate::tracks::Movie;
 use crate::{CrossValidation, Error, Observation};
-use candidate::candidates;
+use candidate::{candidates, candidates_of_tracks};
 use classes::{Selection, selection};
 use evidence::Evidence;
 use growth::{Grown, Growth};
@@ -52,35 +54,52 @@ const MOST_BLOCKS: usize = 3;
 /// [`Error`] if the base model cannot be fitted or the caller stops.
 pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) -> Result<Discovery, Error> {
     let offered = candidates(frames, &search.candidates);
-    let setting = Setting { frames, search, candidates: &offered };
-    let mut watch = Watch { observe };
-    let base = setting.fit(Vec::new(), &mut watch)?;
+    searched(Setting { frames, movie: None, search, candidates: &offered }, &mut Watch { observe })
+}
+
+/// The same for cells followed through time: their tracks are fitted themselves, and the polarity of cells that crawl is a candidate, an
+/// unknown state of each.
+///
+/// # Errors
+/// [`Error`] if the base model cannot be fitted or the caller stops.
+pub fn discover_in_tracks(movie: &Movie, search: &Search, observe: Observer<'_>) -> Result<Discovery, Error> {
+    let frames = movie.observations()?;
+    let offered = candidates_of_tracks(&frames, &search.candidates);
+    let setting = Setting { frames: &frames, movie: Some(movie), search, candidates: &offered };
+    searched(setting, &mut Watch { observe })
+}
+
+fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Error> {
+    let Setting { frames, search, .. } = setting;
+    let base = setting.fit(Vec::new(), watch)?;
     let split = Split::new(frames, blocks(frames));
     let testable = base.lineup.left() >= base.lineup.number_of_columns() as f64;
-    let mut growth = Growth::new(setting, &base, &split, &mut watch)?;
+    let mut growth = Growth::new(setting, &base, &split, watch)?;
     let mut null_sets = NullSets::default();
     let mut grown = None;
     if testable {
-        grown = growth.grow(&mut watch)?;
+        grown = growth.grow(watch)?;
         if let Some(unconfirmed) = grown {
-            null_sets = null_data::searched(&setting, &base, &unconfirmed.tested, &mut watch)?;
-            grown = growth.confirm(unconfirmed, &null_sets, &mut watch)?;
+            null_sets = null_data::searched(&setting, &base, &unconfirmed.tested, watch)?;
+            grown = growth.confirm(unconfirmed, &null_sets, watch)?;
         }
     }
-    let base_folds = folds(&setting, &base, &split, &mut watch)?;
-    let base_error = base.inference.nmse.un_nudged;
+    let base_folds = folds(&setting, &base, &split, watch)?;
+    let base_error = evidence::error(&base, base_folds.as_ref());
     let evidence = Evidence { frames, identities: search.identities.as_deref(), base_error };
     let before = evidence.of(&base, base_folds.as_ref())?;
     let (mut after, mut selected) = (before.clone(), Selection::default());
     let (mut gain, mut likelihood_gain) = (None, None);
     if let Some(Grown { model, tested }) = &grown {
-        let own_folds = folds(&setting, model, &split, &mut watch)?;
+        let own_folds = folds(&setting, model, &split, watch)?;
         after = evidence.of(model, own_folds.as_ref())?;
-        selected = selection(&setting, &base, model, tested, &mut watch)?;
+        selected = selection(&setting, &base, model, tested, watch)?;
         gain = base_folds.as_ref().zip(own_folds.as_ref()).map(|(base, own)| base.gain(own));
-        likelihood_gain = growth.likelihood_gain(model, &mut watch)?;
+        likelihood_gain = growth.likelihood_gain(model, watch)?;
     }
-    let description = if testable { describe(&growth, &split, &mut watch)? } else { None };
+    // Where something goes on in time, what describes it in space alone says little.
+    let describes = testable && (setting.movie.is_none() || grown.is_none());
+    let description = if describes { describe(&growth, &split, watch)? } else { None };
     let mut ranking = growth.ranking;
     ranking.settle(&selected);
     let last = grown.as_ref().map_or(&base, |grown| &grown.model);
@@ -120,6 +139,9 @@ fn folds(
     split: &Split,
     watch: &mut Watch<'_>,
 ) -> Result<Option<Folds>, Error> {
+    if let Some(followed) = &model.followed {
+        return Ok(followed.held_out.clone());
+    }
     match setting.search.fit.cross_validation {
         CrossValidation::Done => {
             let frames = setting.frames;

@@ -26,6 +26,8 @@ pub(super) fn searched(
 ) -> Result<NullSets, Error> {
     let in_doubt = tested.iter().any(|own| own.adjusted_p >= CLEAR);
     let count = match setting.search.null_sets {
+        // Tracks are not made up.
+        _ if setting.movie.is_some() => 0,
         Some(count) => count,
         None if in_doubt && base.inference.used <= LARGE => SETS,
         None => 0,

@@ -16,7 +16,7 @@ pub(super) struct Ranking {
 }
 
 impl Ranking {
-    /// Scores against the base model.
+    /// Scores beside the fit of a model that lacks all candidates with columns.
     pub fn new(setting: &Setting<'_>, lineup: &Lineup) -> Self {
         let projected = lineup.beyond(&[]);
         let chance = Chance::new(&projected, &setting.named(&[]), setting.search.fit.seed);
@@ -53,6 +53,13 @@ impl Ranking {
         candidates
             .sort_by(|a, b| a.p.total_cmp(&b.p).then(per_coefficient(b).total_cmp(&per_coefficient(a))));
         Self { candidates, single_p }
+    }
+
+    /// Puts in what is known of a candidate by another test than the score.
+    pub fn put(&mut self, own: Ranked) {
+        self.candidates.retain(|other| other.effect.id != own.effect.id);
+        let place = self.candidates.partition_point(|other| other.p < own.p);
+        self.candidates.insert(place, own);
     }
 
     /// Marks a candidate that was tried and refused.

@@ -2,7 +2,7 @@
 
 use crate::cross_validation::Folds;
 use crate::diagnostics::Diagnostics;
-use crate::{Estimate, Inference, Progress, Request};
+use crate::{Estimate, Inference, Progress, Request, Tracked};
 use std::ops::ControlFlow;
 use voronudge_model::{Column, Effect};
 
@@ -110,7 +110,10 @@ pub struct Fitted {
     pub held_out: Option<HeldOut>,
     /// What the squared velocities are made of.
     pub budget: Budget,
-    /// The whitened residual: of unit variance and without correlations if nothing is missing. One entry per target.
+    /// Of tracks: what their fit found beside.
+    pub tracked: Option<Tracked>,
+    /// The whitened residual: of unit variance and without correlations if nothing is missing. One entry per target. Of tracks: what their
+    /// motions differ by from those seen, of unit variance, correlated by the errors of positions that they share.
     pub residuals: Vec<Vec<nalgebra::Vector2<f64>>>,
     /// What the whitened residual looks like.
     pub diagnostics: Diagnostics,

@@ -6,10 +6,11 @@ use super::lineup::{Lineup, Score, added_places};
 use super::result::Search;
 use crate::objective::Objective;
 use crate::search::{Watch, refine};
+use crate::tracks::{Followed, Movie, follow};
 use crate::uncertainty::nudges;
 use crate::{
-    CoefficientSpace, CrossValidation, Error, Examination, Inference, NoiseLevels, Observation, Request,
-    infer,
+    Activity, CoefficientSpace, CrossValidation, Error, Examination, Inference, NoiseLevels, Observation,
+    Request, infer,
 };
 
 /// Fall of `−2 log L` by which a candidate may be behind the first and is still refitted with it.
@@ -28,6 +29,8 @@ const LARGE: usize = 4000;
 #[derive(Clone, Copy)]
 pub(super) struct Setting<'a> {
     pub frames: &'a [Observation],
+    /// The tracks of which these are the frames, if these are what is fitted.
+    pub movie: Option<&'a Movie>,
     pub search: &'a Search,
     pub candidates: &'a [Candidate],
 }
@@ -39,6 +42,8 @@ pub(super) struct Model {
     pub inference: Inference,
     /// All candidates beside it.
     pub lineup: Lineup,
+    /// Of tracks: where their fit has come to.
+    pub followed: Option<Followed>,
     space: CoefficientSpace,
 }
 
@@ -62,9 +67,15 @@ impl Setting<'_> {
     fn request(&self, added: &[usize]) -> Request {
         let base = &self.search.fit;
         let structure = added_places(&base.structure, self.candidates, added).structure;
+        let crawls = added.iter().any(|candidate| self.candidates[*candidate].is_polarity());
         Request {
             structure,
-            cross_validation: CrossValidation::Skipped,
+            activity: if crawls { Activity::Polarity } else { base.activity },
+            // That of tracks is part of their fit.
+            cross_validation: match self.movie {
+                Some(_) => base.cross_validation,
+                None => CrossValidation::Skipped,
+            },
             // Models that are kept are examined with their evidence.
             examination: Examination::Skipped,
             ..base.clone()
@@ -74,19 +85,25 @@ impl Setting<'_> {
     /// Fits the base model with candidates added.
     pub fn fit(&self, added: Vec<usize>, watch: &mut Watch<'_>) -> Result<Model, Error> {
         let request = self.request(&added);
-        let inference = infer(self.frames, &request, watch.observe)?;
-        self.model(added, request, inference)
+        let Some(movie) = self.movie else {
+            let inference = infer(self.frames, &request, watch.observe)?;
+            return self.model(added, request, inference);
+        };
+        let (inference, followed) = follow(movie, &request, watch)?;
+        let base = &self.search.fit;
+        let lineup = Lineup::of_tracks((movie, &followed), base, self.candidates, &added, &inference)?;
+        Ok(Model { space: request.space()?, added, request, inference, lineup, followed: Some(followed) })
     }
 
     /// A fit with all candidates beside it.
     pub fn model(&self, added: Vec<usize>, request: Request, inference: Inference) -> Result<Model, Error> {
         let lineup = Lineup::new(self.frames, &self.search.fit, self.candidates, &added, &inference)?;
-        Ok(Model { space: request.space()?, added, request, inference, lineup })
+        Ok(Model { space: request.space()?, added, request, inference, lineup, followed: None })
     }
 
-    /// Whether there are too many cells to refit candidates that are close to each other.
+    /// Whether it takes too long to refit candidates that are close to each other.
     pub fn is_large(&self) -> bool {
-        self.frames.iter().map(|frame| frame.positions.len()).sum::<usize>() > LARGE
+        self.movie.is_some() || self.frames.iter().map(|frame| frame.positions.len()).sum::<usize>() > LARGE
     }
 
     /// Candidates that are descriptions and can be tested.
@@ -146,6 +163,29 @@ impl Setting<'_> {
             0
         };
         Ok(scores.get(chosen).map(|(candidate, _)| *candidate))
+    }
+
+    /// The polarity of cells, if it is a candidate.
+    pub fn polarity(&self) -> Option<usize> {
+        self.candidates.iter().position(|own| own.is_polarity() && own.columns.is_ok())
+    }
+
+    /// By how much −2 log L falls at least if the cells of a model crawl: an approximation. Zero if there are no tracks.
+    pub fn hint_of_polarity(&self, model: &Model) -> Result<f64, Error> {
+        match (self.movie, &model.followed) {
+            (Some(movie), Some(followed)) => followed.hint_of_polarity(movie, &model.request, &model.space),
+            _ => Ok(0.0),
+        }
+    }
+
+    /// The least Φ/σ_v² of a model at other noise levels.
+    pub fn at_levels(&self, model: &Model, levels: NoiseLevels, watch: &mut Watch<'_>) -> Result<f64, Error> {
+        match (self.movie, &model.followed) {
+            (Some(movie), Some(followed)) => {
+                followed.at_levels(movie, &model.request.structure, &model.space, levels, watch)
+            }
+            _ => self.refined(model, levels, &model.added, None),
+        }
     }
 
     /// Φ/σ_v² at given noise levels, refitted from a fit with those of its candidates that are kept, and a new one with the

@@ -1,11 +1,12 @@
 //! Tests of the search on a small tissue.
 
-use super::candidate::candidates;
+use super::candidate::{candidates, candidates_of_tracks};
 use super::steps::Setting;
-use super::{Search, Verdict, discover};
+use super::{Fate, Search, Verdict, discover, discover_in_tracks};
 use crate::coefficients::PREFERRED_AREA;
 use crate::sample::observation;
 use crate::search::Watch;
+use crate::tracks::sample::Filmed;
 use crate::{Constraints, CrossValidation, KnownNoise, Observation, Quantity, Request};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
@@ -51,7 +52,7 @@ fn the_score_is_that_of_the_dense_problem() {
     let search = search(&["alpha_area", "shear", "drift", "size_friction"]);
     let frames = [drifting(9)];
     let offered = candidates(&frames, &search.candidates);
-    let setting = Setting { frames: &frames, search: &search, candidates: &offered };
+    let setting = Setting { frames: &frames, movie: None, search: &search, candidates: &offered };
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
     let base = setting.fit(Vec::new(), &mut Watch { observe: &mut silent }).unwrap();
     let projected = base.lineup.beyond(&[]);
@@ -97,4 +98,51 @@ fn the_score_is_that_of_the_dense_problem() {
         assert!((score.statistic - expected).abs() < 1e-7 * expected.max(1.0), "{}", candidate.effect.id);
         assert_eq!(score.dimension, columns.len());
     }
+}
+
+/// Cells that crawl are found to, with the speed that they have; a candidate beside takes nothing of it. Cells that do not are not, and what
+/// has a memory of velocities is not asked of tracks.
+#[test]
+fn tracks_tell_whether_cells_crawl() {
+    let filmed = Filmed { size: [100, 5], step: 0.1, error: 0.01, seed: 5 };
+    let mut search = search(&["polarity", "persistence", "drift", "alpha_area", "nematic_stress"]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Done;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+    let (movie, [_, speed, _]) = filmed.movie_of_crawling(2.0, 1.0);
+    let found = discover_in_tracks(&movie, &search, &mut silent).unwrap();
+    let [polarity] = found.selected.as_slice() else { panic!("{:?}", found.ranking) };
+    assert_eq!((polarity.effect.id, found.verdict), ("polarity", Verdict::Attributed));
+    assert!(polarity.coefficients[0].covers(speed), "{polarity:?} {speed}");
+    assert!(found.predicts_better() && found.after.tracked.is_some());
+    let passive = discover_in_tracks(&filmed.movie().0, &search, &mut silent).unwrap();
+    assert!(passive.selected.iter().all(|own| own.effect.id != "polarity"));
+    let fate = |id: &str| passive.ranking.iter().find(|own| own.effect.id == id).map(|own| own.fate);
+    assert_eq!(fate("polarity"), Some(Fate::BelowThreshold));
+    assert!(matches!(fate("persistence"), Some(Fate::NotTestable(_))));
+}
+
+/// The score of a candidate beside tracks is by how much the objective of the fit with it is less.
+#[test]
+fn the_score_beside_tracks_is_that_of_a_refit() {
+    let (movie, _) = Filmed { size: [100, 3], step: 0.05, error: 0.01, seed: 6 }.movie();
+    let mut search = search(&["alpha_area"]);
+    search.fit.noise = KnownNoise { position: Some(0.01), velocity: Some(0.02) };
+    let frames = movie.observations().unwrap();
+    let offered = candidates_of_tracks(&frames, &search.candidates);
+    let setting = Setting { frames: &frames, movie: Some(&movie), search: &search, candidates: &offered };
+    let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+    let mut watch = Watch { observe: &mut silent };
+    let base = setting.fit(Vec::new(), &mut watch).unwrap();
+    let with = setting.fit(vec![0], &mut watch).unwrap();
+    let gain = base.lineup.beyond(&[]).gain(0) / base.inference.noise.velocity.powi(2);
+    let fall = base.inference.objective - with.inference.objective;
+    assert!((gain - fall).abs() < 0.15 * gain.max(1.0), "{gain} {fall}");
+    let coefficient = base.lineup.beyond(&[]).score(0).coefficients[0];
+    let refitted = with.inference.effects[0];
+    assert!(
+        (coefficient - refitted.value).abs() < 0.2 * refitted.standard_error,
+        "{coefficient} {refitted:?}"
+    );
 }

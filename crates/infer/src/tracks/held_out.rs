@@ -5,7 +5,7 @@ use super::objective::MovieObjective;
 use super::rule::Rule;
 use super::states::{Motion, States};
 use crate::Error;
-use crate::cross_validation::ratio;
+use crate::cross_validation::Folds;
 use crate::search::Watch;
 use std::collections::BTreeMap;
 use voronudge_geometry::Vector;
@@ -96,8 +96,8 @@ impl<'a> AsMeasured<'a> {
 
 /// What the fits without some motions say of these.
 pub(super) struct HeldOut {
-    /// Squared error in units of the squared velocities, pooled over folds, and its standard error.
-    pub error: [f64; 2],
+    /// The folds.
+    pub folds: Folds,
     /// Predicted mean velocities, by interval and track.
     pub predicted: MeanVelocities,
 }
@@ -156,13 +156,18 @@ pub(super) fn cross_validate(
     for (interval, track, v) in tested.iter().flat_map(|fold| &fold.1) {
         predicted[*interval].insert(*track, *v);
     }
-    let error = ratio(tested.iter().map(|fold| fold.0));
-    Ok((tested.len() >= 2).then_some(HeldOut { error, predicted }))
+    let of_frames = intervals(objective.movie) >= FEWEST_INTERVALS;
+    let squares: Vec<(f64, f64)> = tested.iter().map(|fold| fold.0).collect();
+    Ok((squares.len() >= 2).then(|| HeldOut { folds: Folds::of_squares(of_frames, squares), predicted }))
+}
+
+fn intervals(movie: &Movie) -> usize {
+    movie.frames() - 1
 }
 
 /// The fold of each motion, by track and interval.
 fn folds(movie: &Movie, states: &States) -> Vec<Vec<usize>> {
-    let intervals = movie.frames() - 1;
+    let intervals = intervals(movie);
     let mut folds = vec![vec![usize::MAX; intervals]; movie.tracks.len()];
     let median = |axis: usize| {
         let mut all: Vec<f64> = states.start.iter().map(|r| r[axis]).collect();

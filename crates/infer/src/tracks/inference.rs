@@ -8,6 +8,7 @@ use super::result::{Integration, Tracked};
 use super::rule::Rule;
 use super::states::States;
 use crate::coefficients::parameters;
+use crate::cross_validation::Folds;
 use crate::diagnostics::robust_variance;
 use crate::doubts::{EXACT, tails, voids};
 use crate::inference::{changed_edges, doubts, estimates};
@@ -37,6 +38,24 @@ pub fn infer_tracks(
     request: &Request,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<(Inference, Tracked), Error> {
+    let (inference, followed) = follow(movie, request, &mut Watch { observe })?;
+    Ok((inference, followed.tracked))
+}
+
+/// Where a fit of a movie has come to.
+pub(crate) struct Followed {
+    pub tracked: Tracked,
+    /// Errors of motions left out of the fit.
+    pub held_out: Option<Folds>,
+    pub(super) fit: Fit,
+}
+
+/// See [`infer_tracks`].
+pub(crate) fn follow(
+    movie: &Movie,
+    request: &Request,
+    watch: &mut Watch<'_>,
+) -> Result<(Inference, Followed), Error> {
     let space = request.space()?;
     let mut states = States::new(movie)?;
     if request.activity == Activity::Polarity {
@@ -46,8 +65,7 @@ pub fn infer_tracks(
     if explained < required {
         return Err(Error::TooFewVelocities { used: explained, required });
     }
-    let mut watch = Watch { observe };
-    let found = fit(movie, states, request, &space, &mut watch)?;
+    let found = fit(movie, states, request, &space, watch)?;
     let levels = found.levels;
     let (states, structure) = (&found.states, &request.structure);
     let (rule, memory) = (found.rule, found.memory);
@@ -68,7 +86,7 @@ pub fn infer_tracks(
     let variance_of_fit = variance * (value / expected).max(1.0);
     let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit)?;
     let held_out = match request.cross_validation {
-        CrossValidation::Done => cross_validate(&measured, &found.parameters, &mut watch)?,
+        CrossValidation::Done => cross_validate(&measured, &found.parameters, watch)?,
         CrossValidation::Skipped => None,
     };
     let noise_floor = match at_limit(&levels, &request.noise) {
@@ -98,7 +116,7 @@ pub fn infer_tracks(
             nudged: nudged / total,
             un_nudged: measured.missed(free, found.rule)? / total,
             noise_floor,
-            cross_validated: held_out.as_ref().map(|held_out| held_out.error),
+            cross_validated: held_out.as_ref().map(|held_out| held_out.folds.error()),
         },
         coefficients,
         noise: levels,
@@ -118,7 +136,7 @@ pub fn infer_tracks(
         steps: found.steps,
         objective: value,
         expected_objective: expected,
-        trace: found.trace,
+        trace: found.trace.clone(),
         starts: vec![value],
         transitions: [0, 0],
         doubts: doubts(value, expected, &levels, &request.noise, found.status)
@@ -131,7 +149,7 @@ pub fn infer_tracks(
         total,
     };
     tracked.polarity = objective.polarity(&mut equations, components, request.noise)?;
-    Ok((inference, tracked))
+    Ok((inference, Followed { tracked, held_out: held_out.map(|held_out| held_out.folds), fit: found }))
 }
 
 /// Half the squared distances of the cells from where they were seen, of those whose motion is explained, in units of the usual one in

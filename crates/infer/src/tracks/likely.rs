@@ -30,6 +30,14 @@ const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
 const BROAD: f64 = 0.5;
 const BISECTIONS: usize = 8;
 
+/// x and log σ_v²/σ_p² of polarities that are tried before any is fitted.
+const HINTS_OF_TIMES: [f64; 2] = [0.05, 0.5];
+const HINTS_OF_RATIO: [f64; 3] = [4.0, 2.0, 0.5];
+
+/// Steps in log k towards the noise levels of cells that do not crawl: the first, and one too short to take.
+const FIRST_STEP: f64 = 1.0;
+const LAST_STEP: f64 = 0.2;
+
 /// Step in log (x + c) for a derivative.
 const STEP: f64 = 0.01;
 
@@ -46,6 +54,8 @@ pub struct Polarity {
     pub rate_interval: Option<[f64; 2]>,
     /// Correlation of the mean polarity of an interval with that of the next.
     pub correlation: f64,
+    /// By how much −2 log L, restricted, falls from none to this one: at most χ² with two degrees of freedom if there is none.
+    pub evidence: f64,
 }
 
 /// What stands for x in the likelihood.
@@ -192,6 +202,7 @@ impl MovieObjective<'_> {
             true => [own * (-spread).exp(), own * spread.exp()],
             false => self.slowest_and_fastest(equations, components, known, memory)?.map(|share| own * share),
         };
+        let evidence = self.evidence(equations, components, known, memory)?;
         let error = QUANTILE * covariance[(1, 1)].max(0.0).sqrt();
         let [slowest, fastest] = [-error, error].map(|aside| (log_times + aside).exp() - LASTING);
         Ok(Some(Polarity {
@@ -201,7 +212,58 @@ impl MovieObjective<'_> {
             rate_interval: (speed_interval[0] > 0.0)
                 .then(|| [slowest.max(0.0) / interval, fastest.min(TIMES[1]) / interval]),
             correlation: memory.correlation(),
+            evidence,
         }))
+    }
+
+    /// By how much −2 log L falls at most from no polarity to one of a few, at the present k.
+    pub(super) fn hint(
+        &self,
+        equations: &mut NormalEquations,
+        components: f64,
+        known: KnownNoise,
+    ) -> Result<f64, Error> {
+        let log_k = self.levels.spring().ln();
+        let mut at = |times: f64, ratio: f64| -> Result<f64, Error> {
+            Ok(self.likelihood(equations, components, known, [log_k, times, ratio.exp()])?.criterion)
+        };
+        let without = at(HINTS_OF_TIMES[0], RATIO[1])?;
+        let mut least = without;
+        for times in HINTS_OF_TIMES {
+            for ratio in HINTS_OF_RATIO {
+                least = least.min(at(times, ratio)?);
+            }
+        }
+        Ok(without - least)
+    }
+
+    /// By how much −2 log L falls from no polarity at all, with the noise levels that are then likeliest, to the present one.
+    fn evidence(
+        &self,
+        equations: &mut NormalEquations,
+        components: f64,
+        known: KnownNoise,
+        memory: Memory,
+    ) -> Result<f64, Error> {
+        let mut at = |log_k: f64, ratio: f64| -> Result<f64, Error> {
+            Ok(self.likelihood(equations, components, known, [log_k, memory.times, ratio.exp()])?.criterion)
+        };
+        let own = self.levels.spring().ln();
+        let with = at(own, 2.0 * (self.levels.velocity / memory.speed).ln())?;
+        let given = known.position.is_some() && known.velocity.is_some();
+        let mut without = at(own, RATIO[1])?;
+        // What moved the cells by themselves is then an error of the dynamics: k grows.
+        let mut place = own;
+        let mut step = if given { 0.0 } else { FIRST_STEP };
+        while step > LAST_STEP {
+            let next = at(place + step, RATIO[1])?;
+            if next < without {
+                (place, without) = (place + step, next);
+            } else {
+                step *= 0.5;
+            }
+        }
+        Ok((without - with).max(0.0))
     }
 
     /// Between which multiples of v₀ the likelihood falls by less than an interval of 95 % allows, k and memory held.

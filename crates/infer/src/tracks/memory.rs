@@ -68,8 +68,8 @@ pub(crate) struct Polarities {
     first: usize,
     /// The first ones of the tracks.
     pub firsts: Vec<First>,
-    /// Number of blocks of γ, which stand behind (see [`super::outset`]).
-    of_gamma: usize,
+    /// Number of the terms on which first polarities are regressed: the first ones of the model. Their γ stand behind (see [`super::outset`]).
+    pub terms: usize,
     /// The time since the polarity before of the same cell, in usual intervals; one for each block.
     since: Vec<Option<f64>>,
 }
@@ -112,7 +112,7 @@ impl Polarities {
                 before = Some(time);
             }
         }
-        Self { block, first, firsts, since, of_gamma: terms.div_ceil(2) }
+        Self { block, first, firsts, since, terms }
     }
 
     /// Number of polarities.
@@ -127,13 +127,13 @@ impl Polarities {
 
     /// Number of polarities and of blocks of γ.
     pub fn blocks(&self) -> usize {
-        self.count() + self.of_gamma
+        self.count() + self.terms.div_ceil(2)
     }
 
     /// Blocks of γ.
     pub fn gamma(&self) -> std::ops::Range<usize> {
         let first = self.first + self.count();
-        first..first + self.of_gamma
+        first..first + self.terms.div_ceil(2)
     }
 
     /// Adds how they hold each other, with σ_v²/σ_u².

@@ -8,6 +8,7 @@
 //! velocities along its way, so that no velocity is ever derived from positions. The problem has the form of the nudged fit of snapshots and is solved by the same means.
 
 mod anchors;
+mod beside;
 mod ends;
 mod first;
 mod fit;
@@ -29,7 +30,7 @@ mod result;
 mod row_builder;
 mod rule;
 #[cfg(test)]
-mod sample;
+pub(crate) mod sample;
 mod settling;
 mod states;
 mod surface;
@@ -39,6 +40,7 @@ mod tests;
 mod turn;
 
 pub use inference::infer_tracks;
+pub(crate) use inference::{Followed, follow};
 pub use likely::Polarity;
 pub use measurement::measure_tracks;
 pub use missed::{Latent, complete_tracks};

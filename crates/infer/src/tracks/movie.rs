@@ -3,7 +3,9 @@
 use super::join::join;
 use super::states::States;
 use crate::{Error, Observation};
+use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Vector};
+use voronudge_model::Environment;
 
 /// A cell has room for itself if none is nearer than this, in units of ℓ₀.
 const ROOM: f64 = 0.5;
@@ -148,6 +150,8 @@ pub struct Movie {
     usual: f64,
     /// How far the stage had moved in each frame, as far as the increments tell.
     stage: Vec<Vector<f64>>,
+    /// What terms refer to: the middle of the box, or the mean place of the cells.
+    environment: Arc<Environment>,
 }
 
 impl Movie {
@@ -176,7 +180,9 @@ impl Movie {
         lengths.sort_unstable_by(f64::total_cmp);
         let usual = lengths[lengths.len() / 2];
         let stage = vec![Vector::zeros(); times.len()];
-        let mut movie = Self { times, tracks, domain, field_of_view, drift, share: 0.0, usual, stage };
+        let environment = Arc::new(Environment::default().about(middle(domain, frames)));
+        let mut movie =
+            Self { times, tracks, domain, field_of_view, drift, share: 0.0, usual, stage, environment };
         for frame in 1..movie.frames() {
             movie.stage[frame] = movie.stage[frame - 1] + movie.median_step(frame - 1);
         }
@@ -203,6 +209,11 @@ impl Movie {
     #[must_use]
     pub fn with_positions_at(self, share: f64) -> Self {
         Self { share, ..self }
+    }
+
+    /// What surrounds the cells.
+    pub(super) fn environment(&self) -> Arc<Environment> {
+        self.environment.clone()
     }
 
     /// The share c of the way from a cell's site to its centroid at which its position is measured.
@@ -333,6 +344,16 @@ impl Movie {
         (0..self.tracks.len())
             .filter(move |track| self.tracks[*track].first <= frame && frame < self.tracks[*track].end())
     }
+}
+
+/// The middle of the box, or the mean place of the cells over all frames.
+fn middle(domain: Domain, frames: &[Vec<Option<Vector<f64>>>]) -> Vector<f64> {
+    if let Domain::Periodic(cell_box) = domain {
+        return 0.5 * Vector::from(cell_box.lengths());
+    }
+    let seen = frames.iter().flatten().flatten();
+    let (sum, count) = seen.fold((Vector::zeros(), 0.0), |(sum, count), r| (sum + r, count + 1.0));
+    sum / f64::max(count, 1.0)
 }
 
 /// One cell's track, if it was seen at all.

@@ -88,13 +88,15 @@ impl MovieObjective<'_> {
             .polarities
             .gamma()
             .flat_map(|block| <[f64; 2]>::from(States::vector(displacements, block)));
-        all.take(self.structure.terms.len()).collect()
+        let mut gamma: Vec<f64> = all.take(self.states.polarities.terms).collect();
+        gamma.resize(self.structure.dimension(), 0.0);
+        gamma
     }
 
     /// The columns of the model at a cell.
     fn columns_at(&self, placed: &Placed<'_>, frame: usize, cell: usize) -> Vec<Vector<f64>> {
         let columns = &placed.instants[frame].1.by_coefficient;
-        columns.iter().take(self.structure.terms.len()).map(|column| column[cell]).collect()
+        columns.iter().take(self.states.polarities.terms).map(|column| column[cell]).collect()
     }
 
     /// What the first polarities are expected to be.

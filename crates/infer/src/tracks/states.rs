@@ -274,7 +274,8 @@ pub(super) fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
 /// Cells of a movie without velocities.
 fn still(movie: &Movie, frame: usize, positions: Vec<Vector<f64>>) -> Result<Observation, Error> {
     let velocities = vec![None; positions.len()];
-    Observation::new(frame, positions, velocities, movie.domain, movie.field_of_view.clone())
+    let cells = Observation::new(frame, positions, velocities, movie.domain, movie.field_of_view.clone())?;
+    Ok(cells.within(movie.environment()))
 }
 
 /// The times between frames.

@@ -34,6 +34,7 @@ mod odd_nematic_stress;
 mod odd_pair_force;
 mod p0_gradient;
 mod persistence;
+mod polarity;
 mod profile;
 mod quadratic_distortion;
 mod rotation;
@@ -166,6 +167,11 @@ impl Effect {
         self.columns(environment, domain).map(|_| ())
     }
 
+    /// Whether it is an unknown state of the cells, which a fit of tracks finds, instead of columns.
+    pub fn is_state(&self) -> bool {
+        self.id == polarity::EFFECT.id
+    }
+
     /// All effects of the catalogue.
     pub fn all() -> &'static [Self] {
         CATALOGUE
@@ -214,6 +220,7 @@ static CATALOGUE: &[Effect] = &[
     nonlinear_area::EFFECT,
     persistence::EFFECT,
     alignment::EFFECT,
+    polarity::EFFECT,
     flow_blur::EFFECT,
     flow_gain::EFFECT,
     time_lag::EFFECT,

@@ -75,11 +75,14 @@ pub struct Recovery {
     pub right: usize,
 }
 
-/// What `discover` says of data that lack nothing.
+/// What `discover` says.
 #[derive(Debug, Clone, Serialize, Deserialize)]
 pub struct Discovery {
     pub verdict: String,
     pub effects: Vec<String>,
+    /// Of data in which something acts that the model lacks: whether that is named, or what cannot be told from it, and nothing else.
+    #[serde(default)]
+    pub right: Option<bool>,
     pub seconds: f64,
 }
 
@@ -136,8 +139,9 @@ impl fmt::Display for Record {
             let Recovery { hidden, found, latent, right } = recovery;
             write!(out, ", {found} of {hidden} hidden cells found, {right} of {latent} latent cells right")?;
         }
-        if let Some(Discovery { verdict, effects, seconds }) = &self.discovery {
-            write!(out, ", {verdict} {} in {seconds:.1} s", effects.join(" "))?;
+        if let Some(Discovery { verdict, effects, right, seconds }) = &self.discovery {
+            let right = right.map_or("", |right| if right { " (right)" } else { " (wrong)" });
+            write!(out, ", {verdict} {}{right} in {seconds:.1} s", effects.join(" "))?;
         }
         Ok(())
     }

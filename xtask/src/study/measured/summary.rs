@@ -21,7 +21,9 @@ pub struct Summary {
     pub recall: Count,
     pub precision: Count,
     /// Of searches for missing effects, those that name one, and how often each is named.
-    pub false_findings: Count,
+    pub findings: Count,
+    /// Of searches in data in which something acts that the model lacks, those that name it and nothing else.
+    pub right: Count,
     pub named: BTreeMap<String, usize>,
     /// Median wall time.
     pub seconds: f64,
@@ -68,7 +70,8 @@ impl Summary {
             flagged: Count::of(fits.iter().filter(|fit| fit.is_off()).map(|fit| !fit.trustworthy)),
             recall: recoveries().map(|own| own.recall()).sum(),
             precision: recoveries().map(|own| own.precision()).sum(),
-            false_findings: Count::of(discoveries().map(|own| !own.effects.is_empty())),
+            findings: Count::of(discoveries().map(|own| !own.effects.is_empty())),
+            right: Count::of(discoveries().filter_map(|own| own.right)),
             named,
             seconds: quartiles(records.iter().map(|record| record.seconds).collect())[1],
             failed: records.len() - fits.len(),
@@ -123,17 +126,20 @@ pub fn print(summaries: &[Summary]) {
     for own in summaries.iter().filter(|own| own.v_0.covered.total > 0) {
         println!("| {} | {} | {} |", own.class.words, errors(&own.v_0), errors(&own.d_r));
     }
-    if summaries.iter().all(|own| own.false_findings.total == 0) {
+    if summaries.iter().all(|own| own.findings.total == 0) {
         return;
     }
-    println!("\n| data | an effect is named | which |\n|---|---|---|");
+    println!(
+        "\n| data | an effect is named | which | the one that acts, or its class, and no other |\n|---|---|---|---|"
+    );
     for own in summaries {
         let named = own.named.iter().map(|(effect, count)| format!("`{effect}` {count}"));
         println!(
-            "| {} | {} | {} |",
+            "| {} | {} | {} | {} |",
             own.class.words,
-            own.false_findings,
-            named.collect::<Vec<_>>().join(", ")
+            own.findings,
+            named.collect::<Vec<_>>().join(", "),
+            if own.right.total > 0 { own.right.to_string() } else { "none acts".into() }
         );
     }
 }

@@ -88,7 +88,8 @@ pub fn run(
         None => None,
     };
     let discovery = if discover {
-        Some(discovery(&program.run(&["discover"], &written.data, &folder.join("discover"))?)?)
+        let run = program.run(&["discover"], &written.data, &folder.join("discover"))?;
+        Some(discovery(&run, written.truth.effect.as_deref()))
     } else {
         None
     };
@@ -128,14 +129,24 @@ fn fit(report: &Value, written: &Written, view: View, out: &Path) -> Result<Fit,
     })
 }
 
-fn discovery(run: &Run) -> Result<Discovery, Box<dyn Error>> {
+fn discovery(run: &Run, truth: Option<&str>) -> Discovery {
     let Some(report) = &run.report else {
-        return Ok(Discovery { verdict: run.message.clone(), effects: Vec::new(), seconds: run.seconds });
+        return Discovery {
+            verdict: run.message.clone(),
+            effects: Vec::new(),
+            right: truth.map(|_| false),
+            seconds: run.seconds,
+        };
     };
-    let selected = report["selected"].as_array().into_iter().flatten();
-    Ok(Discovery {
+    let selected: Vec<&Value> = report["selected"].as_array().into_iter().flatten().collect();
+    let is_it = |own: &Value, truth: &str| {
+        let class = own["class"].as_array().into_iter().flatten();
+        class.chain([&own["effect"]]).any(|effect| effect.as_str() == Some(truth))
+    };
+    Discovery {
         verdict: report["verdict"].as_str().map_or_else(|| report["verdict"].to_string(), String::from),
-        effects: selected.filter_map(|own| own["effect"].as_str().map(String::from)).collect(),
+        right: truth.map(|truth| matches!(selected.as_slice(), [only] if is_it(only, truth))),
+        effects: selected.iter().filter_map(|own| own["effect"].as_str().map(String::from)).collect(),
         seconds: run.seconds,
-    })
+    }
 }

@@ -22,7 +22,7 @@ pub(super) struct SearchOptions {
     /// Made-up data without an effect that are fitted before one is believed, 0 to 10000 [default: 20 where an effect
     /// is in doubt and the velocities are at most 1000].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=10_000), allow_negative_numbers = true)]
-    null_sets: Option<u64>,
+    pub null_sets: Option<u64>,
     /// Effects added at most, 1 to 16.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=16), allow_negative_numbers = true)]
     most_effects: u64,

@@ -10,6 +10,9 @@ use voronudge_report::discover_report::{
     CandidateStatus, EffectCoefficient, EffectKind, Gain, RankedEffect, SelectedEffect,
 };
 
+/// The unit of a rate.
+const RATE: Unit = Unit { length: 0, time: -1 };
+
 /// The family of an effect.
 pub(super) fn family(effect: &Effect) -> EffectKind {
     match effect.id {
@@ -21,7 +24,7 @@ pub(super) fn family(effect: &Effect) -> EffectKind {
         | "size_friction"
         | "alpha_area"
         | "coordination_tension" => EffectKind::Gradient,
-        "persistence" | "alignment" => EffectKind::History,
+        "persistence" | "alignment" | "polarity" => EffectKind::History,
         "label_parameter" | "external_field" => EffectKind::Measured,
         "boundary_tension" | "boundary_torque" => EffectKind::Boundary,
         _ => match effect.kind {
@@ -44,6 +47,7 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
     match (selected.effect.id, count) {
         (_, 1) => vec![String::new()],
         ("drift", 2) => owned(&["along x", "along y"]),
+        ("polarity", 2) => owned(&["v_0", "D_r"]),
         ("shear", 2) => owned(&["along the axes", "along the diagonals"]),
         ("quadratic_distortion", 6) => {
             owned(&["x^2 to x", "x^2 to y", "xy to x", "xy to y", "y^2 to x", "y^2 to y"])
@@ -70,9 +74,10 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
 /// An effect that was added.
 pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) -> SelectedEffect {
     let effect = selected.effect;
-    let factor = factor(effect.unit, &prepared.scale);
     let names = coefficient_names(selected, prepared);
-    let ends = |estimate: &Estimate| {
+    let unit_of = |name: &String| if name == "D_r" { RATE } else { effect.unit };
+    let ends = |(name, estimate): (&String, &Estimate)| {
+        let factor = factor(unit_of(name), &prepared.scale);
         let [low, high] = estimate.interval;
         [low.unwrap_or(f64::NEG_INFINITY) * factor, high.unwrap_or(f64::INFINITY) * factor]
     };
@@ -82,16 +87,14 @@ pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) 
         formula: effect.formula.into(),
         meaning: effect.meaning.into(),
         kind: family(effect),
-        coefficients: names
-            .into_iter()
-            .zip(&selected.coefficients)
+        coefficients: (names.iter().zip(&selected.coefficients))
             .map(|(name, estimate)| EffectCoefficient {
-                name,
-                value: estimate.value * factor,
-                unit: units.powers(effect.unit.length.into(), effect.unit.time.into()),
+                name: name.clone(),
+                value: estimate.value * factor(unit_of(name), &prepared.scale),
+                unit: units.powers(unit_of(name).length.into(), unit_of(name).time.into()),
             })
             .collect(),
-        ci95: selected.coefficients.iter().map(ends).collect(),
+        ci95: names.iter().zip(&selected.coefficients).map(ends).collect(),
         p_adjusted: selected.adjusted_p,
         share_of_excess: selected.share_of_excess,
         class: others().map(|other| other.id.to_owned()).collect(),

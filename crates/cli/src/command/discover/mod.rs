@@ -11,8 +11,8 @@ mod summary;
 mod surroundings;
 
 use super::fit::{
-    ConstraintArguments, Measured, Prepared, Question, SearchArguments, SnapshotArguments, arrays, browser,
-    words,
+    ConstraintArguments, Measured, Prepared, PreparedTracks, Question, SearchArguments, SnapshotArguments,
+    arrays, browser, words,
 };
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -25,7 +25,7 @@ use history::{GivenDifference, History};
 use predictions::PredictionArguments;
 use report::Found;
 use surroundings::{ExternalMap, FieldArguments};
-use voronudge_infer::discover::discover;
+use voronudge_infer::discover::{discover, discover_in_tracks};
 use voronudge_infer::{Constraints, Scale};
 use voronudge_io::{DataSet, Difference, OutputDirectory};
 use voronudge_model::Effect;
@@ -42,9 +42,9 @@ pub(crate) struct Arguments {
     snapshots: SnapshotArguments,
     #[command(flatten)]
     field: FieldArguments,
-    /// How velocities are derived from positions where none are given.
-    #[arg(long, value_name = "central|forward|backward", default_value_t = Difference::Forward)]
-    difference: Difference,
+    /// Derive velocities from tracked positions by differences, where none are given [default: fit the tracks themselves].
+    #[arg(long, value_name = "central|forward|backward")]
+    difference: Option<Difference>,
     /// What given velocities are, which decides which earlier ones may predict them [default: instantaneous].
     #[arg(long, value_enum)]
     given_difference: Option<GivenDifference>,
@@ -73,21 +73,36 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let map = arguments.field.load(&mut data)?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
-    let (prepared, predictors) = asked.prepare(snapshots, (&data, map.as_ref()), None, &mut run)?;
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let Material { prepared, tracks, predictors } = match asked.tracks(&data, &mut run)? {
+        Some((prepared, tracks)) => asked.followed(prepared, tracks, map.is_some(), &mut progress)?,
+        None => {
+            let (prepared, predictors) = asked.prepare(snapshots, (&data, map.as_ref()), None, &mut run)?;
+            Material { prepared, tracks: None, predictors }
+        }
+    };
     let others = arguments.predictions.load(&asked, (&mut data, &prepared), &mut run)?;
     let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
-    let mut progress = Progress::new(arguments.common.verbosity());
-    let searched = discover(&prepared.observations, &search, &mut |state| progress.tell(state));
+    let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
+    let searched = match &tracks {
+        Some(tracks) => discover_in_tracks(&tracks.movie, &search, &mut observe),
+        None => discover(&prepared.observations, &search, &mut observe),
+    };
     progress.finish();
     let discovery = searched.map_err(|error| prepared.place(error, snapshots))?;
     let last = &discovery.after.inference;
     words::doubts(last, &[], prepared.request.method).iter().for_each(|(_, doubt)| run.warn(doubt));
     for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
         arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
+        if let (Some(tracks), Some(tracked)) = (&tracks, &fitted.tracked) {
+            tracks.write(&mut out, prefix, &data, &prepared, tracked)?;
+        }
     }
     let predictions =
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
-    let found = Found { data: &data, prepared: &prepared, search: &search, predictors, predictions };
+    let tracks = tracks.as_ref().zip(discovery.after.tracked.as_ref());
+    let tracks = tracks.map(|(tracks, tracked)| tracks.report(&prepared, last, tracked));
+    let found = Found { data: &data, prepared: &prepared, tracks, search: &search, predictors, predictions };
     let report = report::report(&run, &found, &discovery);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
@@ -100,6 +115,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     Ok(if last.is_acceptable() { Answer::Positive } else { Answer::Negative })
 }
 
+/// What is searched.
+struct Material {
+    prepared: Prepared,
+    /// The tracks, if these are fitted themselves.
+    tracks: Option<PreparedTracks>,
+    predictors: Option<Predictors>,
+}
+
 /// What is asked of every data set.
 struct Asked<'a> {
     arguments: &'a Arguments,
@@ -108,6 +131,68 @@ struct Asked<'a> {
 }
 
 impl Asked<'_> {
+    /// The tracks, where there are no velocities and none are to be derived.
+    fn tracks(&self, data: &DataSet, run: &mut Run) -> Result<Option<(Prepared, PreparedTracks)>, Failure> {
+        let arguments = self.arguments;
+        let snapshots = &arguments.snapshots;
+        let velocities = Measured::of_tracks(snapshots, data, arguments.difference)?;
+        if !matches!(velocities, Measured::Tracks(_)) {
+            return Ok(None);
+        }
+        let refused = [
+            (arguments.given_difference.is_some(), "--given-difference"),
+            (snapshots.background.is_some(), "--background"),
+            (arguments.options.null_sets.is_some_and(|count| count > 0), "--null-sets"),
+            (arguments.predictions.is_asked(), "--predict"),
+        ];
+        if let Some((_, option)) = refused.into_iter().find(|(given, _)| *given) {
+            return Err(Failure::new(format!(
+                "{option} is for velocities that are given or derived, but there are only tracks, which are fitted themselves"
+            ))
+            .with_hint(format!("leave out {option}, or give --difference central for velocities")));
+        }
+        let frames = velocities.frames(snapshots, data)?;
+        PreparedTracks::new(self.question(snapshots, data, None), velocities, frames, run).map(Some)
+    }
+
+    /// The tracks with what is found out about how they were measured.
+    fn followed(
+        &self,
+        mut prepared: Prepared,
+        mut tracks: PreparedTracks,
+        has_map: bool,
+        progress: &mut Progress,
+    ) -> Result<Material, Failure> {
+        let snapshots = &self.arguments.snapshots;
+        if has_map {
+            return Err(Failure::new(
+                "--field is for velocities that are given or derived, but there are only tracks",
+            )
+            .with_hint("leave it out, or give --difference central for velocities"));
+        }
+        tracks
+            .measure(&mut prepared, progress)
+            .and_then(|()| tracks.show(&mut prepared))
+            .map_err(|error| prepared.place(error, snapshots))?;
+        Ok(Material { prepared, tracks: Some(tracks), predictors: None })
+    }
+
+    fn question<'q>(
+        &self,
+        snapshots: &'q SnapshotArguments,
+        data: &'q DataSet,
+        scale: Option<Scale>,
+    ) -> Question<'q> {
+        Question {
+            arguments: snapshots,
+            data,
+            constraints: self.constraints.clone(),
+            method: self.arguments.method.method(),
+            seed: self.arguments.common.seed,
+            scale,
+        }
+    }
+
     /// Snapshots with what surrounds and preceded them, in their own scale or, of another data set, in that of the fit.
     fn prepare(
         &self,
@@ -116,21 +201,13 @@ impl Asked<'_> {
         other: Option<Scale>,
         run: &mut Run,
     ) -> Result<(Prepared, Option<Predictors>), Failure> {
-        let Self { arguments, constraints, candidates } = self;
-        let velocities = Measured::new(snapshots, data, arguments.difference)?;
+        let Self { arguments, candidates, .. } = self;
+        let velocities = Measured::new(snapshots, data, arguments.difference.unwrap_or(Difference::Forward))?;
         let history = History::new(data, &velocities, arguments.given_difference)?;
         let frames = velocities.frames(snapshots, data)?;
         let kept = history::keep_frames(history.as_ref(), data, frames, candidates);
         let (kind, noise) = (shared_errors(&velocities), unknown_noise(data));
-        let question = Question {
-            arguments: snapshots,
-            data,
-            constraints: (*constraints).clone(),
-            method: arguments.method.method(),
-            seed: arguments.common.seed,
-            scale: other,
-        };
-        let mut prepared = question.prepare(velocities, kept.frames, run)?;
+        let mut prepared = self.question(snapshots, data, other).prepare(velocities, kept.frames, run)?;
         surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
         match other {
             None => kind.into_iter().chain(noise).chain(kept.warning).for_each(|warning| run.warn(warning)),

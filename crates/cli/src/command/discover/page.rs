@@ -40,7 +40,12 @@ pub(super) fn page(
         .collect();
     let figures = DiscoverFigures {
         correlations: correlations(discovery),
-        regressions: discovery.selected.iter().map(|selected| regression(selected, prepared)).collect(),
+        regressions: discovery
+            .selected
+            .iter()
+            .filter(|selected| !selected.partial.is_empty())
+            .map(|selected| regression(selected, prepared))
+            .collect(),
         outliers: drawn
             .iter()
             .map(|&index| outliers(prepared, &discovery.after.diagnostics, index))

@@ -27,6 +27,11 @@ pub(super) struct Other {
 }
 
 impl PredictionArguments {
+    /// Whether other data sets are to be predicted.
+    pub fn is_asked(&self) -> bool {
+        !self.predict.is_empty()
+    }
+
     /// Reads the other data sets; their files count as inputs of the first.
     pub fn load(
         &self,

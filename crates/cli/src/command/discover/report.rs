@@ -14,20 +14,21 @@ use voronudge_report::discover_report::{
     Calibration, DescriptionFit, Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Prediction,
     Predictors, StructureTest, Unexplained, Verdict,
 };
-use voronudge_report::infer_report::Quantity;
+use voronudge_report::infer_report::{Measurement, Quantity, TracksReport};
 use voronudge_report::{BeforeAfter, DiscoverReport, Units};
 
 /// What was searched, and in which data.
 pub(super) struct Found<'a> {
     pub data: &'a DataSet,
     pub prepared: &'a Prepared,
+    pub tracks: Option<TracksReport>,
     pub search: &'a Search,
     pub predictors: Option<Predictors>,
     pub predictions: Vec<Prediction>,
 }
 
 pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> DiscoverReport {
-    let Found { data, prepared, search, predictors, predictions } = found;
+    let Found { data, prepared, tracks, search, predictors, predictions } = found;
     let units = outcome::units(data);
     let fits = BeforeAfter {
         before: model_fit(prepared, &discovery.before, &units),
@@ -37,7 +38,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         run: run.record(Some(data)),
         length_scale: Quantity { value: prepared.scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, &discovery.before.inference),
-        measurement: outcome::measurement(data, prepared),
+        measurement: Measurement { tracks: tracks.clone(), ..outcome::measurement(data, prepared) },
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         verdict: verdict(discovery.verdict),

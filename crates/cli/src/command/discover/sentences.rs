@@ -191,6 +191,13 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
             format!("{} acts much like the base model's own term ({}).", selected.effect.id, alias.of)
         }));
     }
+    if discovery.after.tracked.as_ref().is_some_and(|tracked| tracked.polarity.is_some()) {
+        sentences.push(
+            "Polarities of neighbours were taken for independent: whether they align was not tested, and where they do, intervals \
+             are too narrow."
+                .into(),
+        );
+    }
     let rest = discovery.after.budget.unexplained;
     // Otherwise the sentence says so.
     if discovery.verdict == Verdict::Partial && !discovery.predicts_better() && rest > LEAST_REST {
@@ -252,7 +259,7 @@ pub(super) fn measure_next(discovery: &Discovery, search: &Search, prepared: &Pr
         discovery.ranking.iter().any(|candidate| candidate.effect.id == effect.id && is_it(&candidate.fate))
     });
     let open = !matches!(discovery.verdict, Verdict::NothingMissing | Verdict::Attributed);
-    if open && untold && prepared.velocities.flow().is_none() {
+    if open && untold && prepared.velocities.are_of_cells() {
         advice.push("Tracks over three frames or more, which make effects with a memory testable.".into());
     }
     match discovery.verdict {

@@ -22,6 +22,11 @@ pub(crate) enum Measured {
 }
 
 impl Measured {
+    /// Whether there are velocities of single cells.
+    pub fn are_of_cells(&self) -> bool {
+        matches!(self, Self::Given(_) | Self::Derived(..))
+    }
+
     /// What there is to be explained: velocities if there are any, otherwise the tracks, or their differences if these are asked for.
     pub fn of_tracks(
         arguments: &SnapshotArguments,

@@ -122,10 +122,11 @@ impl PreparedTracks {
         }
     }
 
-    /// Writes the trajectories (frames, cells, 2), each in the column of the first name of its track.
+    /// Writes the trajectories (frames, cells, 2), each in the column of the first name of its track; the name of the file begins with `prefix`.
     pub fn write(
         &self,
         out: &mut OutputDirectory,
+        prefix: &str,
         data: &DataSet,
         prepared: &Prepared,
         tracked: &Tracked,
@@ -140,7 +141,7 @@ impl PreparedTracks {
                 all[(frame, cell, 1)] = flip * r.y;
             }
         }
-        out.write_array("trajectories.npy", as_given(data, all).view())?;
+        out.write_array(&format!("{prefix}trajectories.npy"), as_given(data, all).view())?;
         Ok(())
     }
 }

@@ -145,7 +145,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     arrays::write(&mut out, "", &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
     if let Some((tracks, tracked)) = &tracked {
-        tracks.write(&mut out, &data, &prepared, tracked)?;
+        tracks.write(&mut out, "", &data, &prepared, tracked)?;
     }
     let told = tracked.map(|(tracks, tracked)| {
         (tracks.report(&prepared, &result, &tracked), activity::report(&data, &prepared, &tracked))

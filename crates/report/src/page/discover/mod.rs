@@ -19,8 +19,8 @@ use crate::before_after::BeforeAfter;
 use crate::discover_report::DiscoverReport;
 use crate::error::ReportError;
 use crate::figure::{
-    CorrelationFunction, FlowMap, Outlier, PartialRegression, noise_budget, outlier_map, residual_flow_maps,
-    residual_maps,
+    CorrelationFunction, FlowMap, Outlier, PartialRegression, noise_budget, outlier_map, polarity_map,
+    residual_flow_maps, residual_maps,
 };
 use crate::numbers::significant;
 use crate::view::FrameView;
@@ -144,6 +144,7 @@ impl DiscoverPage<'_> {
         let units = &self.report.units;
         let frames: Vec<FrameView> = self.frames.iter().map(|frames| frames.before.clone()).collect();
         let cells = ArrowScale::residuals(&frames);
+        let polarities = ArrowScale::velocities(&frames);
         let grid = FlowMap::residual_scale(self.flows.iter().map(|flows| &flows.before));
         let panel = |(index, frames): (usize, &BeforeAfter<FrameView>)| {
             let maps = match self.flows.get(index) {
@@ -156,6 +157,12 @@ impl DiscoverPage<'_> {
             if self.report.is_extended() {
                 let caption = format!("after adding {}, arrows on the same scale", self.added());
                 figures.push(Figure::new(maps.after, &caption));
+            }
+            if frames.after.cells.iter().any(|cell| cell.polarity.is_some()) {
+                figures.push(Figure::new(
+                    polarity_map(&frames.after, polarities.as_ref(), units),
+                    "polarities: what the cells move by of themselves",
+                ));
             }
             if let Some(outliers) = self.figures.outliers.get(index).filter(|found| !found.is_empty()) {
                 figures.push(Figure::new(

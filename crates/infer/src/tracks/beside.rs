@@ -1,0 +1,112 @@
+//! Further terms beside the fit of a movie, in one linear problem.
+
+use super::inference::Followed;
+use super::memory::Memory;
+use super::movie::Movie;
+use super::objective::MovieObjective;
+use crate::search::{Watch, optimise_knowing};
+use crate::{CoefficientSpace, Error, NoiseLevels, Request};
+use nalgebra::{DMatrix, DVector};
+use std::ops::ControlFlow;
+use voronudge_model::Structure;
+
+/// Steps in which a fit settles at other noise levels, and the relative decrease that counts as none.
+const STEPS: u64 = 8;
+const TOLERANCE: f64 = 1e-4;
+
+/// The problem in the coefficients alone, where nothing else of a fit is held, linearised about it.
+pub(crate) struct Beside {
+    /// The information on the coefficients, in units of 1/σ_v².
+    pub information: DMatrix<f64>,
+    /// Half the decrease of Φ with these.
+    pub gradient: DVector<f64>,
+    /// Φ.
+    pub value: f64,
+    /// XᵀX
+    pub normal: DMatrix<f64>,
+    /// Measured components that the model explains.
+    pub components: f64,
+}
+
+impl Followed {
+    fn objective<'a>(
+        &'a self,
+        movie: &'a Movie,
+        structure: &'a Structure,
+        space: &'a CoefficientSpace,
+    ) -> MovieObjective<'a> {
+        let fit = &self.fit;
+        let (states, rule, levels, memory) = (&fit.states, fit.rule, fit.levels, fit.memory);
+        MovieObjective { movie, states, rule, structure, space, levels, memory }
+    }
+
+    /// Linearises a model with further terms about the fit. `coefficients` are those of the fit, zero for the further terms. Cells are followed
+    /// in more steps than in the fit: these are enough for its own terms, and what they leave must not pose as another.
+    pub fn beside(
+        &self,
+        movie: &Movie,
+        structure: &Structure,
+        space: &CoefficientSpace,
+        coefficients: &[f64],
+    ) -> Result<Beside, Error> {
+        let objective =
+            MovieObjective { rule: self.fit.rule.twice(), ..self.objective(movie, structure, space) };
+        let mut at = space.nearest(coefficients);
+        at.extend(self.displacements());
+        let equations = objective.linearise(&at)?;
+        let reduced = equations.reduced()?;
+        let placed = objective.place(&at)?;
+        Ok(Beside {
+            value: objective.value(&at),
+            normal: equations.frames.iter().map(|part| part.free_normal().clone()).sum(),
+            components: objective.explained_components(&placed, &at),
+            information: reduced.information,
+            gradient: reduced.gradient,
+        })
+    }
+
+    /// The least Φ/σ_v² at other noise levels.
+    pub fn at_levels(
+        &self,
+        movie: &Movie,
+        structure: &Structure,
+        space: &CoefficientSpace,
+        levels: NoiseLevels,
+        watch: &mut Watch<'_>,
+    ) -> Result<f64, Error> {
+        let objective = MovieObjective { levels, ..self.objective(movie, structure, space) };
+        let expected = objective.expected();
+        let mut observer = |_: u64, value: f64| match watch.tell("tracks", (1, 1), value / expected) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        };
+        let start = (self.fit.parameters.clone(), None);
+        let optimum = optimise_knowing(&objective, start, STEPS, TOLERANCE, &mut observer)?;
+        Ok(optimum.value / levels.velocity.powi(2))
+    }
+
+    /// By how much −2 log L falls at most, of a few polarities, if cells that do not crawl in this fit were to crawl: a fit of its own would
+    /// gain more where there is one, and little where there is none.
+    pub fn hint_of_polarity(
+        &self,
+        movie: &Movie,
+        request: &Request,
+        space: &CoefficientSpace,
+    ) -> Result<f64, Error> {
+        let states = self.fit.states.clone().crawling(movie, request.structure.terms.len());
+        let levels = self.fit.levels;
+        let memory = Some(Memory { speed: levels.velocity, ..Memory::FIRST });
+        let objective =
+            MovieObjective { states: &states, memory, ..self.objective(movie, &request.structure, space) };
+        let mut at = self.fit.parameters.clone();
+        at.resize(space.dimension() + 2 * states.blocks(), 0.0);
+        let components = objective.explained_components(&objective.place(&at)?, &at);
+        let mut equations = objective.linearise(&at)?;
+        objective.hint(&mut equations, components, request.noise)
+    }
+
+    fn displacements(&self) -> &[f64] {
+        let count = 2 * self.fit.states.blocks();
+        &self.fit.parameters[self.fit.parameters.len() - count..]
+    }
+}
