@@ -158,7 +158,7 @@ impl DiscoverPage<'_> {
                 let caption = format!("after adding {}, arrows on the same scale", self.added());
                 figures.push(Figure::new(maps.after, &caption));
             }
-            if frames.after.cells.iter().any(|cell| cell.polarity.is_some()) {
+            if self.report.selected.iter().any(|own| own.effect == "polarity") {
                 figures.push(Figure::new(
                     polarity_map(&frames.after, polarities.as_ref(), units),
                     "polarities: what the cells move by of themselves",
