@@ -113,10 +113,19 @@ fn reservation(discovery: &Discovery) -> String {
     }
 }
 
+/// How much effects explain. Along tracks the noise of the motion is always estimated, so that it takes up what nothing explains: what counts
+/// there is the fall of the error on motions held out.
+fn explained(discovery: &Discovery) -> String {
+    match discovery.after.tracked {
+        Some(_) => format!("{} of the squared velocities, held out", percent(discovery.after.budget.effects)),
+        None => format!("{} of what the base model lacks", percent(discovery.share_of_excess)),
+    }
+}
+
 /// The answer in a sentence.
 pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
     let errors = errors(discovery);
-    let share = percent(discovery.share_of_excess);
+    let share = explained(discovery);
     let names: Vec<String> = discovery.selected.iter().map(name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let meanings: Vec<String> = discovery.selected.iter().map(meaning).collect();
@@ -125,25 +134,21 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
             format!("Nothing is missing: the base model leaves no more than noise; {errors}.")
         }
         (Verdict::Attributed, [meaning]) => {
-            format!(
-                "{meaning} ({}). This explains {share} of what the base model lacks; {errors}.",
-                names.concat()
-            )
+            format!("{meaning} ({}). This explains {share}; {errors}.", names.concat())
         }
         (Verdict::Attributed, meanings) => format!(
-            "{} effects are missing, {}: {}. Together they explain {share} of what the base model lacks; {errors}.",
+            "{} effects are missing, {}: {}. Together they explain {share}; {errors}.",
             meanings.len(),
             listed(&names, "and"),
             meanings.join("; ")
         ),
         (Verdict::Partial, [meaning]) => format!(
-            "{meaning} ({}): the data are consistent with that, and it explains {share} of what the base model lacks; {}; \
-             {errors}.",
+            "{meaning} ({}): the data are consistent with that, and it explains {share}; {}; {errors}.",
             names.concat(),
             reservation(discovery)
         ),
         (Verdict::Partial, _) => format!(
-            "The data are consistent with {}, which together explain {share} of what the base model lacks; {}; {errors}.",
+            "The data are consistent with {}, which together explain {share}; {}; {errors}.",
             listed(&names, "and"),
             reservation(discovery)
         ),
