@@ -35,7 +35,8 @@ use voronudge_report::discover_report::Predictors;
 /// after on data that the fit has not seen.
 ///
 /// Writes report.json, report.html and, each beginning with before_ and after_, nudged_positions.npy,
-/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy).
+/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy). Where there are tracks and no
+/// velocities, the tracks themselves are searched, which also writes trajectories.npy and, if cells crawl, polarities.npy.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
