@@ -10,25 +10,31 @@ use crate::tracks::Polarity;
 /// Coefficients of a polarity: its speed and how fast it is forgotten.
 const COEFFICIENTS: usize = 2;
 
-/// In the ranking, before one is fitted: by what speaks for it to first order.
-pub(super) fn hinted(setting: &Setting<'_>, candidate: usize, hint: f64) -> Ranked {
-    let p = upper_chi_squared(hint, COEFFICIENTS as f64);
-    let adjusted_p = (p * setting.named(&[]).len() as f64).min(1.0);
+/// In the ranking, by its evidence alone, as before one is fitted.
+pub(super) fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
+    let adjusted_p = adjusted_p(setting, evidence);
     Ranked {
         effect: setting.candidates[candidate].effect,
         dimension: COEFFICIENTS,
-        statistic: hint,
-        p,
+        statistic: evidence,
+        p: p(evidence),
         adjusted_p,
         detection_limit: f64::NAN,
         size: f64::NAN,
         interval: None,
-        fate: fate(setting, adjusted_p),
+        fate: if adjusted_p >= setting.search.level { Fate::BelowThreshold } else { Fate::Explained },
     }
 }
 
-fn fate(setting: &Setting<'_>, adjusted_p: f64) -> Fate {
-    if adjusted_p >= setting.search.level { Fate::BelowThreshold } else { Fate::Explained }
+/// Probability of so much evidence if there is no polarity. Its rate of forgetting then means nothing and its speed is at its bound: two
+/// degrees of freedom are more than there are.
+fn p(evidence: f64) -> f64 {
+    upper_chi_squared(evidence, COEFFICIENTS as f64)
+}
+
+/// The same for any of all candidates.
+fn adjusted_p(setting: &Setting<'_>, evidence: f64) -> f64 {
+    (p(evidence) * setting.named(&[]).len() as f64).min(1.0)
 }
 
 /// The polarity in a fitted model.
@@ -37,7 +43,6 @@ pub(super) struct Crawling<'a> {
     polarity: &'a Polarity,
     /// Root mean square of the velocities.
     usual: f64,
-    candidates: f64,
 }
 
 impl<'a> Crawling<'a> {
@@ -49,19 +54,7 @@ impl<'a> Crawling<'a> {
             candidate,
             polarity,
             usual: (inference.total / inference.used as f64).sqrt(),
-            candidates: setting.named(&[]).len() as f64,
         })
-    }
-
-    /// Probability of so much evidence if there is none. Without a polarity its rate of forgetting means nothing and its speed is at its
-    /// bound: two degrees of freedom are more than there are.
-    fn p(&self) -> f64 {
-        upper_chi_squared(self.polarity.evidence, COEFFICIENTS as f64)
-    }
-
-    /// The same for any of so many candidates.
-    pub fn adjusted_p(&self) -> f64 {
-        (self.p() * self.candidates).min(1.0)
     }
 
     /// With all else in the model; `others` are the other candidates in it.
@@ -78,8 +71,8 @@ impl<'a> Crawling<'a> {
         });
         Tested {
             candidate: self.candidate,
-            p: self.p(),
-            adjusted_p: self.adjusted_p(),
+            p: p(self.polarity.evidence),
+            adjusted_p: adjusted_p(setting, self.polarity.evidence),
             statistic: self.polarity.evidence,
             size: self.polarity.speed / self.usual,
             others: rivals.collect(),
@@ -88,18 +81,12 @@ impl<'a> Crawling<'a> {
 
     /// In the ranking.
     pub fn ranked(&self, setting: &Setting<'_>) -> Ranked {
-        let adjusted_p = self.adjusted_p();
         let [least, most] = self.polarity.speed_interval.map(|end| end / self.usual);
         Ranked {
-            effect: setting.candidates[self.candidate].effect,
-            dimension: COEFFICIENTS,
-            statistic: self.polarity.evidence,
-            p: self.p(),
-            adjusted_p,
             detection_limit: most - least,
             size: self.polarity.speed / self.usual,
             interval: Some([least, most]),
-            fate: fate(setting, adjusted_p),
+            ..ranked(setting, self.candidate, self.polarity.evidence)
         }
     }
 

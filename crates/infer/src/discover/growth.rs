@@ -172,7 +172,7 @@ impl<'a> Growth<'a> {
         let open = |candidate: &usize| !model.added.contains(candidate) && !refused.contains(candidate);
         let Some(polarity) = setting.polarity().filter(open) else { return Ok((best, None)) };
         let hint = setting.hint_of_polarity(model)?;
-        let ranked = model.added.is_empty().then(|| crawling::hinted(&setting, polarity, hint));
+        let ranked = model.added.is_empty().then(|| crawling::ranked(&setting, polarity, hint));
         let projected = model.lineup.beyond(&model.added);
         let rival = best.map_or(0.0, |candidate| projected.score(candidate).statistic);
         Ok((if hint >= LEAST_HINT && hint > rival { Some(polarity) } else { best }, ranked))

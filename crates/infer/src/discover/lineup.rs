@@ -13,7 +13,7 @@
 use super::candidate::Candidate;
 use crate::objective::Objective;
 use crate::quantity::BASE;
-use crate::tracks::{Followed, Movie};
+use crate::tracks::{Beside, Followed, Movie};
 use crate::uncertainty::nudges;
 use crate::whitened::Whitened;
 use crate::{CoefficientSpace, Error, Inference, NoiseSource, Observation, Request};
@@ -153,6 +153,24 @@ impl Widened {
     }
 }
 
+impl Widened {
+    /// The lineup from the linear problem in the coefficients alone, and the sizes of fields.
+    fn lineup(self, problem: Problem, sizes: DMatrix<f64>, result: &Inference) -> Lineup {
+        let Problem { information, score, data, components } = problem;
+        let variance = (result.noise_source == NoiseSource::Given).then(|| result.noise.velocity.powi(2));
+        let Self { model, groups, .. } = self;
+        Lineup { information, score, data, sizes, model, groups, components, variance }
+    }
+}
+
+/// See [`Lineup`].
+struct Problem {
+    information: DMatrix<f64>,
+    score: DVector<f64>,
+    data: f64,
+    components: f64,
+}
+
 impl Lineup {
     /// Linearises about a fit of the base model with some candidates added. `request` is that of the base model.
     pub fn new(
@@ -162,11 +180,11 @@ impl Lineup {
         added: &[usize],
         result: &Inference,
     ) -> Result<Self, Error> {
-        let Widened { structure, space, coefficients, model, groups } =
-            Widened::new(request, candidates, added, result)?;
-        let mut at = space.nearest(&coefficients);
+        let widened = Widened::new(request, candidates, added, result)?;
+        let Widened { structure, space, coefficients, .. } = &widened;
+        let mut at = space.nearest(coefficients);
         at.extend(nudges(frames, result).concat());
-        let objective = Objective { frames, structure: &structure, space: &space, levels: result.noise };
+        let objective = Objective { frames, structure, space, levels: result.noise };
         let equations = objective.linearise(&at)?;
         let spring = objective.spring();
         let parts: Vec<Result<Whitened, Error>> =
@@ -174,16 +192,9 @@ impl Lineup {
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         let p = space.dimension();
         let Whitened { free: information, mixed: score, data, .. } = Whitened::sum(&parts, p);
-        Ok(Self {
-            information,
-            score,
-            data,
-            sizes: equations.frames.iter().map(|f| f.free_normal() / result.total).sum(),
-            model,
-            groups,
-            components: objective.components() as f64,
-            variance: given_variance(result),
-        })
+        let sizes = equations.frames.iter().map(|f| f.free_normal() / result.total).sum();
+        let components = objective.components() as f64;
+        Ok(widened.lineup(Problem { information, score, data, components }, sizes, result))
     }
 
     /// The same about a fit of tracks, in which the places of the cells at all frames, and their polarities, are eliminated.
@@ -194,19 +205,12 @@ impl Lineup {
         added: &[usize],
         result: &Inference,
     ) -> Result<Self, Error> {
-        let Widened { structure, space, coefficients, model, groups } =
-            Widened::new(request, candidates, added, result)?;
-        let beside = followed.beside(movie, &structure, &space, &coefficients)?;
-        Ok(Self {
-            information: beside.information,
-            score: beside.gradient,
-            data: beside.value,
-            sizes: beside.normal / result.total,
-            model,
-            groups,
-            components: beside.components,
-            variance: given_variance(result),
-        })
+        let widened = Widened::new(request, candidates, added, result)?;
+        let Widened { structure, space, coefficients, .. } = &widened;
+        let Beside { information, gradient: score, value: data, normal, components } =
+            followed.beside(movie, structure, space, coefficients)?;
+        let problem = Problem { information, score, data, components };
+        Ok(widened.lineup(problem, normal / result.total, result))
     }
 
     /// The same with data that have back what a candidate with some coefficients explains, so that others can be put in
@@ -255,10 +259,6 @@ impl Lineup {
     pub fn left(&self) -> f64 {
         self.components - self.model.len() as f64
     }
-}
-
-fn given_variance(result: &Inference) -> Option<f64> {
-    (result.noise_source == NoiseSource::Given).then(|| result.noise.velocity.powi(2))
 }
 
 /// The inverse of a scaled positive matrix on the directions that are not degenerate, and their number.

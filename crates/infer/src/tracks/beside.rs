@@ -1,5 +1,6 @@
 //! Further terms beside the fit of a movie, in one linear problem.
 
+use super::anchors::Share;
 use super::inference::Followed;
 use super::memory::Memory;
 use super::movie::Movie;
@@ -53,9 +54,9 @@ impl Followed {
             MovieObjective { rule: self.fit.rule.twice(), ..self.objective(movie, structure, space) };
         let mut at = space.nearest(coefficients);
         at.extend(self.displacements());
-        let equations = objective.linearise(&at)?;
-        let reduced = equations.reduced()?;
         let placed = objective.place(&at)?;
+        let equations = objective.linearise_at(&placed, &at, Share::Known)?;
+        let reduced = equations.reduced()?;
         Ok(Beside {
             value: objective.value(&at),
             normal: equations.frames.iter().map(|part| part.free_normal().clone()).sum(),
@@ -100,8 +101,9 @@ impl Followed {
             MovieObjective { states: &states, memory, ..self.objective(movie, &request.structure, space) };
         let mut at = self.fit.parameters.clone();
         at.resize(space.dimension() + 2 * states.blocks(), 0.0);
-        let components = objective.explained_components(&objective.place(&at)?, &at);
-        let mut equations = objective.linearise(&at)?;
+        let placed = objective.place(&at)?;
+        let components = objective.explained_components(&placed, &at);
+        let mut equations = objective.linearise_at(&placed, &at, Share::Known)?;
         objective.hint(&mut equations, components, request.noise)
     }
 

@@ -55,12 +55,21 @@ impl MovieObjective<'_> {
 
     /// The same, perhaps with the share of the way to the centroids as a further coefficient, after all others.
     pub(super) fn linearise_with(&self, parameters: &[f64], share: Share) -> Result<NormalEquations, Error> {
-        let placed = self.place(parameters)?;
-        let residuals = self.residuals(&placed, parameters);
+        self.linearise_at(&self.place(parameters)?, parameters, share)
+    }
+
+    /// The same where cells are placed already.
+    pub(super) fn linearise_at(
+        &self,
+        placed: &Placed<'_>,
+        parameters: &[f64],
+        share: Share,
+    ) -> Result<NormalEquations, Error> {
+        let residuals = self.residuals(placed, parameters);
         let displacements = self.split(parameters).1;
-        let anchors = Anchors::new(self, &placed, displacements, share);
-        let outset = Outset::new(self, &placed, displacements, anchors.dimension);
-        self.equations(parameters, &placed, Rests { residuals, anchors, outset, displacements })
+        let anchors = Anchors::new(self, placed, displacements, share);
+        let outset = Outset::new(self, placed, displacements, anchors.dimension);
+        self.equations(parameters, placed, Rests { residuals, anchors, outset, displacements })
     }
 
     /// The problem in β alone about a minimum whose residuals have changed by so much.

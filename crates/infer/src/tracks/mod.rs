@@ -39,6 +39,7 @@ mod tangent;
 mod tests;
 mod turn;
 
+pub(crate) use beside::Beside;
 pub use inference::infer_tracks;
 pub(crate) use inference::{Followed, follow};
 pub use likely::Polarity;

@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
     let mut progress = Progress::new(arguments.common.verbosity());
     let Material { prepared, tracks, predictors } = match asked.tracks(&data, &mut run)? {
-        Some((prepared, tracks)) => asked.followed(prepared, tracks, map.is_some(), &mut progress)?,
+        Some((prepared, tracks)) => asked.followed(prepared, tracks, &mut progress)?,
         None => {
             let (prepared, predictors) = asked.prepare(snapshots, (&data, map.as_ref()), None, &mut run)?;
             Material { prepared, tracks: None, predictors }
@@ -145,6 +145,7 @@ impl Asked<'_> {
             (snapshots.background.is_some(), "--background"),
             (arguments.options.null_sets.is_some_and(|count| count > 0), "--null-sets"),
             (arguments.predictions.is_asked(), "--predict"),
+            (arguments.field.is_asked(), "--field"),
         ];
         if let Some((_, option)) = refused.into_iter().find(|(given, _)| *given) {
             return Err(Failure::new(format!(
@@ -161,16 +162,9 @@ impl Asked<'_> {
         &self,
         mut prepared: Prepared,
         mut tracks: PreparedTracks,
-        has_map: bool,
         progress: &mut Progress,
     ) -> Result<Material, Failure> {
         let snapshots = &self.arguments.snapshots;
-        if has_map {
-            return Err(Failure::new(
-                "--field is for velocities that are given or derived, but there are only tracks",
-            )
-            .with_hint("leave it out, or give --difference central for velocities"));
-        }
         tracks
             .measure(&mut prepared, progress)
             .and_then(|()| tracks.show(&mut prepared))

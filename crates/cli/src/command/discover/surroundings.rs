@@ -32,6 +32,11 @@ pub(super) struct ExternalMap {
 }
 
 impl FieldArguments {
+    /// Whether a field is given.
+    pub fn is_asked(&self) -> bool {
+        self.field.is_some()
+    }
+
     /// The external field, if one is given; its files count as inputs of the data set.
     pub fn load(&self, data: &mut DataSet) -> Result<Option<ExternalMap>, Failure> {
         let (Some(file), Some(x), Some(y)) = (&self.field, &self.field_x, &self.field_y) else {
