@@ -115,10 +115,10 @@ const fn class(name: &'static str, words: &'static str, recipe: Recipe) -> Class
 
 /// What may act that the model lacks, in the order of the seeds.
 pub const EFFECTS: [&str; 6] =
-    ["nematic_stress", "drift", "alpha_area", "odd_nematic_stress", "p0_gradient", "nonlinear_area"];
+    ["nematic_stress", "drift", "alpha_area", "odd_nematic_stress", "p0_gradient", "short_range_repulsion"];
 
 /// All classes of the study.
-pub const CLASSES: [Class; 23] = [
+pub const CLASSES: [Class; 24] = [
     class("complete", "complete, periodic", COMPLETE),
     class("open", "open field of view", Recipe { view: View::Window, ..COMPLETE }),
     class("missed-2", "2 % not detected", missed(0.02)),
@@ -156,6 +156,11 @@ pub const CLASSES: [Class; 23] = [
             flaws: Flaws { missed: 0.01, gaps: 0.03, breaks: 0.03, ..NONE },
             ..tracks(0.1)
         },
+    ),
+    class(
+        "open-missed-2-effect",
+        "open field of view, 2 % not detected, an effect of 15 %",
+        Recipe { view: View::Window, lacks: true, ..missed(0.02) },
     ),
     class(
         "tracks-effect",

@@ -207,7 +207,8 @@ fn in_block(frame: &Observation, fold: usize, blocks: usize) -> Vec<bool> {
         .collect()
 }
 
-fn without(frame: &Observation, held_out: &[bool]) -> Observation {
+/// A frame without some of its velocities.
+pub(crate) fn without(frame: &Observation, held_out: &[bool]) -> Observation {
     let mut training = frame.clone();
     for (v, out) in training.velocities.values_mut().iter_mut().zip(held_out) {
         if *out {

@@ -1,6 +1,6 @@
 //! What a fit answers.
 
-use crate::{Doubt, NoiseLevels, NoiseSource, Quantity};
+use crate::{Doubt, NoiseLevels, NoiseSource, Observation, Quantity};
 use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Parameters;
@@ -169,5 +169,14 @@ impl Inference {
     /// By how much the objective exceeds its expected value; one where it does not.
     pub fn excess(&self) -> f64 {
         (self.objective / self.expected_objective).max(1.0)
+    }
+
+    /// The frames with the weights that their velocities have in the fit; `None` if all count alike.
+    pub(crate) fn weighed(&self, frames: &[Observation]) -> Option<Vec<Observation>> {
+        if self.frames.iter().all(|own| own.weights.is_empty()) {
+            return None;
+        }
+        let pairs = frames.iter().zip(&self.frames);
+        Some(pairs.map(|(frame, own)| frame.clone().with_weights(own.weights.clone())).collect())
     }
 }

@@ -145,7 +145,9 @@ fn modes(frames: &[ResidualField<'_>], pool: &Pool, seed: u64) -> Option<(f64, f
 fn successive(pool: &Pool, identities: &[Vec<i64>], seed: u64) -> Option<(f64, f64)> {
     let mut pairs = Vec::new();
     for (frames, starts) in identities.windows(2).zip(pool.starts.windows(2)) {
-        let before: BTreeMap<i64, usize> = frames[0].iter().copied().zip(starts[0]..starts[1]).collect();
+        // What has no name is nowhere else.
+        let named = frames[0].iter().copied().zip(starts[0]..starts[1]).filter(|(track, _)| *track >= 0);
+        let before: BTreeMap<i64, usize> = named.collect();
         let later = frames[1].iter().zip(starts[1]..pool.residuals.len());
         pairs.extend(later.filter_map(|(track, j)| Some([*before.get(track)?, j])));
     }

@@ -3,14 +3,11 @@
 use super::chance::Chance;
 use super::crawling::Crawling;
 use super::lineup::added_places;
+use super::resilience::{Member, partial};
 use super::result::Selected;
 use super::steps::{Model, Setting};
-use crate::least_squares::residuals;
 use crate::search::Watch;
-use crate::uncertainty::nudges;
 use crate::{Error, Quantity};
-use nalgebra::{DMatrix, DVector};
-use voronudge_geometry::Vector;
 use voronudge_model::Effect;
 
 /// Lead in `−2 log L` below which another effect could as well be the right one: under it, so large a lead of a wrong one has a
@@ -37,6 +34,8 @@ pub(super) struct Tested {
     pub adjusted_p: f64,
     pub(super) statistic: f64,
     pub(super) size: f64,
+    /// Why it does not stand without some of the data, if it does not.
+    pub(super) weakness: Option<&'static str>,
     /// Other candidates in its place: lead over them in the linear problem, and their coefficients.
     pub(super) others: Vec<(usize, f64, Vec<f64>)>,
 }
@@ -84,8 +83,10 @@ pub(super) fn without_each(
                 other.coefficients.as_slice().to_vec(),
             )
         });
+        let member = Member { candidate: *candidate, places, others: &others, statistic: score.statistic };
         all.push(Tested {
             candidate: *candidate,
+            weakness: member.weakness(setting, base, model)?,
             p: score.p,
             adjusted_p: chance.adjusted(score.p),
             statistic: score.statistic,
@@ -158,35 +159,6 @@ fn class(
     })?;
     let close = rivals.iter().zip(leads).filter(|(_, lead)| *lead < LEAD);
     Ok(close.map(|((candidate, ..), _)| setting.candidates[*candidate].effect).collect())
-}
-
-/// What an effect predicts beyond the terms of the base model, and that with what the whole model leaves, in each target.
-fn partial(setting: &Setting<'_>, model: &Model, places: &[usize]) -> Result<Vec<[Vector<f64>; 2]>, Error> {
-    // Along tracks there is no velocity to set against another.
-    if model.followed.is_some() {
-        return Ok(Vec::new());
-    }
-    let frames = setting.frames;
-    let objective = model.objective(frames);
-    let coefficients = model.inference.coefficients.as_slice();
-    let base = Quantity::COEFFICIENTS;
-    let (mut rows, mut targets) = (Vec::new(), Vec::new());
-    for (index, nudges) in nudges(frames, &model.inference).iter().enumerate() {
-        let evaluated = objective.place(index, nudges)?.evaluate(coefficients);
-        for (datum, rest) in residuals(&frames[index], &evaluated.predicted) {
-            let at = |k: usize| evaluated.by_coefficient[k][datum];
-            let effect =
-                places.iter().fold(Vector::zeros(), |sum: Vector<f64>, k| sum + at(*k) * coefficients[*k]);
-            rows.push((std::array::from_fn::<Vector<f64>, 4, _>(at), effect));
-            targets.push(rest);
-        }
-    }
-    let normal = DMatrix::from_fn(base, base, |i, j| rows.iter().map(|(x, _)| x[i].dot(&x[j])).sum());
-    let right = DVector::from_fn(base, |i, _| rows.iter().map(|(x, effect)| x[i].dot(effect)).sum());
-    let shared =
-        crate::least_squares::invert(normal).map_or_else(|_| DVector::zeros(base), |inverse| inverse * right);
-    let beyond = rows.iter().map(|(x, effect)| (0..base).fold(*effect, |rest, k| rest - x[k] * shared[k]));
-    Ok(beyond.zip(targets).map(|(predicted, rest)| [predicted, predicted + rest]).collect())
 }
 
 /// What the base model lacks beyond noise, at the noise levels of the model with the effects.

@@ -73,6 +73,7 @@ impl<'a> Crawling<'a> {
             candidate: self.candidate,
             p: p(self.polarity.evidence),
             adjusted_p: adjusted_p(setting, self.polarity.evidence),
+            weakness: None,
             statistic: self.polarity.evidence,
             size: self.polarity.speed / self.usual,
             others: rivals.collect(),

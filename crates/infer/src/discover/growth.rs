@@ -34,16 +34,18 @@ struct Unseen {
 }
 
 impl Unseen {
+    /// Velocities count as much as in the fit of `judge`.
     fn new(
         setting: &Setting<'_>,
-        model: &Model,
+        (model, judge): (&Model, &Model),
         split: &Split,
         watch: &mut Watch<'_>,
     ) -> Result<Self, Error> {
         if let Some(followed) = &model.followed {
             return Ok(Self { probability: None, errors: followed.held_out.clone() });
         }
-        let (objective, point) = (model.objective(setting.frames), model.point(setting.frames));
+        let (objective, point) =
+            (model.objective_on(judge.frames(setting.frames)), model.point(setting.frames));
         Ok(Self { probability: Predictive::new(&objective, &point, split, watch)?, errors: None })
     }
 
@@ -86,7 +88,7 @@ impl<'a> Growth<'a> {
         split: &'a Split,
         watch: &mut Watch<'_>,
     ) -> Result<Self, Error> {
-        let by_base = Unseen::new(&setting, base, split, watch)?;
+        let by_base = Unseen::new(&setting, (base, base), split, watch)?;
         Ok(Self { setting, base, ranking: Ranking::new(&setting, &base.lineup), split, by_base })
     }
 
@@ -107,8 +109,14 @@ impl<'a> Growth<'a> {
             };
             let added = current.added.iter().copied().chain([candidate]).collect();
             let model = self.setting.fit(added, watch)?;
-            let after = Unseen::new(&self.setting, &model, self.split, watch)?;
-            let against = before.reason_against(&after);
+            let after = Unseen::new(&self.setting, (&model, &model), self.split, watch)?;
+            let against = match current.is_plain() && model.is_plain() {
+                true => before.reason_against(&after),
+                // What is told apart from a fault by the effect counts for both.
+                false => {
+                    Unseen::new(&self.setting, (current, &model), self.split, watch)?.reason_against(&after)
+                }
+            };
             let crawling = Crawling::of(&self.setting, candidate, &model);
             if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(hinted) {
                 let is_chance = ranked.adjusted_p >= self.setting.search.level;
@@ -133,8 +141,9 @@ impl<'a> Growth<'a> {
         let Some((model, _)) = grown else { return Ok(None) };
         let grown = self.tested(model, watch)?;
         let level = self.setting.search.level;
-        self.prune(grown, "with all else in the model it is no more than chance", watch, |own| {
-            own.adjusted_p >= level
+        self.prune(grown, watch, |own| match own.adjusted_p >= level {
+            true => Some("with all else in the model it is no more than chance"),
+            false => own.weakness,
         })
     }
 
@@ -146,17 +155,20 @@ impl<'a> Growth<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<Option<Grown>, Error> {
         let level = self.setting.search.level;
-        self.prune(
-            grown,
-            "synthetic data without any effect, searched in the same way, lead to one as often",
-            watch,
-            |own| null_data::probability(null_sets, own.p) >= level,
-        )
+        self.prune(grown, watch, |own| {
+            (null_data::probability(null_sets, own.p) >= level).then_some(
+                "synthetic data without any effect, searched in the same way, lead to one as often",
+            )
+        })
     }
 
     /// By how much velocities held out become more probable with effects than without, and the standard error.
     pub fn likelihood_gain(&self, with: &Model, watch: &mut Watch<'_>) -> Result<Option<[f64; 2]>, Error> {
-        Ok(self.by_base.likelihood_gain(&Unseen::new(&self.setting, with, self.split, watch)?))
+        let after = Unseen::new(&self.setting, (with, with), self.split, watch)?;
+        if self.base.is_plain() && with.is_plain() {
+            return Ok(self.by_base.likelihood_gain(&after));
+        }
+        Ok(Unseen::new(&self.setting, (self.base, with), self.split, watch)?.likelihood_gain(&after))
     }
 
     /// What a model lacks most: the polarity of cells, if more speaks for it than for any other candidate, because it makes all other tests
@@ -178,19 +190,19 @@ impl<'a> Growth<'a> {
         Ok((if hint >= LEAST_HINT && hint > rival { Some(polarity) } else { best }, ranked))
     }
 
-    /// Takes back the effect with the largest p as long as it is chance.
+    /// Takes back the effect with the largest p among those against which a reason speaks, as long as there is one.
     fn prune(
         &mut self,
         mut grown: Grown,
-        reason: &'static str,
         watch: &mut Watch<'_>,
-        is_chance: impl Fn(&Tested) -> bool,
+        reason_against: impl Fn(&Tested) -> Option<&'static str>,
     ) -> Result<Option<Grown>, Error> {
         loop {
-            let weakest = grown.tested.iter().max_by(|a, b| a.p.total_cmp(&b.p));
-            let Some(candidate) = weakest.filter(|own| is_chance(own)).map(|own| own.candidate) else {
+            let weak = grown.tested.iter().filter_map(|own| Some((own, reason_against(own)?)));
+            let Some((weakest, reason)) = weak.max_by(|a, b| a.0.p.total_cmp(&b.0.p)) else {
                 return Ok(Some(grown));
             };
+            let candidate = weakest.candidate;
             self.refuse(candidate, reason);
             let kept: Vec<usize> =
                 grown.model.added.iter().copied().filter(|own| *own != candidate).collect();

@@ -20,6 +20,7 @@ use crate::{CoefficientSpace, Error, Inference, NoiseSource, Observation, Reques
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use statrs::distribution::{ChiSquared, ContinuousCDF, FisherSnedecor};
+use std::ops::Range;
 use voronudge_model::{Column, Structure};
 
 /// Share of a direction's size beyond the model below which the model says it already.
@@ -154,6 +155,12 @@ impl Widened {
 }
 
 impl Widened {
+    /// With unknowns of the measurement as columns of the model.
+    fn with_unknowns(mut self, columns: Range<usize>) -> Self {
+        self.model.extend(columns);
+        self
+    }
+
     /// The lineup from the linear problem in the coefficients alone, and the sizes of fields.
     fn lineup(self, problem: Problem, sizes: DMatrix<f64>, result: &Inference) -> Lineup {
         let Problem { information, score, data, components } = problem;
@@ -172,7 +179,8 @@ struct Problem {
 }
 
 impl Lineup {
-    /// Linearises about a fit of the base model with some candidates added. `request` is that of the base model.
+    /// Linearises about a fit of the base model with some candidates added. `request` is that of the base model. What is not known of the
+    /// measurement, such as the width of windows, belongs to the model.
     pub fn new(
         frames: &[Observation],
         request: &Request,
@@ -185,15 +193,18 @@ impl Lineup {
         let mut at = space.nearest(coefficients);
         at.extend(nudges(frames, result).concat());
         let objective = Objective { frames, structure, space, levels: result.noise };
-        let equations = objective.linearise(&at)?;
+        let unknowns = frames.first().map_or(&[][..], Observation::unknowns);
+        let equations = objective.linearise_with(&at, unknowns)?;
         let spring = objective.spring();
         let parts: Vec<Result<Whitened, Error>> =
             equations.frames.par_iter().map(|frame| frame.whiten(spring)).collect();
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let p = space.dimension();
+        let p = space.dimension() + unknowns.len();
         let Whitened { free: information, mixed: score, data, .. } = Whitened::sum(&parts, p);
         let sizes = equations.frames.iter().map(|f| f.free_normal() / result.total).sum();
         let components = objective.components() as f64;
+        let unknowns = space.dimension()..p;
+        let widened = widened.with_unknowns(unknowns);
         Ok(widened.lineup(Problem { information, score, data, components }, sizes, result))
     }
 

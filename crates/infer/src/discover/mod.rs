@@ -19,6 +19,7 @@ mod lineup;
 mod measurement;
 mod null_data;
 mod ranking;
+mod resilience;
 mod result;
 mod steps;
 #[cfg(test)]

@@ -44,12 +44,29 @@ pub(super) struct Model {
     pub lineup: Lineup,
     /// Of tracks: where their fit has come to.
     pub followed: Option<Followed>,
+    /// The frames with the weights that their velocities have in it, if some hardly count.
+    weighed: Option<Vec<Observation>>,
     space: CoefficientSpace,
 }
 
 impl Model {
+    /// The frames as they were fitted.
+    pub fn frames<'a>(&'a self, given: &'a [Observation]) -> &'a [Observation] {
+        self.weighed.as_deref().unwrap_or(given)
+    }
+
+    /// Whether all velocities count alike.
+    pub fn is_plain(&self) -> bool {
+        self.weighed.is_none()
+    }
+
     /// What was minimised.
     pub fn objective<'a>(&'a self, frames: &'a [Observation]) -> Objective<'a> {
+        self.objective_on(self.frames(frames))
+    }
+
+    /// The same for frames with other weights.
+    pub fn objective_on<'a>(&'a self, frames: &'a [Observation]) -> Objective<'a> {
         let levels = self.inference.noise;
         Objective { frames, structure: &self.request.structure, space: &self.space, levels }
     }
@@ -92,13 +109,16 @@ impl Setting<'_> {
         let (inference, followed) = follow(movie, &request, watch)?;
         let base = &self.search.fit;
         let lineup = Lineup::of_tracks((movie, &followed), base, self.candidates, &added, &inference)?;
-        Ok(Model { space: request.space()?, added, request, inference, lineup, followed: Some(followed) })
+        let (space, followed) = (request.space()?, Some(followed));
+        Ok(Model { space, added, request, inference, lineup, followed, weighed: None })
     }
 
     /// A fit with all candidates beside it.
     pub fn model(&self, added: Vec<usize>, request: Request, inference: Inference) -> Result<Model, Error> {
-        let lineup = Lineup::new(self.frames, &self.search.fit, self.candidates, &added, &inference)?;
-        Ok(Model { space: request.space()?, added, request, inference, lineup, followed: None })
+        let weighed = inference.weighed(self.frames);
+        let frames = weighed.as_deref().unwrap_or(self.frames);
+        let lineup = Lineup::new(frames, &self.search.fit, self.candidates, &added, &inference)?;
+        Ok(Model { space: request.space()?, added, request, inference, lineup, followed: None, weighed })
     }
 
     /// Whether it takes too long to refit candidates that are close to each other.
@@ -219,8 +239,12 @@ impl Setting<'_> {
         }
         let mut start = space.nearest(&coefficients);
         start.extend(nudges(self.frames, &from.inference).concat());
-        let objective =
-            Objective { frames: self.frames, structure: &request.structure, space: &space, levels };
+        let objective = Objective {
+            frames: from.frames(self.frames),
+            structure: &request.structure,
+            space: &space,
+            levels,
+        };
         Ok(refine(&objective, start, STEPS)?.value / levels.velocity.powi(2))
     }
 }

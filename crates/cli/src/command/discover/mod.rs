@@ -12,13 +12,14 @@ mod surroundings;
 
 use super::fit::{
     ConstraintArguments, Measured, Prepared, PreparedTracks, Question, SearchArguments, SnapshotArguments,
-    arrays, browser, words,
+    arrays, browser, latent, words,
 };
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
+use crate::snapshot::Snapshot;
 use candidates::SearchOptions;
 use clap::Args;
 use history::{GivenDifference, History};
@@ -57,6 +58,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     predictions: PredictionArguments,
     #[command(flatten)]
+    latent: latent::LatentArguments,
+    #[command(flatten)]
     known: ConstraintArguments,
     #[command(flatten)]
     method: SearchArguments,
@@ -68,6 +71,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("discover", &arguments.common)?;
     let snapshots = &arguments.snapshots;
     snapshots.check()?;
+    arguments.latent.check()?;
     let constraints = arguments.known.constraints()?;
     let candidates = arguments.options.candidates()?;
     let mut data = snapshots.data.load()?;
@@ -75,13 +79,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
     let mut progress = Progress::new(arguments.common.verbosity());
-    let Material { prepared, tracks, predictors } = match asked.tracks(&data, &mut run)? {
-        Some((prepared, tracks)) => asked.followed(prepared, tracks, &mut progress)?,
-        None => {
-            let (prepared, predictors) = asked.prepare(snapshots, (&data, map.as_ref()), None, &mut run)?;
-            Material { prepared, tracks: None, predictors }
-        }
-    };
+    let Material { prepared, tracks, predictors } =
+        asked.material((&data, map.as_ref()), &mut run, &mut progress)?;
     let others = arguments.predictions.load(&asked, (&mut data, &prepared), &mut run)?;
     let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
     let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
@@ -157,19 +156,34 @@ impl Asked<'_> {
         PreparedTracks::new(self.question(snapshots, data, None), velocities, frames, run).map(Some)
     }
 
-    /// The tracks with what is found out about how they were measured.
-    fn followed(
+    /// The data with what is found out about how they were measured.
+    fn material(
         &self,
-        mut prepared: Prepared,
-        mut tracks: PreparedTracks,
+        (data, map): (&DataSet, Option<&ExternalMap>),
+        run: &mut Run,
         progress: &mut Progress,
     ) -> Result<Material, Failure> {
-        let snapshots = &self.arguments.snapshots;
-        tracks
-            .measure(&mut prepared, progress)
-            .and_then(|()| tracks.show(&mut prepared))
-            .map_err(|error| prepared.place(error, snapshots))?;
-        Ok(Material { prepared, tracks: Some(tracks), predictors: None })
+        let Arguments { snapshots, latent, .. } = self.arguments;
+        let (mut prepared, mut tracks, past) = match self.tracks(data, run)? {
+            Some((prepared, tracks)) => (prepared, Some(tracks), None),
+            None => {
+                let (prepared, past) = self.prepare(snapshots, data, None, run)?;
+                (prepared, None, Some(past))
+            }
+        };
+        if let Err(error) = latent.understand(tracks.as_mut(), &mut prepared, progress) {
+            progress.finish();
+            return Err(prepared.place(error, snapshots));
+        }
+        prepared.caution(run);
+        let predictors = match past {
+            Some(Past { history, predictors }) => {
+                surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
+                predictors
+            }
+            None => None,
+        };
+        Ok(Material { prepared, tracks, predictors })
     }
 
     fn question<'q>(
@@ -188,22 +202,21 @@ impl Asked<'_> {
         }
     }
 
-    /// Snapshots with what surrounds and preceded them, in their own scale or, of another data set, in that of the fit.
+    /// Snapshots and what preceded them, in their own scale or, of another data set, in that of the fit.
     fn prepare(
         &self,
         snapshots: &SnapshotArguments,
-        (data, map): (&DataSet, Option<&ExternalMap>),
+        data: &DataSet,
         other: Option<Scale>,
         run: &mut Run,
-    ) -> Result<(Prepared, Option<Predictors>), Failure> {
+    ) -> Result<(Prepared, Past), Failure> {
         let Self { arguments, candidates, .. } = self;
         let velocities = Measured::new(snapshots, data, arguments.difference.unwrap_or(Difference::Forward))?;
         let history = History::new(data, &velocities, arguments.given_difference)?;
         let frames = velocities.frames(snapshots, data)?;
         let kept = history::keep_frames(history.as_ref(), data, frames, candidates);
         let (kind, noise) = (shared_errors(&velocities), unknown_noise(data));
-        let mut prepared = self.question(snapshots, data, other).prepare(velocities, kept.frames, run)?;
-        surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
+        let prepared = self.question(snapshots, data, other).prepare(velocities, kept.frames, run)?;
         match other {
             None => kind.into_iter().chain(noise).chain(kept.warning).for_each(|warning| run.warn(warning)),
             // What is wrong with the kind of data was said of the first.
@@ -212,8 +225,27 @@ impl Asked<'_> {
                 .into_iter()
                 .for_each(|warning| run.warn(format!("{}: {warning}", snapshots.title()))),
         }
-        Ok((prepared, kept.predictors))
+        Ok((prepared, Past { history, predictors: kept.predictors }))
     }
+
+    /// Another data set in the scale of the fit, with what surrounds and preceded it.
+    fn other(
+        &self,
+        snapshots: &SnapshotArguments,
+        data: &DataSet,
+        scale: Scale,
+        run: &mut Run,
+    ) -> Result<Prepared, Failure> {
+        let (mut prepared, Past { history, .. }) = self.prepare(snapshots, data, Some(scale), run)?;
+        surroundings::surround(&mut prepared, (snapshots, data), None, history.as_ref())?;
+        Ok(prepared)
+    }
+}
+
+/// What preceded the frames.
+struct Past {
+    history: Option<History>,
+    predictors: Option<Predictors>,
 }
 
 /// What the error of a shared position does to differences.
@@ -243,9 +275,15 @@ fn unknown_noise(data: &DataSet) -> Option<String> {
     ))
 }
 
+/// The name of a cell that is no detection.
+const NOT_TRACKED: i64 = -1;
+
 /// The tracks of the cells of each frame, where there are several frames.
 fn identities(prepared: &Prepared) -> Option<Vec<Vec<i64>>> {
     let tracked = prepared.frames.len() > 1 && prepared.velocities.flow().is_none();
-    let of_frame = |cells: &Vec<usize>| cells.iter().map(|&cell| cell as i64).collect();
-    tracked.then(|| prepared.snapshots.iter().map(|snapshot| of_frame(&snapshot.cells)).collect())
+    let of_frame = |(index, snapshot): (usize, &Snapshot)| {
+        let names = snapshot.cells.iter().map(|&cell| cell as i64).collect();
+        prepared.of_cells(index, names, &NOT_TRACKED)
+    };
+    tracked.then(|| prepared.snapshots.iter().enumerate().map(of_frame).collect())
 }

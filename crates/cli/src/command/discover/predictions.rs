@@ -55,7 +55,7 @@ impl PredictionArguments {
                     .at(folder.display()));
                 }
             }
-            let (own, _) = asked.prepare(&snapshots, (&other, None), Some(prepared.scale), run)?;
+            let own = asked.other(&snapshots, &other, prepared.scale, run)?;
             data.inputs.extend(other.inputs);
             others.push(Other { folder: folder.clone(), observations: own.observations });
         }

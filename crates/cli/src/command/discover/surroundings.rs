@@ -109,7 +109,7 @@ pub(super) fn surround(
         let (snapshot, frame) = (&prepared.snapshots[index], prepared.frames[index]);
         let mut environment = Environment::default().about(origin);
         if let Some(labels) = labels(data, snapshot, frame) {
-            environment = environment.with_labels(labels).map_err(fault)?;
+            environment = environment.with_labels(prepared.of_cells(index, labels, &None)).map_err(fault)?;
         }
         if matches!(observation.tessellation.domain(), Domain::Open) {
             let beyond = observation.visibility.iter().map(|v| *v != Visibility::Counted).collect();
@@ -121,6 +121,7 @@ pub(super) fn surround(
         if let Some(history) = history {
             let earlier = history.earlier((arguments, data), (snapshot, frame), prepared.mean_removed)?;
             let scaled = earlier.into_iter().map(|v| v.map(|v| v / prepared.scale.velocity())).collect();
+            let scaled = prepared.of_cells(index, scaled, &None);
             environment = environment.with_earlier(scaled).map_err(fault)?;
         }
         surrounded.push(observation.clone().within(Arc::new(environment)));

@@ -37,8 +37,33 @@ impl LatentArguments {
         }
     }
 
+    /// Finds out how the cells of a problem were measured: which were not detected, what a position is, over which windows velocities are
+    /// averaged. Windows make the data of a flow field; what a position is can be told of complete cells only.
+    pub fn understand(
+        &self,
+        tracks: Option<&mut PreparedTracks>,
+        prepared: &mut Prepared,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        match tracks {
+            Some(tracks) => {
+                self.complete_tracks(tracks, prepared, progress)?;
+                tracks.measure(prepared, progress)?;
+                tracks.show(prepared)
+            }
+            None if prepared.velocities.flow().is_some() => {
+                prepared.measure(progress)?;
+                self.complete(prepared, progress)
+            }
+            None => {
+                self.complete(prepared, progress)?;
+                prepared.measure(progress)
+            }
+        }
+    }
+
     /// Completes the frames of a problem.
-    pub fn complete(&self, prepared: &mut Prepared, progress: &mut Progress) -> Result<(), Error> {
+    fn complete(&self, prepared: &mut Prepared, progress: &mut Progress) -> Result<(), Error> {
         if !self.complete {
             return Ok(());
         }
@@ -52,7 +77,7 @@ impl LatentArguments {
     }
 
     /// Completes the tracks of a problem.
-    pub fn complete_tracks(
+    fn complete_tracks(
         &self,
         tracks: &mut PreparedTracks,
         prepared: &Prepared,
@@ -86,6 +111,24 @@ impl Prepared {
             }
         }
         field
+    }
+
+    /// What belongs to the detections of a frame, for its cells as the fit has them: a cell that was detected twice has that of the first
+    /// detection, one that was put in has nothing.
+    pub fn of_cells<T: Clone>(&self, index: usize, of_detections: Vec<T>, nothing: &T) -> Vec<T> {
+        let Some(completion) = &self.completion else {
+            return of_detections;
+        };
+        let frame = &completion.frames[index];
+        let detection = |origin: &Origin| match *origin {
+            Origin::Detected(cell) => Some(cell),
+            Origin::Added(change, _) => match frame.changes[change].kind {
+                ChangeKind::Merged => frame.changes[change].removed.first().copied(),
+                _ => None,
+            },
+        };
+        let own = |cell: usize| of_detections.get(cell).unwrap_or(nothing).clone();
+        frame.origins.iter().map(|origin| detection(origin).map_or_else(|| nothing.clone(), own)).collect()
     }
 
     /// What was found, for the report; `None` if it was not looked for.

@@ -108,21 +108,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         prepared.request.activity = Activity::Polarity;
     }
     let mut progress = Progress::new(arguments.common.verbosity());
-    // Windows make the data of a flow field; what a position is can be told of complete cells only.
-    let understood = match (&mut movie, prepared.velocities.flow()) {
-        (Some(tracks), _) => arguments
-            .latent
-            .complete_tracks(tracks, &prepared, &mut progress)
-            .and_then(|()| tracks.measure(&mut prepared, &mut progress))
-            .and_then(|()| tracks.show(&mut prepared)),
-        (None, Some(_)) => prepared
-            .measure(&mut progress)
-            .and_then(|()| arguments.latent.complete(&mut prepared, &mut progress)),
-        (None, None) => arguments
-            .latent
-            .complete(&mut prepared, &mut progress)
-            .and_then(|()| prepared.measure(&mut progress)),
-    };
+    let understood = arguments.latent.understand(movie.as_mut(), &mut prepared, &mut progress);
     prepared.caution(&mut run);
     let fitted = understood.and_then(|()| {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
