@@ -106,8 +106,11 @@ pub fn infer(
             naive: residual_at(&naive) / total,
             nudged: parts.residual / total,
             un_nudged: residual_at(free) / total,
-            noise_floor: match at_limit(&levels, &request.noise) {
-                // Nudges as large as that are beyond the linear range.
+            noise_floor: match at_limit(&levels, &request.noise)
+                || frames.iter().any(|own| own.share() != 0.0)
+            {
+                // Nudges as large as that are beyond the linear range, and sites that were found from centroids have errors that the
+                // forces made larger, together.
                 true => f64::NAN,
                 false => {
                     let positions = equations.sensitivity() * levels.position.powi(2);

@@ -72,7 +72,8 @@ pub struct Nmse {
     /// The nudged fit's parameters at the measured positions.
     pub un_nudged: f64,
     /// What the noise alone makes of `un_nudged` if the model is right: `(n σ_v² + σ_r² ‖∂v/∂r‖²) / Σ‖v‖²`, linearised
-    /// at the nudged positions. NaN if the position noise is at its limit.
+    /// at the nudged positions. NaN if the position noise is at its limit, or
+    /// if positions are not those of sites.
     pub noise_floor: f64,
     /// Velocities held out of the fit, predicted at the measured positions: mean over folds and its standard error.
     pub cross_validated: Option<[f64; 2]>,

@@ -1,11 +1,15 @@
 //! Which effects can be tested on the data.
 
+use super::result::Search;
 use crate::Observation;
 use voronudge_model::effect::Kind;
 use voronudge_model::{Column, Effect};
 
 /// Frames below which nothing goes on.
 const FEWEST_FRAMES: usize = 3;
+
+/// Why an effect of the measurement is no candidate.
+const OF_MEASUREMENT: &str = "it belongs to the measurement, and was determined with it before the search";
 
 /// An effect on offer.
 #[derive(Debug, Clone)]
@@ -26,6 +30,11 @@ impl Candidate {
         self.effect.is_state()
     }
 
+    /// Whether it is the measurement that does it.
+    pub fn is_of_measurement(&self) -> bool {
+        self.effect.kind == Kind::Observation
+    }
+
     /// Whether it may be named as what is missing.
     pub fn is_named(&self) -> bool {
         self.effect.kind != Kind::Description
@@ -33,8 +42,17 @@ impl Candidate {
 }
 
 /// The candidates with the columns that all frames share. An effect that some frames know nothing of, such as one with a
-/// memory in the first frame, is zero there.
-pub(super) fn candidates(frames: &[Observation], effects: &[&'static Effect]) -> Vec<Candidate> {
+/// memory in the first frame, is zero there. What was determined with the measurement is no question any more.
+pub(super) fn candidates(frames: &[Observation], search: &Search) -> Vec<Candidate> {
+    let mut all = offered(frames, &search.candidates);
+    for own in all.iter_mut().filter(|own| search.determined.contains(&own.effect.id)) {
+        own.columns = Err(OF_MEASUREMENT);
+    }
+    all
+}
+
+/// The same for effects whatever is known.
+pub(super) fn offered(frames: &[Observation], effects: &[&'static Effect]) -> Vec<Candidate> {
     let of = |effect: &&'static Effect| {
         let mut shared: Result<Vec<Column>, &'static str> = Err("there is no frame");
         for (index, frame) in frames.iter().enumerate() {
@@ -56,7 +74,7 @@ pub(super) fn candidates(frames: &[Observation], effects: &[&'static Effect]) ->
 /// The same for tracks, which are followed from frame to frame: a polarity is an unknown state of each cell, what a velocity may be is no
 /// question, and what would need the velocities of all cells at once is not followed.
 pub(super) fn candidates_of_tracks(frames: &[Observation], effects: &[&'static Effect]) -> Vec<Candidate> {
-    let mut all = candidates(frames, effects);
+    let mut all = offered(frames, effects);
     for own in &mut all {
         own.columns = match own.effect.id {
             _ if own.is_polarity() && frames.len() < FEWEST_FRAMES => {
@@ -69,9 +87,7 @@ pub(super) fn candidates_of_tracks(frames: &[Observation], effects: &[&'static E
             ),
             "time_lag" => Err("cells are followed from frame to frame: there is no lag"),
             "flow_gain" | "flow_blur" => Err("there is no flow field"),
-            "centroid_bias" => {
-                Err("where in a cell its position is belongs to the measurement, and is determined with it")
-            }
+            "centroid_bias" => Err(OF_MEASUREMENT),
             _ if !own.is_linear() => {
                 Err("it is not followed from frame to frame; --difference central asks of velocities")
             }

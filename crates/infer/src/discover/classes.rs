@@ -12,7 +12,7 @@ use voronudge_model::Effect;
 
 /// Lead in `−2 log L` below which another effect could as well be the right one: under it, so large a lead of a wrong one has a
 /// probability below `exp(−lead/2)`, 5 %.
-const LEAD: f64 = 6.0;
+pub(super) const LEAD: f64 = 6.0;
 
 /// Lead of the linear problem below which it is refitted to know.
 const UNSURE: f64 = 25.0;

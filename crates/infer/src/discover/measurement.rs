@@ -1,6 +1,6 @@
 //! Errors of measurement as candidates beside a fit.
 
-use super::candidate::candidates;
+use super::candidate::offered;
 use super::lineup::Lineup;
 use crate::{Error, Inference, Observation, Request};
 use voronudge_model::Effect;
@@ -17,14 +17,14 @@ pub(crate) fn measurement_scores(
     ids: &[&str],
 ) -> Result<Vec<(&'static str, f64, f64)>, Error> {
     let effects: Vec<&'static Effect> = ids.iter().filter_map(|id| Effect::from_id(id)).collect();
-    let mut offered = candidates(frames, &effects);
-    offered.retain(|candidate| candidate.columns.as_ref().is_ok_and(|columns| columns.len() == 1));
-    if offered.is_empty() {
+    let mut tested = offered(frames, &effects);
+    tested.retain(|candidate| candidate.columns.as_ref().is_ok_and(|columns| columns.len() == 1));
+    if tested.is_empty() {
         return Ok(Vec::new());
     }
-    let lineup = Lineup::new(frames, request, &offered, &[], result)?;
+    let lineup = Lineup::new(frames, request, &tested, &[], result)?;
     let beyond = lineup.beyond(&[]);
-    let scores = offered.iter().enumerate().map(|(k, candidate)| {
+    let scores = tested.iter().enumerate().map(|(k, candidate)| {
         let score = beyond.score(k);
         (candidate.effect.id, score.p, score.coefficients[0])
     });

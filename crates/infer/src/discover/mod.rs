@@ -54,7 +54,7 @@ const MOST_BLOCKS: usize = 3;
 /// # Errors
 /// [`Error`] if the base model cannot be fitted or the caller stops.
 pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) -> Result<Discovery, Error> {
-    let offered = candidates(frames, &search.candidates);
+    let offered = candidates(frames, search);
     searched(Setting { frames, movie: None, search, candidates: &offered }, &mut Watch { observe })
 }
 

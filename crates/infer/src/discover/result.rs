@@ -2,7 +2,7 @@
 
 use crate::cross_validation::Folds;
 use crate::diagnostics::Diagnostics;
-use crate::{Estimate, Inference, Progress, Request, Tracked};
+use crate::{Doubt, Estimate, Inference, Progress, Request, Tracked};
 use std::ops::ControlFlow;
 use voronudge_model::{Column, Effect};
 
@@ -21,8 +21,10 @@ pub struct Search {
     pub null_sets: Option<usize>,
     /// Effects added at most.
     pub most_effects: usize,
-    /// Which tracked cell each cell of each frame is, if cells are tracked.
+    /// Which tracked cell each cell of each frame is, if cells are tracked; negative for a cell without a name.
     pub identities: Option<Vec<Vec<i64>>>,
+    /// Ids of effects of the measurement that were determined before: what they would say is part of the frames.
+    pub determined: Vec<&'static str>,
 }
 
 impl Search {
@@ -35,6 +37,7 @@ impl Search {
             null_sets: None,
             most_effects: 4,
             identities: None,
+            determined: Vec::new(),
         }
     }
 }
@@ -234,6 +237,11 @@ pub struct Discovery {
 }
 
 impl Discovery {
+    /// What of the measurement is in doubt beside the last model.
+    pub fn doubt_of_measurement(&self) -> Option<&Doubt> {
+        super::verdict::doubt_of_measurement(&self.after)
+    }
+
     /// Whether the effects predict data held out better, by more than the standard error of the difference.
     pub fn predicts_better(&self) -> bool {
         self.gain.is_some_and(super::verdict::predicts_better)

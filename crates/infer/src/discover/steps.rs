@@ -2,6 +2,7 @@
 
 use super::candidate::Candidate;
 use super::chance::Chance;
+use super::classes::LEAD;
 use super::lineup::{Lineup, Score, added_places};
 use super::result::Search;
 use crate::objective::Objective;
@@ -178,7 +179,12 @@ impl Setting<'_> {
                 let value = self.refined(model, levels, &model.added, new)?;
                 Ok(value + self.price(lineup, score.dimension))
             })?;
-            (0..values.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0)
+            let least = |a: &usize, b: &usize| values[*a].total_cmp(&values[*b]);
+            let best = (0..values.len()).min_by(least).unwrap_or(0);
+            // What the measurement may do as well is what the measurement does.
+            let of_measurement = |k: &usize| self.candidates[scores[*k].0].is_of_measurement();
+            let is_close = |k: &usize| values[*k] < values[best] + LEAD;
+            (0..values.len()).filter(of_measurement).filter(is_close).min_by(least).unwrap_or(best)
         } else {
             0
         };

@@ -17,11 +17,19 @@ pub(super) fn predicts_better(gain: [f64; 2]) -> bool {
 }
 
 /// What the last model leaves.
+#[derive(Clone, Copy)]
 pub(super) struct Left {
     /// A structure in space or time.
     pub structured: bool,
     /// More than noise explains.
     pub too_much: bool,
+    /// How the cells were measured is in doubt.
+    pub measurement: bool,
+}
+
+/// What of the measurement is in doubt beside a model.
+pub(super) fn doubt_of_measurement(fitted: &Fitted) -> Option<&Doubt> {
+    fitted.inference.doubts.iter().find(|doubt| doubt.part().is_measurement())
 }
 
 impl Left {
@@ -36,6 +44,7 @@ impl Left {
             structured: described || fitted.diagnostics.structure.p < STRUCTURED,
             too_much: inference.noise_source == NoiseSource::Given
                 && inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Objective(_))),
+            measurement: doubt_of_measurement(fitted).is_some(),
         }
     }
 }
@@ -44,7 +53,9 @@ impl Left {
 /// what they predict, unless nobody asked for that.
 pub(super) fn decide(testable: bool, explained: Option<f64>, left: &Left, proven: bool) -> Verdict {
     match (explained, left) {
-        (Some(share), Left { structured: false, too_much: false }) if proven && share >= ENOUGH => {
+        (Some(share), Left { structured: false, too_much: false, measurement: false })
+            if proven && share >= ENOUGH =>
+        {
             Verdict::Attributed
         }
         (Some(_), _) => Verdict::Partial,
@@ -62,13 +73,16 @@ mod tests {
     /// An error of .0769 that becomes .0726 ± .0073 has not fallen.
     #[test]
     fn effects_that_predict_nothing_better_are_not_attributed() {
-        let left = Left { structured: false, too_much: false };
+        let left = Left { structured: false, too_much: false, measurement: false };
         let of = |gain| decide(true, Some(0.95), &left, predicts_better(gain));
         assert_eq!(of([0.0043, 0.0073]), Verdict::Partial);
         assert_eq!(of([0.0143, 0.0073]), Verdict::Attributed);
         assert_eq!(decide(true, Some(0.7), &left, true), Verdict::Partial);
-        let structured = Left { structured: true, too_much: false };
+        let structured = Left { structured: true, ..left };
         assert_eq!(decide(true, Some(0.95), &structured, true), Verdict::Partial);
+        let doubtful = Left { measurement: true, ..left };
+        assert_eq!(decide(true, Some(0.95), &doubtful, true), Verdict::Partial);
+        assert_eq!(decide(true, None, &doubtful, true), Verdict::NothingMissing);
         assert_eq!(decide(true, None, &structured, false), Verdict::UnexplainedStructured);
         assert_eq!(decide(true, None, &left, false), Verdict::NothingMissing);
     }

@@ -12,7 +12,7 @@ pub struct RankedEffect {
     /// Number of coefficients that the data determine.
     pub dimension: usize,
     /// Score statistic against the base model, χ² with `dimension` degrees of freedom if nothing is
-    /// missing.
+    /// missing. Of cells that were put in or taken away: by how much −2 log likelihood falls, beyond what they cost.
     pub statistic: f64,
     /// Probability of so large a statistic if nothing is missing.
     pub p: f64,
@@ -51,6 +51,8 @@ impl From<[f64; 2]> for Gain {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "snake_case")]
 pub enum CandidateStatus {
+    /// Something that the measurement does, found before the search and taken into account by all fits.
+    Measurement,
     /// Added to the model.
     Selected,
     /// Cannot be told from a selected effect.
@@ -68,6 +70,7 @@ impl CandidateStatus {
     #[must_use]
     pub fn name(self) -> &'static str {
         match self {
+            Self::Measurement => "measurement",
             Self::Selected => "selected",
             Self::Alias => "alias",
             Self::BelowThreshold => "below threshold",

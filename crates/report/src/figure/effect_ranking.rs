@@ -75,6 +75,7 @@ fn draw_row(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, f64))
         remarks.push("limit beyond ▸");
     }
     match effect.status {
+        CandidateStatus::Measurement => remarks.push("measurement: all fits know of it"),
         CandidateStatus::Alias => remarks.push("alias"),
         CandidateStatus::NotTestable => remarks.push("not testable"),
         CandidateStatus::Selected | CandidateStatus::BelowThreshold | CandidateStatus::Description => {}
@@ -130,7 +131,7 @@ impl Look {
             CandidateStatus::Selected => Self::Selected,
             CandidateStatus::Alias => Self::Alias,
             CandidateStatus::Description => Self::Description,
-            CandidateStatus::NotTestable => Self::NotTestable,
+            CandidateStatus::NotTestable | CandidateStatus::Measurement => Self::NotTestable,
             CandidateStatus::BelowThreshold if effect.size >= effect.detection_limit => Self::NotTaken,
             CandidateStatus::BelowThreshold => Self::BelowLimit,
         }

@@ -58,18 +58,12 @@ impl SearchOptions {
     }
 
     /// The search for `candidates` after a fit.
-    pub fn search(
-        &self,
-        candidates: Vec<&'static Effect>,
-        fit: Request,
-        identities: Option<Vec<Vec<i64>>>,
-    ) -> Search {
+    pub fn search(&self, candidates: Vec<&'static Effect>, fit: Request) -> Search {
         Search {
             candidates,
             level: self.level,
             null_sets: self.null_sets.map(|sets| sets as usize),
             most_effects: self.most_effects as usize,
-            identities,
             ..Search::new(fit)
         }
     }

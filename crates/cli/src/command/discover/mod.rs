@@ -3,6 +3,7 @@
 mod candidates;
 mod effects;
 mod history;
+mod measured;
 mod page;
 mod predictions;
 mod report;
@@ -23,10 +24,11 @@ use crate::snapshot::Snapshot;
 use candidates::SearchOptions;
 use clap::Args;
 use history::{GivenDifference, History};
+use measured::Findings;
 use predictions::PredictionArguments;
 use report::Found;
 use surroundings::{ExternalMap, FieldArguments};
-use voronudge_infer::discover::{discover, discover_in_tracks};
+use voronudge_infer::discover::{Search, discover, discover_in_tracks};
 use voronudge_infer::{Constraints, Scale};
 use voronudge_io::{DataSet, Difference, OutputDirectory};
 use voronudge_model::Effect;
@@ -82,7 +84,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let Material { prepared, tracks, predictors } =
         asked.material((&data, map.as_ref()), &mut run, &mut progress)?;
     let others = arguments.predictions.load(&asked, (&mut data, &prepared), &mut run)?;
-    let search = arguments.options.search(candidates, prepared.request.clone(), identities(&prepared));
+    let search = Search {
+        identities: identities(&prepared),
+        determined: Findings::determined(&prepared),
+        ..arguments.options.search(candidates, prepared.request.clone())
+    };
     let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
     let searched = match &tracks {
         Some(tracks) => discover_in_tracks(&tracks.movie, &search, &mut observe),
@@ -98,6 +104,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             tracks.write(&mut out, prefix, &data, &prepared, tracked)?;
         }
     }
+    latent::write(&mut out, &data, &prepared, last)?;
     let predictions =
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
     let tracks = tracks.as_ref().zip(discovery.after.tracked.as_ref());

@@ -1,5 +1,6 @@
 //! The result of `discover` as its report.
 
+use super::measured::Findings;
 use super::sentences::probability;
 use super::{effects, sentences};
 use crate::command::fit::{OrderedField, Prepared, outcome};
@@ -30,6 +31,9 @@ pub(super) struct Found<'a> {
 pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> DiscoverReport {
     let Found { data, prepared, tracks, search, predictors, predictions } = found;
     let units = outcome::units(data);
+    let measurement = Measurement { tracks: tracks.clone(), ..outcome::measurement(data, prepared) };
+    let findings = Findings::new(prepared, &measurement);
+    let ranking = discovery.ranking.iter().map(|one| effects::ranked(one, discovery)).collect();
     let fits = BeforeAfter {
         before: model_fit(prepared, &discovery.before, &units),
         after: model_fit(prepared, &discovery.after, &units),
@@ -38,17 +42,17 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         run: run.record(Some(data)),
         length_scale: Quantity { value: prepared.scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, &discovery.before.inference),
-        measurement: Measurement { tracks: tracks.clone(), ..outcome::measurement(data, prepared) },
         flow: prepared.velocities.flow().map(OrderedField::described),
         constraints: outcome::given(&prepared.constraints),
         verdict: verdict(discovery.verdict),
-        sentence: sentences::sentence(discovery, prepared),
+        sentence: sentences::sentence(discovery, prepared, &findings),
         caveat: sentences::caveat(discovery, search),
-        measure_next: sentences::measure_next(discovery, search, prepared),
+        measure_next: sentences::measure_next(discovery, search, prepared, &findings),
         models: fits,
         description: discovery.description.as_ref().map(|described| description(prepared, described)),
         selected: discovery.selected.iter().map(|one| effects::selected(one, prepared, &units)).collect(),
-        ranking: discovery.ranking.iter().map(|one| effects::ranked(one, discovery)).collect(),
+        ranking: findings.ahead_of(ranking),
+        measurement,
         unexplained: unexplained(prepared, &discovery.after),
         noise_budget: BeforeAfter {
             before: budget(prepared, &discovery.before.budget),

@@ -1,10 +1,12 @@
 //! The answer in words: what was found, what that does not say, and what to measure next.
 
 use super::history::has_memory;
+use super::measured::Findings;
 use crate::command::fit::Prepared;
 use voronudge_infer::NoiseSource;
 use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Search, Selected, Verdict};
 use voronudge_model::Effect;
+use voronudge_model::effect::Kind;
 use voronudge_report::numbers::significant;
 
 /// How meanings tell which sign of the coefficient is meant.
@@ -105,6 +107,10 @@ fn reservation(discovery: &Discovery) -> String {
         });
         return format!("but {why}, so it is not shown yet");
     }
+    if let Some(doubt) = discovery.doubt_of_measurement() {
+        let part = doubt.part().name().replace('_', " ");
+        return format!("but the measurement is in doubt ({part}: see the warnings), so it is not shown yet");
+    }
     match discovery.after.budget.unexplained {
         rest if rest > LEAST_REST => {
             format!("{} of the squared velocities are unidentified", percent(rest))
@@ -123,21 +129,29 @@ fn explained(discovery: &Discovery) -> String {
 }
 
 /// The answer in a sentence.
-pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared) -> String {
+pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared, findings: &Findings) -> String {
     let errors = errors(discovery);
     let share = explained(discovery);
     let names: Vec<String> = discovery.selected.iter().map(name).collect();
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let meanings: Vec<String> = discovery.selected.iter().map(meaning).collect();
+    let by_measurement = match discovery.selected.iter().all(|own| own.effect.kind == Kind::Observation) {
+        true => " That is, or may be, how the cells were measured, and nothing that they do.",
+        false => "",
+    };
     match (discovery.verdict, meanings.as_slice()) {
-        (Verdict::NothingMissing, _) => {
-            format!("Nothing is missing: the base model leaves no more than noise; {errors}.")
-        }
+        (Verdict::NothingMissing, _) => match findings.statement() {
+            None => format!("Nothing is missing: the base model leaves no more than noise; {errors}."),
+            Some(found) => format!(
+                "Nothing is missing beyond how the cells were measured: there are {found}. With that taken into account the base \
+                 model leaves no more than noise; {errors}."
+            ),
+        },
         (Verdict::Attributed, [meaning]) => {
-            format!("{meaning} ({}). This explains {share}; {errors}.", names.concat())
+            format!("{meaning} ({}).{by_measurement} This explains {share}; {errors}.", names.concat())
         }
         (Verdict::Attributed, meanings) => format!(
-            "{} effects are missing, {}: {}. Together they explain {share}; {errors}.",
+            "{} effects are missing, {}: {}.{by_measurement} Together they explain {share}; {errors}.",
             meanings.len(),
             listed(&names, "and"),
             meanings.join("; ")
@@ -246,8 +260,13 @@ fn limits(discovery: &Discovery) -> Option<String> {
 }
 
 /// What to measure next.
-pub(super) fn measure_next(discovery: &Discovery, search: &Search, prepared: &Prepared) -> String {
-    let mut advice = Vec::new();
+pub(super) fn measure_next(
+    discovery: &Discovery,
+    search: &Search,
+    prepared: &Prepared,
+    findings: &Findings,
+) -> String {
+    let mut advice: Vec<String> = findings.advice().collect();
     for selected in &discovery.selected {
         for other in others(selected) {
             let by = told_apart_by(selected.effect, other);
