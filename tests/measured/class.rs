@@ -118,7 +118,7 @@ pub const EFFECTS: [&str; 6] =
     ["nematic_stress", "drift", "alpha_area", "odd_nematic_stress", "p0_gradient", "short_range_repulsion"];
 
 /// All classes of the study.
-pub const CLASSES: [Class; 24] = [
+pub const CLASSES: [Class; 25] = [
     class("complete", "complete, periodic", COMPLETE),
     class("open", "open field of view", Recipe { view: View::Window, ..COMPLETE }),
     class("missed-2", "2 % not detected", missed(0.02)),
@@ -161,6 +161,11 @@ pub const CLASSES: [Class; 24] = [
         "open-missed-2-effect",
         "open field of view, 2 % not detected, an effect of 15 %",
         Recipe { view: View::Window, lacks: true, ..missed(0.02) },
+    ),
+    class(
+        "flow-square-effect",
+        "flow, square window of 1.5 spacings, an effect of 15 %",
+        Recipe { lacks: true, ..flow(Window::Square(1.5)) },
     ),
     class(
         "tracks-effect",

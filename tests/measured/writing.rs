@@ -22,11 +22,28 @@ impl MeasuredSet {
     /// If the folder cannot be written.
     pub fn write(self, folder: &Path) -> Result<Written, Box<dyn Error>> {
         let data = folder.join("data");
-        let mut out = OutputDirectory::create(&data)?;
+        self.save(&data)?;
+        std::fs::write(folder.join("truth.json"), self.truth_text()?)?;
+        Ok(Written { data, truth: self.truth })
+    }
+
+    /// Writes what the program reads into a folder.
+    ///
+    /// # Errors
+    /// If the folder cannot be written.
+    pub fn save(&self, folder: &Path) -> Result<(), Box<dyn Error>> {
+        let mut out = OutputDirectory::create(folder)?;
         self.stage(&mut out)?;
         out.commit()?;
-        std::fs::write(folder.join("truth.json"), serde_json::to_string_pretty(&self.truth)?)?;
-        Ok(Written { data, truth: self.truth })
+        Ok(())
+    }
+
+    /// What made it, as JSON.
+    ///
+    /// # Errors
+    /// If it cannot be written as JSON.
+    pub fn truth_text(&self) -> Result<String, Box<dyn Error>> {
+        Ok(serde_json::to_string_pretty(&self.truth)?)
     }
 
     fn stage(&self, out: &mut OutputDirectory) -> Result<(), IoError> {

@@ -140,8 +140,8 @@ impl<'a> Growth<'a> {
         }
         let Some((model, _)) = grown else { return Ok(None) };
         let grown = self.tested(model, watch)?;
-        let level = self.setting.search.level;
-        self.prune(grown, watch, |own| match own.adjusted_p >= level {
+        let setting = self.setting;
+        self.prune(grown, watch, |own, others| match own.adjusted_p >= setting.level(others) {
             true => Some("with all else in the model it is no more than chance"),
             false => own.weakness,
         })
@@ -155,7 +155,7 @@ impl<'a> Growth<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<Option<Grown>, Error> {
         let level = self.setting.search.level;
-        self.prune(grown, watch, |own| {
+        self.prune(grown, watch, |own, _| {
             (null_data::probability(null_sets, own.p) >= level).then_some(
                 "synthetic data without any effect, searched in the same way, lead to one as often",
             )
@@ -195,10 +195,11 @@ impl<'a> Growth<'a> {
         &mut self,
         mut grown: Grown,
         watch: &mut Watch<'_>,
-        reason_against: impl Fn(&Tested) -> Option<&'static str>,
+        reason_against: impl Fn(&Tested, usize) -> Option<&'static str>,
     ) -> Result<Option<Grown>, Error> {
         loop {
-            let weak = grown.tested.iter().filter_map(|own| Some((own, reason_against(own)?)));
+            let others = grown.tested.len() - 1;
+            let weak = grown.tested.iter().filter_map(|own| Some((own, reason_against(own, others)?)));
             let Some((weakest, reason)) = weak.max_by(|a, b| a.0.p.total_cmp(&b.0.p)) else {
                 return Ok(Some(grown));
             };

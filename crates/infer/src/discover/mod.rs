@@ -115,6 +115,7 @@ fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Er
         verdict,
         before,
         after,
+        rest_is_structured: left.structured,
         share_of_excess: selected.share,
         selected: selected.selected,
         single_p: ranking.single_p,

@@ -67,7 +67,7 @@ impl Member<'_> {
         ];
         for (out, reason) in tests {
             let (score, adjusted_p) = self.without(setting, base, model, &out)?;
-            if score.dimension == 0 || adjusted_p >= setting.search.level {
+            if score.dimension == 0 || adjusted_p >= setting.level(self.others.len()) {
                 return Ok(Some(reason));
             }
         }

@@ -218,6 +218,8 @@ pub struct Discovery {
     pub before: Fitted,
     /// The model with the effects added; the same as before if there are none.
     pub after: Fitted,
+    /// Whether what the last model leaves has a structure.
+    pub rest_is_structured: bool,
     /// The effects added, in the order of their selection.
     pub selected: Vec<Selected>,
     /// Every candidate, the smallest p first.

@@ -23,6 +23,9 @@ const MOST_CONTENDERS: usize = 5;
 /// Steps of such a refit.
 const STEPS: u64 = 25;
 
+/// Level of an effect beside others, as a share of that of a first one: how the others are modelled is never quite right.
+const BESIDE: f64 = 0.2;
+
 /// Cells of all frames above which candidates are compared without a refit.
 const LARGE: usize = 4000;
 
@@ -141,6 +144,11 @@ impl Setting<'_> {
             .collect()
     }
 
+    /// The adjusted p that an effect needs beside so many others.
+    pub fn level(&self, others: usize) -> f64 {
+        self.search.level * if others == 0 { 1.0 } else { BESIDE }
+    }
+
     /// Price of coefficients, on the scale of `−2 log L`: each could have been any of those on offer.
     pub fn price(&self, lineup: &Lineup, coefficients: usize) -> f64 {
         let (p, offered) = (coefficients as f64, lineup.number_of_columns() as f64);
@@ -162,14 +170,15 @@ impl Setting<'_> {
         let chance = Chance::new(&projected, &on_offer, self.search.fit.seed);
         scores.retain(|(candidate, _)| !refused.contains(candidate));
         let smallest = scores.iter().map(|(_, score)| score.p).fold(1.0, f64::min);
-        if chance.adjusted(smallest) >= self.search.level {
+        let level = self.level(model.added.len());
+        if chance.adjusted(smallest) >= level {
             return Ok(None);
         }
         let worth = |score: &Score| score.statistic - self.price(lineup, score.dimension);
         scores.sort_by(|a, b| worth(&b.1).total_cmp(&worth(&a.1)));
         let best = scores.first().map_or(0.0, |(_, score)| worth(score));
         scores.retain(|(_, score)| {
-            worth(score) > (best - CONTENDERS).max(0.0) && chance.adjusted(score.p) < self.search.level
+            worth(score) > (best - CONTENDERS).max(0.0) && chance.adjusted(score.p) < level
         });
         scores.truncate(MOST_CONTENDERS);
         let chosen = if scores.len() > 1 && !self.is_large() {

@@ -51,7 +51,7 @@ fn a_drift_is_named_and_its_absence_is_not() {
 fn the_score_is_that_of_the_dense_problem() {
     let search = search(&["alpha_area", "shear", "drift", "size_friction"]);
     let frames = [drifting(9)];
-    let offered = candidates(&frames, &search.candidates);
+    let offered = candidates(&frames, &search);
     let setting = Setting { frames: &frames, movie: None, search: &search, candidates: &offered };
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
     let base = setting.fit(Vec::new(), &mut Watch { observe: &mut silent }).unwrap();

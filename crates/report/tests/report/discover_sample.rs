@@ -291,7 +291,7 @@ fn selected() -> SelectedEffect {
 }
 
 fn ranking() -> Vec<RankedEffect> {
-    use CandidateStatus::{Alias, BelowThreshold, Description, NotTestable, Selected};
+    use CandidateStatus::{Alias, BelowThreshold, Description, Measurement, NotTestable, Selected};
     use EffectKind::{Boundary, Force, Gradient, History, Motion, Observation};
     let candidate = |effect: &str, kind, status, [statistic, size, limit]: [f64; 3]| RankedEffect {
         effect: effect.into(),
@@ -312,9 +312,11 @@ fn ranking() -> Vec<RankedEffect> {
             BelowThreshold => "adjusted p above 0.05".into(),
             NotTestable => "the base model absorbs it: a change of all parameters does the same".into(),
             Description => "a description, never named as a mechanism".into(),
+            Measurement => "5 cells that were not detected, which all fits take into account".into(),
         },
     };
     vec![
+        candidate("missed_cells", Observation, Measurement, [84.0, f64::NAN, f64::NAN]),
         candidate("smooth_field", EffectKind::Description, Description, [118.0, 51.0, 14.0]),
         candidate("density_gradient", Force, Selected, [109.0, 47.0, 6.1]),
         candidate("p0_gradient", Gradient, Alias, [105.0, 46.0, 7.4]),

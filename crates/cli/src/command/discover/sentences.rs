@@ -15,6 +15,9 @@ const POSITIVE: &str = "(c > 0)";
 /// Share of the squared velocities below which a rest is none to speak of.
 const LEAST_REST: f64 = 0.0005;
 
+/// The largest share that is said to be explained where something is left.
+const NEARLY_ALL: f64 = 0.99;
+
 /// Names of effects as a list, with a word before the last.
 pub(super) fn listed(names: &[&str], joint: &str) -> String {
     match names {
@@ -111,11 +114,14 @@ fn reservation(discovery: &Discovery) -> String {
         let part = doubt.part().name().replace('_', " ");
         return format!("but the measurement is in doubt ({part}: see the warnings), so it is not shown yet");
     }
-    match discovery.after.budget.unexplained {
-        rest if rest > LEAST_REST => {
-            format!("{} of the squared velocities are unidentified", percent(rest))
-        }
-        _ => "little is left, but this is not all that is missing".into(),
+    let rest = discovery.after.budget.unexplained;
+    let left = match rest > LEAST_REST {
+        true => format!("{} of the squared velocities are unidentified", percent(rest)),
+        false => "little is left".into(),
+    };
+    match discovery.rest_is_structured {
+        true => format!("{left}, but what is left is no noise: it has a structure"),
+        false => left,
     }
 }
 
@@ -124,7 +130,12 @@ fn reservation(discovery: &Discovery) -> String {
 fn explained(discovery: &Discovery) -> String {
     match discovery.after.tracked {
         Some(_) => format!("{} of the squared velocities, held out", percent(discovery.after.budget.effects)),
-        None => format!("{} of what the base model lacks", percent(discovery.share_of_excess)),
+        None => {
+            // Something is left, where this is not all.
+            let most = if discovery.verdict == Verdict::Partial { NEARLY_ALL } else { 1.0 };
+            let more = if discovery.share_of_excess > most { "more than " } else { "" };
+            format!("{more}{} of what the base model lacks", percent(discovery.share_of_excess.min(most)))
+        }
     }
 }
 
