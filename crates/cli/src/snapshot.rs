@@ -55,6 +55,7 @@ pub(crate) fn field_of_view(data: &DataSet) -> Result<FieldOfView, Failure> {
 }
 
 /// The cells present in one frame.
+#[derive(Clone)]
 pub(crate) struct Snapshot {
     /// Index of each cell on the data set's axis of cells.
     pub cells: Vec<usize>,

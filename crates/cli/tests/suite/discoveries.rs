@@ -7,13 +7,14 @@ use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-const FILES: [&str; 8] = [
+const FILES: [&str; 9] = [
     "after_nudged_positions.npy",
     "after_predicted_velocities.npy",
     "after_residual_velocities.npy",
     "before_nudged_positions.npy",
     "before_predicted_velocities.npy",
     "before_residual_velocities.npy",
+    "latent_cells.npy",
     "report.html",
     "report.json",
 ];

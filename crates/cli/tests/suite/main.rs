@@ -19,6 +19,7 @@ mod inferences;
 #[cfg(unix)]
 mod interruption;
 mod layouts;
+mod measured_sets;
 mod measurements;
 mod moduli;
 mod phase_diagrams;

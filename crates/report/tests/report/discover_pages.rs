@@ -171,7 +171,7 @@ fn the_names_of_the_file_are_those_of_the_interface() {
         assert!(value.pointer(pointer).is_some_and(|found| !found.is_null()), "{pointer}");
     }
     assert_eq!(value["verdict"], "attributed");
-    assert_eq!(value["ranking"][2]["status"], "alias");
+    assert_eq!(value["ranking"][3]["status"], "alias");
     assert!(value["selected"][0]["ci95"][1][1].is_null());
     assert!(value["after"]["nmse"]["held_out_frames"].is_null());
 }

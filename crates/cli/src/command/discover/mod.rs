@@ -3,6 +3,7 @@
 mod candidates;
 mod effects;
 mod history;
+mod material;
 mod measured;
 mod page;
 mod predictions;
@@ -20,19 +21,16 @@ use crate::arguments::CommonArguments;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
-use crate::snapshot::Snapshot;
 use candidates::SearchOptions;
 use clap::Args;
 use history::{GivenDifference, History};
-use measured::Findings;
+use material::{Material, Past, Searched};
 use predictions::PredictionArguments;
 use report::Found;
-use surroundings::{ExternalMap, FieldArguments};
-use voronudge_infer::discover::{Search, discover, discover_in_tracks};
-use voronudge_infer::{Constraints, Scale};
+use surroundings::FieldArguments;
+use voronudge_infer::{Constraints, Part, Scale};
 use voronudge_io::{DataSet, Difference, OutputDirectory};
 use voronudge_model::Effect;
-use voronudge_report::discover_report::Predictors;
 
 /// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
 /// after on data that the fit has not seen.
@@ -81,23 +79,18 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
     let mut progress = Progress::new(arguments.common.verbosity());
-    let Material { prepared, tracks, predictors } =
-        asked.material((&data, map.as_ref()), &mut run, &mut progress)?;
-    let others = arguments.predictions.load(&asked, (&mut data, &prepared), &mut run)?;
-    let search = Search {
-        identities: identities(&prepared),
-        determined: Findings::determined(&prepared),
-        ..arguments.options.search(candidates, prepared.request.clone())
-    };
-    let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
-    let searched = match &tracks {
-        Some(tracks) => discover_in_tracks(&tracks.movie, &search, &mut observe),
-        None => discover(&prepared.observations, &search, &mut observe),
-    };
+    let raw = asked.raw(&data, &mut run)?;
+    let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), &mut run)?;
+    let searched = asked.searched(&raw, (&data, map.as_ref()), &mut progress);
     progress.finish();
-    let discovery = searched.map_err(|error| prepared.place(error, snapshots))?;
+    let Searched { material: Material { prepared, tracks }, search, discovery } = searched?;
+    prepared.caution(&mut run);
+    let predictors = raw.past.and_then(|past| past.predictors);
     let last = &discovery.after.inference;
-    words::doubts(last, &[], prepared.request.method).iter().for_each(|(_, doubt)| run.warn(doubt));
+    let doubts = words::doubts(last, &[], prepared.request.method);
+    // Whether what is left has a structure is told in the answer itself.
+    let told = doubts.iter().filter(|(part, _)| *part != Part::Pattern.name());
+    told.for_each(|(_, doubt)| run.warn(doubt));
     for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
         arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
         if let (Some(tracks), Some(tracked)) = (&tracks, &fitted.tracked) {
@@ -120,14 +113,6 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         browser::open(&folder.join("report.html"));
     }
     Ok(if last.is_acceptable() { Answer::Positive } else { Answer::Negative })
-}
-
-/// What is searched.
-struct Material {
-    prepared: Prepared,
-    /// The tracks, if these are fitted themselves.
-    tracks: Option<PreparedTracks>,
-    predictors: Option<Predictors>,
 }
 
 /// What is asked of every data set.
@@ -161,36 +146,6 @@ impl Asked<'_> {
         }
         let frames = velocities.frames(snapshots, data)?;
         PreparedTracks::new(self.question(snapshots, data, None), velocities, frames, run).map(Some)
-    }
-
-    /// The data with what is found out about how they were measured.
-    fn material(
-        &self,
-        (data, map): (&DataSet, Option<&ExternalMap>),
-        run: &mut Run,
-        progress: &mut Progress,
-    ) -> Result<Material, Failure> {
-        let Arguments { snapshots, latent, .. } = self.arguments;
-        let (mut prepared, mut tracks, past) = match self.tracks(data, run)? {
-            Some((prepared, tracks)) => (prepared, Some(tracks), None),
-            None => {
-                let (prepared, past) = self.prepare(snapshots, data, None, run)?;
-                (prepared, None, Some(past))
-            }
-        };
-        if let Err(error) = latent.understand(tracks.as_mut(), &mut prepared, progress) {
-            progress.finish();
-            return Err(prepared.place(error, snapshots));
-        }
-        prepared.caution(run);
-        let predictors = match past {
-            Some(Past { history, predictors }) => {
-                surroundings::surround(&mut prepared, (snapshots, data), map, history.as_ref())?;
-                predictors
-            }
-            None => None,
-        };
-        Ok(Material { prepared, tracks, predictors })
     }
 
     fn question<'q>(
@@ -249,12 +204,6 @@ impl Asked<'_> {
     }
 }
 
-/// What preceded the frames.
-struct Past {
-    history: Option<History>,
-    predictors: Option<Predictors>,
-}
-
 /// What the error of a shared position does to differences.
 fn shared_errors(velocities: &Measured) -> Option<String> {
     let (kind, force) = match velocities.derived()? {
@@ -280,17 +229,4 @@ fn unknown_noise(data: &DataSet) -> Option<String> {
         "the {what} is not given, so it is estimated from what the fit leaves: an effect that is missing inflates the estimate, \
          which is an upper bound; state position_noise and velocity_noise where they are known"
     ))
-}
-
-/// The name of a cell that is no detection.
-const NOT_TRACKED: i64 = -1;
-
-/// The tracks of the cells of each frame, where there are several frames.
-fn identities(prepared: &Prepared) -> Option<Vec<Vec<i64>>> {
-    let tracked = prepared.frames.len() > 1 && prepared.velocities.flow().is_none();
-    let of_frame = |(index, snapshot): (usize, &Snapshot)| {
-        let names = snapshot.cells.iter().map(|&cell| cell as i64).collect();
-        prepared.of_cells(index, names, &NOT_TRACKED)
-    };
-    tracked.then(|| prepared.snapshots.iter().enumerate().map(of_frame).collect())
 }

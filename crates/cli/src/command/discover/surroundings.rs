@@ -80,7 +80,7 @@ fn fault(error: EnvironmentError) -> Failure {
 }
 
 /// The middle of the box, or the mean position of the cells that count, over all frames.
-fn origin(prepared: &Prepared) -> Vector<f64> {
+pub(super) fn origin(prepared: &Prepared) -> Vector<f64> {
     let (mut sum, mut count) = (Vector::zeros(), 0usize);
     for observation in &prepared.observations {
         if let Domain::Periodic(cell_box) = observation.tessellation.domain() {

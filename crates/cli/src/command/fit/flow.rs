@@ -82,6 +82,7 @@ pub(super) fn name(kind: WindowKind) -> &'static str {
 }
 
 /// A flow field with rows and columns in the order of ascending coordinates, as the geometry has them.
+#[derive(Clone)]
 pub(crate) struct OrderedField {
     /// (frames, ny, nx, 2)
     velocities: Array4<f64>,

@@ -10,6 +10,7 @@ use voronudge_infer::Velocities;
 use voronudge_io::{DataSet, Difference, derive_velocities};
 
 /// The velocities to be explained.
+#[derive(Clone)]
 pub(crate) enum Measured {
     /// Of cells, as given.
     Given(Array3<f64>),

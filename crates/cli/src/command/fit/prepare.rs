@@ -27,6 +27,7 @@ pub(crate) struct Question<'a> {
 }
 
 /// The problem in scaled units, and what is needed to translate its solution.
+#[derive(Clone)]
 pub(crate) struct Prepared {
     pub frames: Vec<usize>,
     pub snapshots: Vec<Snapshot>,

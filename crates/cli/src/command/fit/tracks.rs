@@ -13,6 +13,7 @@ use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_report::infer_report::{MeanRemoved, TracksReport};
 
 /// The tracks of a data set, those that break joined.
+#[derive(Clone)]
 pub(crate) struct PreparedTracks {
     pub movie: Movie,
     /// The cells that were not detected, if they were looked for.

@@ -1,0 +1,167 @@
+//! From data to a search: how cells were measured is found out first, and again with the effects that were found.
+
+use super::Asked;
+use super::history::History;
+use super::measured::Findings;
+use super::surroundings::{self, ExternalMap};
+use crate::command::fit::{Prepared, PreparedTracks};
+use crate::failure::Failure;
+use crate::progress::Progress;
+use crate::run::Run;
+use crate::snapshot::Snapshot;
+use std::sync::Arc;
+use voronudge_infer::discover::{Discovery, Search, discover, discover_in_tracks};
+use voronudge_infer::{Completion, Error};
+use voronudge_io::DataSet;
+use voronudge_model::{Column, Environment, Structure};
+use voronudge_report::discover_report::Predictors;
+
+/// Relative change of a width, and change of a share, that is none.
+const SAME: f64 = 0.02;
+
+/// Data before anything was found out about how they were measured.
+pub(super) struct Raw {
+    pub prepared: Prepared,
+    /// The tracks, if these are fitted themselves.
+    tracks: Option<PreparedTracks>,
+    /// What preceded velocities.
+    pub past: Option<Past>,
+}
+
+/// What preceded the frames.
+pub(super) struct Past {
+    pub history: Option<History>,
+    pub predictors: Option<Predictors>,
+}
+
+/// What is searched.
+pub(super) struct Material {
+    pub prepared: Prepared,
+    /// The tracks, if these are fitted themselves.
+    pub tracks: Option<PreparedTracks>,
+}
+
+/// A search.
+pub(super) struct Searched {
+    pub material: Material,
+    pub search: Search,
+    pub discovery: Discovery,
+}
+
+/// A data set with a map of a field that cells may follow.
+type Data<'a> = (&'a DataSet, Option<&'a ExternalMap>);
+
+impl Asked<'_> {
+    pub fn raw(&self, data: &DataSet, run: &mut Run) -> Result<Raw, Failure> {
+        if let Some((prepared, tracks)) = self.tracks(data, run)? {
+            return Ok(Raw { prepared, tracks: Some(tracks), past: None });
+        }
+        let (prepared, past) = self.prepare(&self.arguments.snapshots, data, None, run)?;
+        Ok(Raw { prepared, tracks: None, past: Some(past) })
+    }
+
+    /// Searches what was found out about the measurement by the base model, and, if an effect that was found shows it in another light, once
+    /// more.
+    pub fn searched(&self, raw: &Raw, data: Data<'_>, progress: &mut Progress) -> Result<Searched, Failure> {
+        let base = &raw.prepared.request.structure;
+        let found = self.search(raw, self.material(raw, data, base, progress)?, progress)?;
+        let Some(structure) = extended(raw, &found.discovery) else { return Ok(found) };
+        let again = self.material(raw, data, &structure, progress)?;
+        match again.is_measured_like(&found.material) {
+            true => Ok(found),
+            false => self.search(raw, again, progress),
+        }
+    }
+
+    /// The data with what a model says about how they were measured.
+    fn material(
+        &self,
+        raw: &Raw,
+        (data, map): Data<'_>,
+        structure: &Structure,
+        progress: &mut Progress,
+    ) -> Result<Material, Failure> {
+        let snapshots = &self.arguments.snapshots;
+        let Raw { prepared, tracks, past } = raw;
+        let (mut prepared, mut tracks) = (prepared.clone(), tracks.clone());
+        let base = std::mem::replace(&mut prepared.request.structure, structure.clone());
+        let origin = surroundings::origin(&prepared);
+        let surroundings = Arc::new(Environment::default().about(origin));
+        let about = |frame: &voronudge_infer::Observation| frame.clone().within(surroundings.clone());
+        prepared.observations = prepared.observations.iter().map(about).collect();
+        let understood = self.arguments.latent.understand(tracks.as_mut(), &mut prepared, progress);
+        understood.map_err(|error| prepared.place(error, snapshots))?;
+        prepared.request.structure = base;
+        if let Some(past) = past {
+            surroundings::surround(&mut prepared, (snapshots, data), map, past.history.as_ref())?;
+        }
+        Ok(Material { prepared, tracks })
+    }
+
+    fn search(&self, raw: &Raw, material: Material, progress: &mut Progress) -> Result<Searched, Failure> {
+        let Material { prepared, tracks } = &material;
+        let search = Search {
+            identities: identities(prepared),
+            determined: Findings::determined(prepared),
+            ..self.arguments.options.search(self.candidates.to_vec(), prepared.request.clone())
+        };
+        let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
+        let searched: Result<Discovery, Error> = match tracks {
+            Some(tracks) => discover_in_tracks(&tracks.movie, &search, &mut observe),
+            None => discover(&prepared.observations, &search, &mut observe),
+        };
+        let discovery = searched.map_err(|error| raw.prepared.place(error, &self.arguments.snapshots))?;
+        Ok(Searched { material, search, discovery })
+    }
+}
+
+/// The model with the effects that were found, if these can act on the data as they were given: on any cells, not on those that are known by
+/// name.
+fn extended(raw: &Raw, discovery: &Discovery) -> Option<Structure> {
+    let prepared = &raw.prepared;
+    if discovery.selected.is_empty() || raw.tracks.is_some() {
+        return None;
+    }
+    let domain = prepared.observations.first()?.tessellation.domain();
+    let anywhere = Environment::default().about(surroundings::origin(prepared));
+    let can_act = discovery
+        .selected
+        .iter()
+        .all(|own| own.effect.columns(&anywhere, domain).is_ok_and(|columns| columns == own.columns));
+    let columns: Vec<Column> = discovery.selected.iter().flat_map(|own| own.columns.clone()).collect();
+    can_act.then(|| prepared.request.structure.with(&columns))
+}
+
+impl Material {
+    /// Whether the same was found out about the measurement.
+    fn is_measured_like(&self, other: &Self) -> bool {
+        let changes = |material: &Self| material.prepared.completion.as_ref().map(all_changes);
+        let (own, others) = (&self.prepared.measurement, &other.prepared.measurement);
+        let width = |own: &voronudge_infer::Measurement| own.width.map_or(0.0, |width| width.value);
+        own.kind == others.kind
+            && (width(own) - width(others)).abs() <= SAME * width(others)
+            && (own.share.value - others.share.value).abs() <= SAME
+            && changes(self) == changes(other)
+    }
+}
+
+/// The changes of each frame: of which kind, and which detections they take away.
+fn all_changes(completion: &Completion) -> Vec<Vec<(voronudge_infer::ChangeKind, Vec<usize>)>> {
+    let of_frame = |frame: &voronudge_infer::CompletedFrame| {
+        frame.changes.iter().map(|change| (change.kind, change.removed.clone())).collect()
+    };
+    completion.frames.iter().map(of_frame).collect()
+}
+
+/// The name of a cell that is no detection.
+const NOT_TRACKED: i64 = -1;
+
+/// The tracks of the cells of each frame, where there are several frames.
+fn identities(prepared: &Prepared) -> Option<Vec<Vec<i64>>> {
+    let tracked = prepared.frames.len() > 1 && prepared.velocities.flow().is_none();
+    let of_frame = |(index, snapshot): (usize, &Snapshot)| {
+        let names = snapshot.cells.iter().map(|&cell| cell as i64).collect();
+        prepared.of_cells(index, names, &NOT_TRACKED)
+    };
+    tracked.then(|| prepared.snapshots.iter().enumerate().map(of_frame).collect())
+}
