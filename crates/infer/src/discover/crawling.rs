@@ -32,6 +32,11 @@ fn p(evidence: f64) -> f64 {
     upper_chi_squared(evidence, COEFFICIENTS as f64)
 }
 
+/// The evidence that a polarity needs beside so many other effects: χ² with two degrees of freedom is above x with probability exp(−x/2).
+pub(super) fn least_evidence(setting: &Setting<'_>, others: usize) -> f64 {
+    2.0 * (setting.named(&[]).len() as f64 / setting.level(others)).ln()
+}
+
 /// The same for any of all candidates.
 fn adjusted_p(setting: &Setting<'_>, evidence: f64) -> f64 {
     (p(evidence) * setting.named(&[]).len() as f64).min(1.0)

@@ -14,9 +14,6 @@ use crate::search::Watch;
 /// Effects refused because of velocities held out before the search ends.
 const MOST_REFUSED: usize = 3;
 
-/// Fall of −2 log L, linearised about a fit without polarities, below which none is fitted: what is better than chance has more.
-const LEAST_HINT: f64 = 6.0;
-
 /// A search under way.
 pub(super) struct Growth<'a> {
     pub setting: Setting<'a>,
@@ -119,7 +116,7 @@ impl<'a> Growth<'a> {
             };
             let crawling = Crawling::of(&self.setting, candidate, &model);
             if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(hinted) {
-                let is_chance = ranked.adjusted_p >= self.setting.search.level;
+                let is_chance = ranked.adjusted_p >= self.setting.level(current.added.len());
                 let is_tried = self.setting.candidates[candidate].is_polarity();
                 if is_tried && !is_chance && against.is_none() {
                     // What goes on from frame to frame made the other tests too sure of themselves.
@@ -187,7 +184,9 @@ impl<'a> Growth<'a> {
         let ranked = model.added.is_empty().then(|| crawling::ranked(&setting, polarity, hint));
         let projected = model.lineup.beyond(&model.added);
         let rival = best.map_or(0.0, |candidate| projected.score(candidate).statistic);
-        Ok((if hint >= LEAST_HINT && hint > rival { Some(polarity) } else { best }, ranked))
+        // Linearised about a fit without polarities; what is better than chance has more.
+        let least = crawling::least_evidence(&setting, model.added.len());
+        Ok((if hint >= least && hint > rival { Some(polarity) } else { best }, ranked))
     }
 
     /// Takes back the effect with the largest p among those against which a reason speaks, as long as there is one.
