@@ -11,7 +11,7 @@ use crate::run::Run;
 use crate::snapshot::Snapshot;
 use std::sync::Arc;
 use voronudge_infer::discover::{Discovery, Search, discover, discover_in_tracks};
-use voronudge_infer::{Completion, Error};
+use voronudge_infer::{Completion, Error, Observation};
 use voronudge_io::DataSet;
 use voronudge_model::{Column, Environment, Structure};
 use voronudge_report::discover_report::Predictors;
@@ -61,41 +61,53 @@ impl Asked<'_> {
     }
 
     /// Searches what was found out about the measurement by the base model, and, if an effect that was found shows it in another light, once
-    /// more.
+    /// more. What predicts velocities held out better is kept.
     pub fn searched(&self, raw: &Raw, data: Data<'_>, progress: &mut Progress) -> Result<Searched, Failure> {
+        let place = |error: Error| raw.prepared.place(error, &self.arguments.snapshots);
         let base = &raw.prepared.request.structure;
-        let found = self.search(raw, self.material(raw, data, base, progress)?, progress)?;
+        let material = self.understood(raw, base, progress).map_err(place)?;
+        let found = self.search(raw, self.surrounded(raw, data, material)?, progress)?;
         let Some(structure) = extended(raw, &found.discovery) else { return Ok(found) };
-        let again = self.material(raw, data, &structure, progress)?;
-        match again.is_measured_like(&found.material) {
-            true => Ok(found),
-            false => self.search(raw, again, progress),
+        match self.understood(raw, &structure, progress) {
+            Ok(again) if !again.is_measured_like(&found.material) => {
+                let again = self.search(raw, self.surrounded(raw, data, again)?, progress)?;
+                Ok(if again.predicts_better_than(&found) { again } else { found })
+            }
+            Err(Error::Interrupted) => Err(place(Error::Interrupted)),
+            // Beside the effects the data do not tell how they were measured.
+            Ok(_) | Err(_) => Ok(found),
         }
     }
 
     /// The data with what a model says about how they were measured.
-    fn material(
+    fn understood(
+        &self,
+        raw: &Raw,
+        structure: &Structure,
+        progress: &mut Progress,
+    ) -> Result<Material, Error> {
+        let (mut prepared, mut tracks) = (raw.prepared.clone(), raw.tracks.clone());
+        let base = std::mem::replace(&mut prepared.request.structure, structure.clone());
+        let surroundings = Arc::new(Environment::default().about(surroundings::origin(&prepared)));
+        let about = |frame: &Observation| frame.clone().within(surroundings.clone());
+        prepared.observations = prepared.observations.iter().map(about).collect();
+        self.arguments.latent.understand(tracks.as_mut(), &mut prepared, progress)?;
+        prepared.request.structure = base;
+        Ok(Material { prepared, tracks })
+    }
+
+    /// The same with what surrounds and preceded the cells.
+    fn surrounded(
         &self,
         raw: &Raw,
         (data, map): Data<'_>,
-        structure: &Structure,
-        progress: &mut Progress,
+        mut material: Material,
     ) -> Result<Material, Failure> {
-        let snapshots = &self.arguments.snapshots;
-        let Raw { prepared, tracks, past } = raw;
-        let (mut prepared, mut tracks) = (prepared.clone(), tracks.clone());
-        let base = std::mem::replace(&mut prepared.request.structure, structure.clone());
-        let origin = surroundings::origin(&prepared);
-        let surroundings = Arc::new(Environment::default().about(origin));
-        let about = |frame: &voronudge_infer::Observation| frame.clone().within(surroundings.clone());
-        prepared.observations = prepared.observations.iter().map(about).collect();
-        let understood = self.arguments.latent.understand(tracks.as_mut(), &mut prepared, progress);
-        understood.map_err(|error| prepared.place(error, snapshots))?;
-        prepared.request.structure = base;
-        if let Some(past) = past {
-            surroundings::surround(&mut prepared, (snapshots, data), map, past.history.as_ref())?;
+        if let Some(past) = &raw.past {
+            let snapshots = &self.arguments.snapshots;
+            surroundings::surround(&mut material.prepared, (snapshots, data), map, past.history.as_ref())?;
         }
-        Ok(Material { prepared, tracks })
+        Ok(material)
     }
 
     fn search(&self, raw: &Raw, material: Material, progress: &mut Progress) -> Result<Searched, Failure> {
@@ -130,6 +142,13 @@ fn extended(raw: &Raw, discovery: &Discovery) -> Option<Structure> {
         .all(|own| own.effect.columns(&anywhere, domain).is_ok_and(|columns| columns == own.columns));
     let columns: Vec<Column> = discovery.selected.iter().flat_map(|own| own.columns.clone()).collect();
     can_act.then(|| prepared.request.structure.with(&columns))
+}
+
+impl Searched {
+    fn predicts_better_than(&self, other: &Self) -> bool {
+        let error = |own: &Self| own.discovery.after.held_out.map(|error| error.value);
+        error(self).zip(error(other)).is_some_and(|(own, other)| own < other)
+    }
 }
 
 impl Material {
