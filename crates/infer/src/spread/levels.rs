@@ -83,14 +83,7 @@ impl Likelihood<'_> {
         (scaled, DVector::from_fn(active.len(), |i, _| roots[active[i]] * self.products.data[active[i]]))
     }
 
-    /// −2 log L, up to a constant.
-    pub fn criterion(&self, at: &Variances) -> Result<f64, Error> {
-        let (scaled, data) = self.scaled(at, &self.active(at));
-        let factor = scaled.cholesky().ok_or(Error::Degenerate)?;
-        let solved = factor.solve(&data);
-        Ok(self.of(at, factor.ln_determinant(), data.dot(&solved)))
-    }
-
+    /// −2 log L, up to a constant, from log det B and what the deviations explain.
     fn of(&self, at: &Variances, log_determinant: f64, explained: f64) -> f64 {
         let misfit = self.products.misfit - explained;
         self.left * at.velocity + self.products.log_determinant + log_determinant + misfit / at.velocity.exp()

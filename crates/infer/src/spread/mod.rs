@@ -63,8 +63,6 @@ pub(crate) struct Differing {
     pub frames: Vec<Observation>,
     pub found: Found,
     pub levels: NoiseLevels,
-    /// `Σ u² / s²`
-    pub penalty: f64,
     /// What the spreads take off the information on the coefficients, in units of 1/σ_v².
     pub spent: DMatrix<f64>,
 }
@@ -147,7 +145,7 @@ pub(crate) fn fit(
     let value = fitting.at(&state).value(&state.parameters) + penalty * state.levels.velocity.powi(2);
     let State { frames, parameters, levels, .. } = state;
     let found = Found { parameters, value, steps: found.steps + steps, ..found };
-    Ok(Differing { spreads, frames, found, levels, penalty, spent })
+    Ok(Differing { spreads, frames, found, levels, spent })
 }
 
 /// What stays the same throughout a fit.
