@@ -2,7 +2,7 @@
 
 use crate::program::{fixture, succeed};
 use crate::scratch::{Folder, number, read, report};
-use ndarray::{Array2, Array3};
+use ndarray::{Array1, Array2, Array3};
 use std::fs;
 use std::path::Path;
 
@@ -157,9 +157,8 @@ fn a_liquid_has_a_positive_lyapunov_exponent_and_noise_has_none() {
 fn cells_have_parameters_of_their_own() {
     let given = Folder::new();
     let write = |name: &str, values: Vec<f64>| {
-        let path = given.path().join(name);
-        ndarray_npy_write(&path, &values);
-        path.display().to_string()
+        given.write_array(name, &Array1::from_vec(values));
+        given.file(name).display().to_string()
     };
     let same = write("same.npy", vec![3.9; 60]);
     let uneven = write("uneven.npy", (0..60).map(|i| 3.9 + 0.2 * f64::from(i % 3 - 1)).collect());

@@ -13,8 +13,8 @@ const FACTOR: f64 = 1.3;
 /// Largest relative spread.
 const LARGEST: f64 = 5.0;
 
-/// Halvings of the bracket of an end.
-const HALVINGS: usize = 5;
+/// Steps towards an end within its bracket.
+const STEPS: usize = 3;
 
 /// What the likelihood says of one spread.
 pub(super) struct Profile {
@@ -51,21 +51,29 @@ impl Fitting<'_> {
         let lower = match value > 0.0 && rise(0.0)? > 0.0 {
             false => 0.0,
             true => {
-                let (mut outside, mut inside) = (value / FACTOR, value);
-                while outside > SMALLEST && rise(outside)? < 0.0 {
-                    (outside, inside) = (outside / FACTOR, outside);
+                let mut inside = (value, -CHI_SQUARED_95);
+                let mut outside = value / FACTOR;
+                let mut beyond = rise(outside)?;
+                while outside > SMALLEST && beyond < 0.0 {
+                    inside = (outside, beyond);
+                    outside /= FACTOR;
+                    beyond = rise(outside)?;
                 }
-                end(&rise, outside, inside)?
+                end(&rise, (outside, beyond), inside)?
             }
         };
-        let (mut inside, mut outside) = (value, FACTOR * value.max(5.0 * SMALLEST));
-        while rise(outside)? < 0.0 {
+        let mut inside = (value, -CHI_SQUARED_95);
+        let mut outside = FACTOR * value.max(5.0 * SMALLEST);
+        let mut beyond = rise(outside)?;
+        while beyond < 0.0 {
             if outside > LARGEST {
                 return Ok([Some(lower), None]);
             }
-            (inside, outside) = (outside, FACTOR * outside);
+            inside = (outside, beyond);
+            outside *= FACTOR;
+            beyond = rise(outside)?;
         }
-        Ok([Some(lower), Some(end(&rise, outside, inside)?)])
+        Ok([Some(lower), Some(end(&rise, (outside, beyond), inside)?)])
     }
 
     fn p_value(
@@ -89,14 +97,28 @@ impl Fitting<'_> {
     }
 }
 
-/// Where the rise changes its sign between a spread outside and one inside.
-fn end(rise: &impl Fn(f64) -> Result<f64, Error>, mut outside: f64, mut inside: f64) -> Result<f64, Error> {
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (outside + inside);
-        match rise(middle)? > 0.0 {
-            true => outside = middle,
-            false => inside = middle,
+/// Where the rise changes its sign between a spread outside and one inside, by false positions; never further inside.
+fn end(
+    rise: &impl Fn(f64) -> Result<f64, Error>,
+    mut outside: (f64, f64),
+    mut inside: (f64, f64),
+) -> Result<f64, Error> {
+    for _ in 0..STEPS {
+        if outside.1 <= 0.0 {
+            break;
+        }
+        // The rise is nearly a parabola.
+        let depth = |at: (f64, f64)| (at.1 + CHI_SQUARED_95).max(0.0).sqrt();
+        let share = (CHI_SQUARED_95.sqrt() - depth(inside)) / (depth(outside) - depth(inside));
+        let middle = inside.0 + share.clamp(0.05, 0.95) * (outside.0 - inside.0);
+        let there = rise(middle)?;
+        match there > 0.0 {
+            true => outside = (middle, there),
+            false => inside = (middle, there),
+        }
+        if there.abs() < 0.1 {
+            return Ok(middle);
         }
     }
-    Ok(outside)
+    Ok(outside.0)
 }

@@ -9,6 +9,7 @@
 
 use super::columns::Layout;
 use super::gram::Projected;
+use super::inverse::inverse;
 use crate::Error;
 use nalgebra::{DMatrix, DVector};
 
@@ -19,10 +20,10 @@ pub(super) const SMALLEST: f64 = 1e-3;
 const LARGEST_STEP: f64 = 1.5;
 
 /// Change of −2 log L that counts as none.
-const SETTLED: f64 = 1e-4;
+const SETTLED: f64 = 5e-3;
 
 /// Steps at most.
-const STEPS: usize = 40;
+const STEPS: usize = 12;
 
 /// log σ_v² and log s_q²; `None` for parameters in which cells do not differ.
 #[derive(Debug, Clone, PartialEq)]
@@ -92,9 +93,7 @@ impl Likelihood<'_> {
     fn local(&self, at: &Variances) -> Result<Local, Error> {
         let active = self.active(at);
         let (scaled, data) = self.scaled(at, &active);
-        let factor = scaled.cholesky().ok_or(Error::Degenerate)?;
-        let log_determinant = factor.ln_determinant();
-        let inverse = factor.inverse();
+        let (inverse, log_determinant) = inverse(&scaled)?;
         let solved = &inverse * &data;
         let explained = data.dot(&solved);
         let variance = at.velocity.exp();

@@ -12,6 +12,7 @@
 mod columns;
 mod gram;
 mod interval;
+mod inverse;
 mod levels;
 mod score;
 mod step;
@@ -30,7 +31,7 @@ use std::sync::Arc;
 use voronudge_model::{CellFactors, CellParameter, Environment};
 
 /// Rounds of variances and steps.
-const ROUNDS: u64 = 10;
+const ROUNDS: u64 = 8;
 
 /// Distance of the values of log k at which the likelihood is looked at.
 const SPACING: f64 = 0.4;

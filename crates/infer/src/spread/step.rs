@@ -1,19 +1,22 @@
 //! Steps of coefficients, nudges and deviations together, and what deviations mean at the end.
 
 use super::gram::Gram;
+use super::inverse::inverse;
 use super::{Fitting, Linearised, Spread, State, differing};
 use crate::Error;
 use crate::least_squares::{invert, within_bounds};
-use nalgebra::{Cholesky, DMatrix, DVector, Dyn};
+use crate::noisy_fit::STEPS_PER_ROUND;
+use crate::search::refine;
+use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Halvings of a step at most.
 const HALVINGS: usize = 8;
 
-/// D (I + D ZᵀW⁻¹Z D)⁻¹ D, as a factor between D.
+/// D (I + D ZᵀW⁻¹Z D)⁻¹ D, as an inverse between D.
 struct Prior {
     roots: DVector<f64>,
-    factor: Cholesky<f64, Dyn>,
+    inverse: DMatrix<f64>,
 }
 
 impl Prior {
@@ -22,7 +25,7 @@ impl Prior {
         let scaled = DMatrix::from_fn(m, m, |i, j| {
             roots[i] * of_cells[(i, j)] * roots[j] + if i == j { 1.0 } else { 0.0 }
         });
-        Ok(Self { roots, factor: scaled.cholesky().ok_or(Error::Degenerate)? })
+        Ok(Self { roots, inverse: inverse(&scaled)?.0 })
     }
 
     fn times(&self, right: &DMatrix<f64>) -> DMatrix<f64> {
@@ -30,11 +33,11 @@ impl Prior {
             matrix.column_iter_mut().for_each(|mut column| column.component_mul_assign(&self.roots));
             matrix
         };
-        scale(self.factor.solve(&scale(right.clone())))
+        scale(&self.inverse * scale(right.clone()))
     }
 
     fn of(&self, right: &DVector<f64>) -> DVector<f64> {
-        self.factor.solve(&right.component_mul(&self.roots)).component_mul(&self.roots)
+        (&self.inverse * right.component_mul(&self.roots)).component_mul(&self.roots)
     }
 }
 
@@ -104,11 +107,33 @@ impl Fitting<'_> {
             let after = self.value(&next);
             if after < before {
                 *state = next;
-                return Ok((before - after) / before);
+                self.settle(state)?;
+                return Ok((before - self.value(state)) / before);
             }
             scale *= 0.5;
         }
-        Ok(0.0)
+        // Where contacts change, the nudges may have to go another way.
+        let deviations = &state.deviations + &of_cells;
+        let mut next = State {
+            frames: differing(self.objective.frames, self.layout, &deviations)?,
+            parameters: state.parameters.clone(),
+            deviations,
+            levels: state.levels,
+            variances: state.variances.clone(),
+        };
+        self.settle(&mut next)?;
+        let after = self.value(&next);
+        if after < before {
+            *state = next;
+        }
+        Ok(((before - after) / before).max(0.0))
+    }
+
+    /// Lets coefficients and nudges follow the deviations.
+    fn settle(&self, state: &mut State) -> Result<(), Error> {
+        let settled = refine(&self.at(state), state.parameters.clone(), STEPS_PER_ROUND)?;
+        state.parameters = settled.parameters;
+        Ok(())
     }
 
     /// The spreads at the end of a fit.
@@ -120,7 +145,7 @@ impl Fitting<'_> {
         let scaled = DMatrix::from_fn(m, m, |i, j| {
             roots[i] * products[(i, j)] * roots[j] + if i == j { 1.0 } else { 0.0 }
         });
-        let inverse = scaled.cholesky().ok_or(Error::Degenerate)?.inverse();
+        let (inverse, _) = inverse(&scaled)?;
         let velocity = state.levels.velocity;
         let profiles = self.profiles(state, linearised)?;
         let parameters = self.layout.parameters.iter().zip(profiles).enumerate();
