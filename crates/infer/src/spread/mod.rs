@@ -218,7 +218,7 @@ impl<'a> Fitting<'a> {
         let (slope, bend) = (found[2].1 - found[0].1, found[2].1 - 2.0 * found[1].1 + found[0].1);
         let step = match bend > 0.0 {
             true => (-0.5 * slope / bend).clamp(-2.0, 2.0),
-            false => -2.0_f64.copysign(slope),
+            false => -(2.0_f64.copysign(slope)),
         };
         let inside = step.clamp(-1.0, 1.0);
         let criterion = found[1].1 + 0.5 * inside * slope + 0.5 * inside * inside * bend;

@@ -115,7 +115,7 @@ impl Question<'_> {
         };
         let whole = norm(self.parameter, self.parameter);
         let variance = 2.0 * (whole - share.dot(&right));
-        if !(variance > 1e-9 * whole) {
+        if variance.is_nan() || variance <= 1e-9 * whole {
             // Nothing tells this parameter from the others.
             return Ok(1.0);
         }
