@@ -2,6 +2,7 @@
 //! project are made with.
 
 pub mod channel;
+pub mod differing;
 pub mod measured;
 
 use rand::SeedableRng;

@@ -4,6 +4,7 @@
 
 mod channel;
 mod detections;
+mod differing;
 mod doubts;
 mod mean_field;
 mod measured;

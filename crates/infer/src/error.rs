@@ -77,6 +77,9 @@ pub enum Error {
     /// Parameters that cannot be held, bounded or weighted like this.
     #[error("{0}")]
     Constraint(&'static str),
+    /// Data that cannot tell whether cells differ.
+    #[error("{0}")]
+    Spread(&'static str),
     /// The columns of the model are linearly dependent on these data.
     #[error("the velocities of the fitted terms are linearly dependent on these data")]
     Degenerate,
@@ -115,6 +118,7 @@ impl Error {
             Self::NoDeformation { .. } => Some("choose frames in which the pattern deforms"),
             Self::NothingToFit => Some("leave at least one of K_A, K_P, P_0, alpha free"),
             Self::Constraint(_) => Some("check --fix, --bounds and --prior; K_P must not be held at zero"),
+            Self::Spread(_) => Some("leave --vary out, or give velocities of fewer cells"),
             Self::Degenerate => Some("fix one of the parameters, for example K_A, or give more cells"),
             Self::Noise { .. } => {
                 Some("give the standard deviation of one component, in the units of the data")

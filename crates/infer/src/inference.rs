@@ -10,6 +10,7 @@ use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Nudged, Objective};
 use crate::robust::reweighed;
 use crate::search::Watch;
+use crate::spread;
 use crate::{
     CoefficientSpace, CrossValidation, Direction, Doubt, Error, Estimate, Examination, FrameResult,
     Inference, KnownNoise, Nmse, NoiseLevels, Observation, ParameterEstimates, Progress, Request, Status,
@@ -57,14 +58,26 @@ pub fn infer(
         weighted = Some(next);
     }
     let given = frames;
-    let frames = weighted.as_deref().unwrap_or(given);
-    let objective = Objective { frames, levels, ..objective };
+    let mut frames = weighted.as_deref().unwrap_or(given);
+    // Velocities held out are predicted with the parameters that all cells share.
     let folds = match request.cross_validation {
         CrossValidation::Done => {
-            cross_validate(&objective, &found.parameters, &Split::new(frames, BLOCKS), &mut watch)?
+            let alike = Objective { frames, levels, ..objective };
+            cross_validate(&alike, &found.parameters, &Split::new(frames, BLOCKS), &mut watch)?
         }
         CrossValidation::Skipped => None,
     };
+    let differing = match request.varied.is_empty() {
+        true => None,
+        false => {
+            let alike = Objective { frames, levels, ..objective };
+            Some(spread::fit(&alike, found.clone(), request, &mut watch)?)
+        }
+    };
+    if let Some(differing) = &differing {
+        (frames, levels, found) = (&differing.frames, differing.levels, differing.found.clone());
+    }
+    let objective = Objective { frames, levels, ..objective };
     let (free, nudges) = objective.split(&found.parameters);
     let coefficients = space.coefficients(free);
     let parts = objective.parts(&found.parameters);
@@ -75,12 +88,16 @@ pub fn infer(
     let equations = objective.linearise(&found.parameters)?;
     // What is not known of the measurement makes coefficients uncertain.
     let unknowns = frames.first().map_or(&[][..], Observation::unknowns);
-    let reduced = match unknowns.is_empty() {
+    let mut reduced = match unknowns.is_empty() {
         true => equations.reduced()?,
         false => {
             objective.linearise_with(&found.parameters, unknowns)?.reduced()?.without_last(unknowns.len())?
         }
     };
+    // Neither is what single cells are like.
+    if let Some(differing) = &differing {
+        reduced.information -= &differing.spent;
+    }
     let estimated = estimates(&equations, reduced, &space, request, free, variance * excess)?;
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
@@ -134,11 +151,13 @@ pub fn infer(
         starts: found.starts.iter().map(|phi| phi / variance).collect(),
         transitions: [found.transitions_tried, found.transitions_made],
         doubts: doubts(value, expected, &levels, &request.noise, found.status),
+        spreads: differing.as_ref().map_or_else(Vec::new, |differing| differing.spreads.clone()),
         used,
         total,
     };
     if request.examination == Examination::Done {
-        let further = examine(given, request, &inference)?;
+        let examined = if request.varied.is_empty() { given } else { frames };
+        let further = examine(examined, request, &inference)?;
         inference.doubts.extend(further);
     }
     Ok(inference)

@@ -48,6 +48,7 @@ mod sample;
 mod scale;
 mod search;
 mod sites;
+mod spread;
 mod stiffness;
 #[cfg(test)]
 mod tests;
@@ -74,6 +75,7 @@ pub use request::{Activity, CrossValidation, Examination, Loss, Method, Request}
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;
 pub use sites::{Outlined, Sites, sites};
+pub use spread::Spread;
 pub use tracks::{
     Drift, Integration, Latent, Movie, Polarity, Sighting, Track, Tracked, complete_tracks, infer_tracks,
     measure_tracks,

@@ -184,6 +184,11 @@ impl Linearisation {
         sum
     }
 
+    /// `JᵀX + kHᵀZ` (n × p, by columns), then `Jᵀy` with what positions add to it.
+    pub fn mixed(&self, spring: f64) -> Vec<f64> {
+        self.sum(spring, |group| &group.mixed)
+    }
+
     /// Eliminates the nudges from a damped Gauss–Newton step
     ///
     /// ```text
@@ -216,7 +221,7 @@ impl Linearisation {
     pub fn whiten(&self, spring: f64) -> Result<Whitened, Error> {
         let factor = self.factor(spring)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
-        let mixed = self.sum(spring, |group| &group.mixed);
+        let mixed = self.mixed(spring);
         let mut solved = mixed.clone();
         factor.solve(&mut solved);
         let dot = |a: usize, b: usize| product(&mixed, &solved, n, a, b);

@@ -60,6 +60,15 @@ impl KnownNoise {
         }
     }
 
+    /// σ_v² where it follows from k and what is known.
+    pub(crate) fn variance(&self, log_k: f64) -> Option<f64> {
+        match (self.velocity, self.position) {
+            (Some(velocity), _) => Some(velocity * velocity),
+            (None, Some(position)) => Some(position * position * log_k.exp()),
+            (None, None) => None,
+        }
+    }
+
     /// Refuses levels that are none.
     pub(crate) fn check(&self) -> Result<(), Error> {
         for (name, value) in [("position", self.position), ("velocity", self.velocity)] {
@@ -202,11 +211,7 @@ impl Restricted<'_> {
     pub fn likelihood(&self, log_k: f64) -> Result<Likelihood, Error> {
         let leftover = self.leftover(log_k)?;
         let left = self.left();
-        let variance = match self.known {
-            KnownNoise { velocity: Some(velocity), .. } => velocity * velocity,
-            KnownNoise { position: Some(position), .. } => position * position * log_k.exp(),
-            _ => leftover.misfit / left,
-        };
+        let variance = self.known.variance(log_k).unwrap_or(leftover.misfit / left);
         let criterion = left * variance.ln() + leftover.log_determinant + leftover.misfit / variance;
         Ok(Likelihood { criterion, variance })
     }

@@ -54,6 +54,17 @@ impl Reduced {
     }
 }
 
+/// The parts of a problem in β alone.
+fn reduce(frames: &[Linearisation], priors: Priors, spring: f64) -> Result<Reduced, Error> {
+    let (mut information, mut gradient) = (priors.normal, priors.gradient);
+    for frame in frames {
+        let part = frame.eliminate(spring, &[])?;
+        information += part.schur;
+        gradient += part.gradient;
+    }
+    Ok(Reduced { information, gradient })
+}
+
 /// The penalty of the priors, linearised about the present coefficients.
 #[derive(Debug, Clone)]
 struct Priors {
@@ -103,6 +114,12 @@ impl NormalEquations {
     /// The same problem at other noise levels.
     pub fn at_levels(self, levels: NoiseLevels) -> Self {
         Self::new(&self.space, levels, self.free.as_slice(), self.frames)
+    }
+
+    /// The reduced problem at other noise levels.
+    pub fn reduced_at(&self, levels: NoiseLevels) -> Result<Reduced, Error> {
+        let priors = Priors::new(&self.space, levels.velocity, self.free.as_slice());
+        reduce(&self.frames, priors, levels.spring())
     }
 
     /// Holds the unknowns of each part otherwise, with another weight of what is known of them.
@@ -173,13 +190,7 @@ impl NormalEquations {
 
     /// The problem in β alone, with the nudges eliminated and priors included.
     pub fn reduced(&self) -> Result<Reduced, Error> {
-        let (mut information, mut gradient) = (self.priors.normal.clone(), self.priors.gradient.clone());
-        for frame in &self.frames {
-            let part = frame.eliminate(self.spring, &[])?;
-            information += part.schur;
-            gradient += part.gradient;
-        }
-        Ok(Reduced { information, gradient })
+        reduce(&self.frames, self.priors.clone(), self.spring)
     }
 
     /// The β at which the linearised problem would be least without the bounds that hold it back: where its constrained

@@ -15,7 +15,7 @@ use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::{BlockMatrix, Environment, Structure, jacobian};
+use voronudge_model::{BlockMatrix, Environment, Model, Structure, jacobian};
 
 /// `Φ(β, ε) = Σ w ‖v − F_β(r + ε)‖² + k Σ m ‖y − H(r + ε)‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors, with weights w of
 /// velocities and the stiffness m of a cell. Cells that were not seen are held with the spread of [`WHEREABOUTS`]. The
@@ -53,6 +53,16 @@ pub(crate) struct Evaluated {
     pub predicted: Vec<Vector<f64>>,
     /// Their derivatives by the coefficients.
     pub by_coefficient: Columns,
+}
+
+/// One frame at some positions with its residuals and their derivatives.
+pub(crate) struct Measurable<'a> {
+    pub nudged: Nudged<'a>,
+    pub evaluated: Evaluated,
+    /// Datum, residual, and its derivative by the free coefficients (2, p).
+    pub rows: Vec<(usize, Vector<f64>, DMatrix<f64>)>,
+    /// Derivative of what is measured by the positions.
+    pub jacobian: BlockMatrix,
 }
 
 impl<'a> Nudged<'a> {
@@ -101,9 +111,14 @@ impl<'a> Nudged<'a> {
         }
     }
 
+    /// The model of a structure with some coefficients, surrounded by what surrounds the cells.
+    pub fn model(&self, coefficients: &[f64]) -> Model<f64> {
+        self.structure.model(coefficients, &self.environment)
+    }
+
     /// The derivative of what is measured with respect to the positions.
     pub fn jacobian(&self, coefficients: &[f64], evaluated: &Evaluated) -> BlockMatrix {
-        let mut model = self.structure.model(coefficients, &self.environment);
+        let mut model = self.model(coefficients);
         // Candidates that are not part of the model yet.
         model.terms.retain(|weighted| weighted.coefficient != 0.0);
         model.responses.retain(|weighted| weighted.coefficient != 0.0);
@@ -222,6 +237,28 @@ impl<'a> Objective<'a> {
         self.linearise_with(parameters, &[])
     }
 
+    /// What is measured of one frame, linearised about its nudges; weights of velocities are not yet in it.
+    pub fn measurable(
+        &self,
+        index: usize,
+        coefficients: &[f64],
+        nudges: &[f64],
+    ) -> Result<Measurable<'a>, Error> {
+        let frame = &self.frames[index];
+        let nudged = self.place(index, nudges)?;
+        let evaluated = nudged.evaluate(coefficients);
+        let rows = residuals(frame, &evaluated.predicted)
+            .into_iter()
+            .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
+            .map(|((datum, rest), x)| (datum, rest, x))
+            .collect();
+        let mut jacobian = nudged.jacobian(coefficients, &evaluated);
+        if !frame.is_free() {
+            jacobian = jacobian.only(|cell| !frame.is_held(cell));
+        }
+        Ok(Measurable { nudged, evaluated, rows, jacobian })
+    }
+
     /// The same with unknowns of the measurement as further coefficients, after all others.
     pub fn linearise_with(&self, parameters: &[f64], unknowns: &[Unknown]) -> Result<NormalEquations, Error> {
         let (free, nudges) = self.split(parameters);
@@ -236,18 +273,8 @@ impl<'a> Objective<'a> {
             .zip(&nudges)
             .enumerate()
             .map(|(index, (frame, nudges))| {
-                let nudged = self.place(index, nudges)?;
-                let evaluated = nudged.evaluate(coefficients.as_slice());
-                let mut rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> =
-                    residuals(frame, &evaluated.predicted)
-                        .into_iter()
-                        .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
-                        .map(|((datum, rest), x)| (datum, rest, x))
-                        .collect();
-                let mut jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
-                if !frame.is_free() {
-                    jacobian = jacobian.only(|cell| !frame.is_held(cell));
-                }
+                let Measurable { nudged, evaluated, mut rows, mut jacobian } =
+                    self.measurable(index, coefficients.as_slice(), nudges)?;
                 for (_, _, x) in &mut rows {
                     *x = std::mem::take(x).resize_horizontally(p, 0.0);
                 }

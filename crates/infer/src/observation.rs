@@ -47,6 +47,8 @@ pub struct Observation {
     /// Degree of the polynomials that are no concern of the model, and what they are here.
     background: Option<(u32, Background)>,
     environment: Arc<Environment>,
+    /// Which cell of the tissue each is; empty if that is not known.
+    identities: Vec<Option<usize>>,
 }
 
 /// How velocities were measured.
@@ -133,7 +135,19 @@ impl Observation {
             weights: Vec::new(),
             background: None,
             environment: Arc::default(),
+            identities: Vec::new(),
         })
+    }
+
+    /// Says which cell of the tissue each is, so that it can be told in other frames.
+    #[must_use]
+    pub fn with_identities(self, identities: Vec<Option<usize>>) -> Self {
+        Self { identities, ..self }
+    }
+
+    /// Which cell of the tissue a cell is, if that is known.
+    pub fn identity(&self, cell: usize) -> Option<usize> {
+        self.identities.get(cell).copied().flatten()
     }
 
     /// Lets a smooth flow, polynomials of the position up to a degree, be no concern of the model, or nothing. Velocities
@@ -211,7 +225,12 @@ impl Observation {
                 .collect(),
         };
         let (share, unknowns) = (self.share, self.unknowns.clone());
-        let own = Self { stiffness, aims, share, unknowns, environment: self.environment.clone(), ..own };
+        let identities = match self.identities.is_empty() {
+            true => Vec::new(),
+            false => kept.iter().map(|cell| self.identity(*cell)).collect(),
+        };
+        let environment = self.environment.clone();
+        let own = Self { stiffness, aims, share, unknowns, environment, identities, ..own };
         Ok(own.with_background(self.background_degree()))
     }
 

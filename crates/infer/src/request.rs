@@ -2,7 +2,7 @@
 
 use crate::coefficients::PREFERRED_AREA;
 use crate::{CoefficientSpace, Constraints, Error, KnownNoise};
-use voronudge_model::Structure;
+use voronudge_model::{CellParameter, Structure};
 
 /// What to fit, and how.
 #[derive(Debug, Clone, PartialEq)]
@@ -23,6 +23,8 @@ pub struct Request {
     pub frame_interval: Option<f64>,
     /// Whether cells crawl.
     pub activity: Activity,
+    /// Parameters that may differ from cell to cell; for velocities of cells.
+    pub varied: Vec<CellParameter>,
     /// Seed of further starts.
     pub seed: u64,
 }
@@ -95,6 +97,7 @@ impl Request {
             examination: Examination::Done,
             frame_interval: None,
             activity: Activity::None,
+            varied: Vec::new(),
             seed: 0,
         }
     }

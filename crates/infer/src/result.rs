@@ -1,6 +1,6 @@
 //! What a fit answers.
 
-use crate::{Doubt, NoiseLevels, NoiseSource, Observation, Quantity};
+use crate::{Doubt, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
 use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Parameters;
@@ -160,6 +160,8 @@ pub struct Inference {
     pub transitions: [usize; 2],
     /// Reasons not to trust the fit; none if it is sound.
     pub doubts: Vec<Doubt>,
+    /// How much cells differ, in the order of the request.
+    pub spreads: Vec<Spread>,
     /// Number of velocities used.
     pub used: usize,
     /// `Σ‖v‖²` over them, without the background.

@@ -113,7 +113,7 @@ impl<S: Scalar> HalfEdgeForces<S> {
         for (cell, v) in velocities.iter_mut().enumerate() {
             polygon.fill(tessellation, positions, cell);
             let own = &mut self.forces[tessellation.ring(cell)];
-            *v = VertexForces::of(&model.terms, polygon.shape()).on_ring(&polygon, own);
+            *v = VertexForces::of_cell(model, cell, polygon.shape()).on_ring(&polygon, own);
         }
         for image in 0..tessellation.len() {
             let (block, cell) = (image / cells, image % cells);
@@ -176,7 +176,7 @@ pub(crate) fn element<S: Scalar>(
     polygon: &CellPolygon<S>,
     on_ring: &mut [Vector<S>],
 ) -> Vector<S> {
-    let mut on_cell = VertexForces::of(&model.terms, polygon.shape()).on_ring(polygon, on_ring);
+    let mut on_cell = VertexForces::of_cell(model, cell, polygon.shape()).on_ring(polygon, on_ring);
     if model.has_ring_terms() {
         let element =
             CellElement { cell, neighbours, polygon, position, domain, environment: &model.environment };

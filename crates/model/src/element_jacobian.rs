@@ -11,9 +11,9 @@
 //! needs four dual directions for each corner and two for the terms, whatever the number of sides, through the very
 //! formulas that give the forces.
 
-use crate::{VertexForces, WeightedTerm};
+use crate::{Model, VertexForces};
 use num_dual::DualSVec64;
-use voronudge_geometry::{CellPolygon, Corner, Scalar, Shape, Vector, quarter_turn, side_direction};
+use voronudge_geometry::{CellPolygon, Corner, Shape, Vector, quarter_turn, side_direction};
 
 type CornerDual = DualSVec64<4>;
 type ShapeDual = DualSVec64<2>;
@@ -23,7 +23,7 @@ pub(crate) type Block = [f64; 4];
 
 /// Buffers for the derivative of one element after another.
 pub(crate) struct ElementJacobian {
-    terms: Vec<WeightedTerm<ShapeDual>>,
+    model: Model<ShapeDual>,
     polygon: CellPolygon<f64>,
     /// ∂c_m/∂d_m and ∂c_m/∂d_{m+1}
     vertex: Vec<[Block; 2]>,
@@ -54,13 +54,9 @@ fn derivative<const W: usize>(dual: &DualSVec64<W>, direction: usize) -> f64 {
 }
 
 impl ElementJacobian {
-    pub(crate) fn new(terms: &[WeightedTerm<f64>]) -> Self {
-        let terms = terms
-            .iter()
-            .map(|w| WeightedTerm { term: w.term, coefficient: Scalar::constant(w.coefficient) })
-            .collect();
+    pub(crate) fn new(model: &Model<f64>) -> Self {
         Self {
-            terms,
+            model: model.lift(),
             polygon: CellPolygon::default(),
             vertex: Vec::new(),
             transmitted: Vec::new(),
@@ -69,12 +65,18 @@ impl ElementJacobian {
         }
     }
 
-    /// Fills `∂g_a/∂d_b`, row-major in (a, b), for a ring of relative positions.
-    pub(crate) fn fill(&mut self, ring: impl Iterator<Item = Vector<f64>>, blocks: &mut [Block]) {
+    /// Fills `∂g_a/∂d_b`, row-major in (a, b), for a cell and its ring of relative positions.
+    pub(crate) fn fill(
+        &mut self,
+        cell: usize,
+        ring: impl Iterator<Item = Vector<f64>>,
+        blocks: &mut [Block],
+    ) {
         self.polygon.fill_ring(ring);
         let Shape { area, perimeter } = self.polygon.shape();
-        let forces = VertexForces::of(
-            &self.terms,
+        let forces = VertexForces::of_cell(
+            &self.model,
+            cell,
             Shape {
                 area: ShapeDual::from_re(area).derivative(0),
                 perimeter: ShapeDual::from_re(perimeter).derivative(1),

@@ -1,5 +1,6 @@
 //! What surrounds and preceded the cells: data that terms may refer to.
 
+use crate::CellFactors;
 use thiserror::Error;
 use voronudge_geometry::{Domain, Grid, Scalar, Vector};
 
@@ -89,6 +90,9 @@ impl VectorMap {
     }
 }
 
+/// Cells that do not differ.
+static ALIKE: CellFactors = CellFactors::ALIKE;
+
 /// What surrounds and preceded the cells of one configuration. Empty by default.
 ///
 /// ```
@@ -105,6 +109,7 @@ pub struct Environment {
     maps: Vec<VectorMap>,
     earlier: Vec<Option<Vector<f64>>>,
     beyond_edge: Vec<bool>,
+    cell_factors: Option<CellFactors>,
 }
 
 impl Default for Environment {
@@ -116,6 +121,7 @@ impl Default for Environment {
             maps: Vec::new(),
             earlier: Vec::new(),
             beyond_edge: Vec::new(),
+            cell_factors: None,
         }
     }
 }
@@ -177,8 +183,24 @@ impl Environment {
         Ok(Self { beyond_edge, ..self })
     }
 
+    /// The same with parameters that differ from cell to cell.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Cells`] if other data are for another number of cells.
+    pub fn with_cell_factors(self, factors: CellFactors) -> Result<Self, EnvironmentError> {
+        if let Some(cells) = factors.cells() {
+            self.fits("parameters of cells", cells)?;
+        }
+        Ok(self.having(factors))
+    }
+
+    /// The same for factors that fit.
+    pub(crate) fn having(self, factors: CellFactors) -> Self {
+        Self { cell_factors: factors.cells().map(|_| factors), ..self }
+    }
+
     fn fits(&self, what: &'static str, found: usize) -> Result<(), EnvironmentError> {
-        let known = [self.labels.len(), self.earlier.len(), self.beyond_edge.len()];
+        let known = [self.labels.len(), self.earlier.len(), self.beyond_edge.len(), self.cells_of_factors()];
         match known.into_iter().find(|&cells| cells != 0 && cells != found) {
             Some(expected) => Err(EnvironmentError::Cells { what, found, expected }),
             None => Ok(()),
@@ -194,11 +216,28 @@ impl Environment {
             ("labels", self.labels.len()),
             ("earlier velocities", self.earlier.len()),
             ("cells beyond the edge", self.beyond_edge.len()),
+            ("parameters of cells", self.cells_of_factors()),
         ];
         match given.into_iter().find(|&(_, found)| found != 0 && found != cells) {
             Some((what, found)) => Err(EnvironmentError::Cells { what, found, expected: cells }),
             None => Ok(()),
         }
+    }
+
+    fn cells_of_factors(&self) -> usize {
+        self.cell_factors.as_ref().and_then(CellFactors::cells).unwrap_or(0)
+    }
+
+    /// Whether parameters differ from cell to cell.
+    #[inline]
+    pub fn cells_differ(&self) -> bool {
+        self.cell_factors.is_some()
+    }
+
+    /// The multiples that the cells have of the model's parameters.
+    #[inline]
+    pub fn cell_factors(&self) -> &CellFactors {
+        self.cell_factors.as_ref().unwrap_or(&ALIKE)
     }
 
     /// The point about which ramps and polynomials are taken.

@@ -188,12 +188,13 @@ impl JacobianBuilder {
         let start = &*start;
         elements.resize(total, [0.0; 4]);
         split_by_cells(elements, tessellation.len(), |cell| start[cell]).into_par_iter().for_each_init(
-            || ElementJacobian::new(&model.terms),
+            || ElementJacobian::new(model),
             |jacobian, (cells, own)| {
                 let offset = start[cells.start];
                 for cell in cells.filter(|&cell| tessellation.is_closed(cell)) {
                     let ring = tessellation.ring(cell);
                     jacobian.fill(
+                        cell,
                         ring.map(|h| tessellation.displacement(positions, cell, h)),
                         &mut own[start[cell] - offset..start[cell + 1] - offset],
                     );

@@ -29,6 +29,7 @@
 mod assembly;
 mod axis;
 mod cell_element;
+mod cell_parameters;
 pub mod effect;
 mod element;
 mod element_jacobian;
@@ -47,6 +48,7 @@ mod transition;
 pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use axis::Axis;
 pub use cell_element::{CellElement, RingForces};
+pub use cell_parameters::{CellDerivatives, CellFactors, CellParameter, cell_derivatives};
 pub use effect::{Column, Effect};
 pub use element::VertexForces;
 pub use environment::{Environment, EnvironmentError, VectorMap};

@@ -126,14 +126,14 @@ impl Exchange {
     /// more than functions of areas and perimeters are left out.
     pub fn slopes(&self, model: &Model<f64>) -> JumpSlopes {
         let mut slopes = JumpSlopes::default();
-        let mut jacobian = ElementJacobian::new(&model.terms);
+        let mut jacobian = ElementJacobian::new(model);
         let mut blocks = Vec::new();
         for (number, (cell, rings)) in self.cells.iter().zip(&self.rings).enumerate() {
             for (ring, sign) in rings.iter().zip([-1.0, 1.0]) {
                 let sides = ring.displacements.len();
                 blocks.clear();
                 blocks.resize(sides * sides, [0.0; 4]);
-                jacobian.fill(ring.displacements.iter().copied(), &mut blocks);
+                jacobian.fill(*cell, ring.displacements.iter().copied(), &mut blocks);
                 // What acts on the cell itself is minus the sum of what acts on its ring.
                 let on_cell = (0..sides).map(|slot| (slot, number, -sign));
                 for (slot, of, sign) in on_cell.chain(ring.own.iter().map(|(slot, of)| (*slot, *of, sign))) {

@@ -12,6 +12,7 @@ mod pinch_relaxation;
 mod recovery;
 mod seeds;
 mod spectrum;
+mod spreads;
 
 use crate::Outcome;
 use clap::{Args, ValueEnum};
@@ -26,7 +27,7 @@ pub struct Arguments {
     /// Number of seeds.
     #[arg(long, visible_alias = "sets", default_value_t = 10)]
     seeds: u64,
-    /// Only tissues of this many cells (nada, discover, spectrum).
+    /// Only tissues of this many cells (nada, discover, spectrum, spreads).
     #[arg(long)]
     cells: Option<usize>,
     /// Folder for figures (nada).
@@ -35,7 +36,7 @@ pub struct Arguments {
     /// Only this part (discover).
     #[arg(long, value_enum)]
     part: Option<discover::Part>,
-    /// Only settings whose name contains one of these (discover).
+    /// Only settings whose name contains one of these (discover, spreads).
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Noise levels are estimated, not given (discover).
@@ -79,6 +80,8 @@ enum Study {
     PinchRelaxation,
     /// The program on data as they are measured.
     Measured,
+    /// Cells that differ in a parameter.
+    Spreads,
 }
 
 /// Runs a study.
@@ -97,6 +100,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Pinching => flows::pinching(arguments.seeds),
         Study::PinchRelaxation => pinch_relaxation::run(arguments.seeds),
         Study::Measured => measured::run(&arguments.measured, arguments.seeds, arguments.cells),
+        Study::Spreads => spreads::run(arguments.seeds, arguments.cells, &arguments.only),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

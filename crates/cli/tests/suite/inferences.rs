@@ -229,3 +229,23 @@ fn the_parameters_of_a_report_can_be_used_again() {
         assert_eq!(used, number(&fit, &format!("/parameters/{name}/value")), "{name}");
     }
 }
+
+/// Cells may differ: the report says by how much, files say which cell by how much.
+#[test]
+fn cells_may_differ() {
+    let data = fixture("chiral-liquid");
+    let out = infer(&data, "--fix K_A=0.1 --vary alpha");
+    let told = report(out.path());
+    assert_valid(&told);
+    let spreads = told["spreads"].as_array().unwrap();
+    assert_eq!((spreads.len(), &spreads[0]["parameter"]), (1, &serde_json::json!("alpha")));
+    let [low, value] = ["ci95/0", "relative"].map(|name| number(&told, &format!("/spreads/0/{name}")));
+    assert!(0.0 <= low && low <= value + 1e-9 && value < 0.5, "{low} {value}");
+    let own = |name: &str| -> Vec<f64> {
+        let array: ndarray::ArrayD<f64> = read(&out.file(name));
+        array.iter().copied().filter(|own| own.is_finite()).collect()
+    };
+    let (deviations, errors) = (own("deviation_alpha.npy"), own("deviation_error_alpha.npy"));
+    assert_eq!(deviations.len(), errors.len());
+    assert!(errors.iter().all(|error| *error <= value + 1e-9));
+}

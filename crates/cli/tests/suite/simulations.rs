@@ -2,7 +2,7 @@
 
 use crate::program::{fixture, succeed};
 use crate::scratch::{Folder, number, read, report};
-use ndarray::{Array2, Array3};
+use ndarray::{Array1, Array2, Array3};
 use std::fs;
 use std::path::Path;
 
@@ -150,4 +150,26 @@ fn a_liquid_has_a_positive_lyapunov_exponent_and_noise_has_none() {
         "simulate --cells 20 --time 1 --lyapunov --diffusion 0.1".split_whitespace(),
         &["--lyapunov", "noise"],
     );
+}
+
+/// Cells that are all alike move as the model does whose parameters they have; others do not. The values are in the report.
+#[test]
+fn cells_have_parameters_of_their_own() {
+    let given = Folder::new();
+    let write = |name: &str, values: Vec<f64>| {
+        given.write_array(name, &Array1::from_vec(values));
+        given.file(name).display().to_string()
+    };
+    let same = write("same.npy", vec![3.9; 60]);
+    let uneven = write("uneven.npy", (0..60).map(|i| 3.9 + 0.2 * f64::from(i % 3 - 1)).collect());
+    let plain = simulate("--P_0 3.9");
+    let alike = simulate(&format!("--cell-parameter P_0={same}"));
+    let differ = simulate(&format!("--cell-parameter P_0={uneven}"));
+    let positions = |out: &Folder| -> Array3<f64> { read(&out.path().join("positions.npy")) };
+    assert_eq!(positions(&plain), positions(&alike));
+    let moved = (&positions(&plain) - &positions(&differ)).iter().fold(0.0, |most: f64, d| most.max(d.abs()));
+    assert!(moved > 1e-2, "{moved}");
+    let told = report(differ.path());
+    assert_eq!(told["cell_parameters"]["P_0"].as_array().unwrap().len(), 60);
+    assert!((number(&told["parameters"]["P_0"]) - 3.9).abs() < 1e-12);
 }

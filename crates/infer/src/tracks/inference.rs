@@ -106,6 +106,7 @@ pub(crate) fn follow(
     });
     let nudged: f64 = missed.sum();
     let inference = Inference {
+        spreads: Vec::new(),
         parameters: estimated.parameters,
         effects: estimated.effects,
         directions: estimated.directions,

@@ -9,6 +9,7 @@ mod implied;
 mod latent;
 mod measured;
 mod measurement;
+mod spreads;
 mod tracks;
 mod uncertainty;
 mod verdict;
@@ -19,6 +20,7 @@ pub use implied::ImpliedByMeanField;
 pub use latent::LatentCells;
 pub use measured::{MeasuredPositions, MeasuredWindow, MeasurementSource, PositionKind, TriedWindow};
 pub use measurement::{Measurement, RegionSource, SeenRegion};
+pub use spreads::SpreadReport;
 pub use tracks::TracksReport;
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
 pub use verdict::{Verdict, VerdictKind};
@@ -87,6 +89,8 @@ pub struct InferReport {
     pub parameters: Parameters,
     /// Polarity of the cells, where it was asked for.
     pub activity: Option<ActivityReport>,
+    /// How much cells differ, where it was asked for.
+    pub spreads: Vec<SpreadReport>,
     /// Moduli and phase diffusivities that the parameters imply by the mean-field theory; `null` where it has none.
     pub implied_moduli: Option<ImpliedByMeanField>,
     /// The estimate at the measured positions.

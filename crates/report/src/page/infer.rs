@@ -7,11 +7,12 @@ use super::uncertainty::{Known, Uncertainty};
 use super::words::{data, fit_status, mean_removed, noise_source, warnings};
 use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
+use crate::colour::Palette;
 use crate::error::ReportError;
 use crate::figure::{
     CellScalar, Emphasis, ErrorBar, FlowMap, NudgeHistogram, ObjectiveTrace, ParameterRow, Prediction,
-    VelocityField, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace, polarity_map,
-    predicted_against_measured, velocity_map,
+    VelocityField, cell_map, distribution, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
+    polarity_map, predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
 use crate::numbers::{NO_VALUE, significant};
@@ -34,8 +35,44 @@ pub struct InferPage<'a> {
     pub frames: &'a [FrameView],
     /// Their velocities, one map for each frame, where these are on a grid; empty otherwise.
     pub flows: &'a [FlowMap<'a>],
+    /// Deviations of the cells in each parameter in which they may differ; empty if they may not.
+    pub spreads: &'a [SpreadView],
     /// What was asked beyond the fit.
     pub uncertainty: &'a Uncertainty,
+}
+
+/// Deviations of cells in one parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpreadView {
+    /// Symbol of the parameter.
+    pub symbol: String,
+    /// Deviation of each cell of each frame drawn, relative to the mean; NaN where there is none.
+    pub drawn: Vec<Vec<f64>>,
+}
+
+impl SpreadView {
+    fn label(&self) -> String {
+        format!("{} of the cell / mean − 1", self.symbol)
+    }
+
+    fn map(&self, index: usize) -> CellScalar {
+        CellScalar {
+            values: self.drawn.get(index).cloned().unwrap_or_default(),
+            label: self.label(),
+            palette: Palette::Diverging { centre: 0.0 },
+            limits: None,
+        }
+    }
+
+    fn histogram(&self) -> Figure {
+        let values: Vec<f64> = self.drawn.iter().flatten().copied().filter(|own| own.is_finite()).collect();
+        let title = format!("cells differ in {}", self.symbol);
+        Figure::new(
+            distribution(&title, &self.label(), &values, None),
+            "What is expected of each cell of the frames drawn, given the data. Estimates are shrunk towards the mean: they spread \
+             less than the cells do, the less the data say of each.",
+        )
+    }
 }
 
 impl InferPage<'_> {
@@ -83,6 +120,7 @@ impl InferPage<'_> {
                  position noise. Nudges are usually smaller than the noise, because the data \
                  determine only part of it.",
             ),
+            spread_figures: self.spreads.iter().map(SpreadView::histogram).collect(),
             panels: self.panels(),
         };
         render(TEMPLATE, &context)
@@ -163,6 +201,10 @@ impl InferPage<'_> {
                 let map = polarity_map(frame, velocities.as_ref(), units);
                 figures.push(Figure::new(map, "polarities: what the cells move by of themselves"));
             }
+            figures.extend(self.spreads.iter().map(|spread| {
+                let caption = format!("deviations of {}, shrunk towards the mean", spread.symbol);
+                Figure::new(cell_map(frame, &spread.map(index), units), &caption)
+            }));
             figures.extend([
                 Figure::new(nudge_map(frame, nudges.as_ref(), units), "nudges, magnified as stated"),
                 Figure::new(cell_map(frame, &area, units), "cell areas"),
@@ -192,6 +234,7 @@ struct Context<'a> {
     trace_figure: Figure,
     scatter_figure: Figure,
     nudge_figure: Figure,
+    spread_figures: Vec<Figure>,
     panels: Vec<Panel>,
 }
 

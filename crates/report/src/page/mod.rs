@@ -16,7 +16,7 @@ mod uncertainty;
 mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
-pub use infer::InferPage;
+pub use infer::{InferPage, SpreadView};
 pub use moduli::ModuliPage;
 pub use phase_diagram::PhasePage;
 pub use sections::{Section, SectionPage, Table};

@@ -103,7 +103,7 @@ pub fn page<'a>(
     frames: &'a [FrameView],
     uncertainty: &'a Uncertainty,
 ) -> InferPage<'a> {
-    InferPage { title: "embryo <3>", summary: &[], report, frames, flows: &[], uncertainty }
+    InferPage { title: "embryo <3>", summary: &[], report, frames, flows: &[], spreads: &[], uncertainty }
 }
 
 /// A filled report.

@@ -62,7 +62,8 @@ pub fn energy(tessellation: &Tessellation, positions: &[Vector<f64>], model: &Mo
     for cell in (0..tessellation.len()).filter(|&cell| tessellation.is_closed(cell)) {
         polygon.fill(tessellation, positions, cell);
         for weighted in model.terms.iter().filter(|weighted| weighted.coefficient != 0.0) {
-            total += weighted.coefficient * weighted.term.energy(polygon.shape())?;
+            let own = model.environment.cell_factors().term(weighted, cell);
+            total += own.coefficient * own.term.energy(polygon.shape())?;
         }
     }
     Some(total)

@@ -188,6 +188,8 @@ impl Question<'_> {
             .enumerate()
             .map(|(index, observation)| {
                 let mut observation = scaled(index, observation, &scale)?;
+                let identities = snapshots[index].cells.iter().map(|cell| Some(*cell)).collect();
+                observation = observation.with_identities(identities);
                 if let Some(relative) = &own_errors {
                     observation = observation.with_position_errors(&relative[index]);
                 }

@@ -6,6 +6,7 @@ mod method;
 mod page;
 mod questions;
 mod report;
+mod spreads;
 mod summary;
 mod verdict;
 
@@ -23,6 +24,7 @@ use method::MethodArguments;
 use questions::UncertaintyArguments;
 use voronudge_infer::{Activity, infer, infer_tracks};
 use voronudge_io::{Difference, OutputDirectory};
+use voronudge_model::CellParameter;
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
 ///
@@ -40,6 +42,9 @@ pub(crate) struct Arguments {
     /// Let cells crawl: each has a polarity of its own that it forgets at some rate. Fits v_0 and D_r together with the model; for tracks.
     #[arg(long)]
     active: bool,
+    /// Let cells differ in some parameters: `P_0,alpha`, of K_A, P_0, A_0 and alpha. For velocities of cells.
+    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
+    vary: Vec<CellParameter>,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -61,6 +66,7 @@ impl Arguments {
         let asked = [
             (self.method.is_descent(), "--method descent"),
             (self.snapshots.background.is_some(), "--background"),
+            (!self.vary.is_empty(), "--vary"),
             (self.uncertainty.is_asked(), "--profile, --landscape or --bootstrap"),
         ];
         match asked.into_iter().find(|(given, _)| *given) {
@@ -107,6 +113,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         activity::check(movie.as_ref())?;
         prepared.request.activity = Activity::Polarity;
     }
+    spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;
+    prepared.request.varied.clone_from(&arguments.vary);
     let mut progress = Progress::new(arguments.common.verbosity());
     let understood = arguments.latent.understand(movie.as_mut(), &mut prepared, &mut progress);
     prepared.caution(&mut run);
@@ -129,6 +137,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
+    spreads::write(&mut out, &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
     if let Some((tracks, tracked)) = &tracked {
         tracks.write(&mut out, "", &data, &prepared, tracked)?;

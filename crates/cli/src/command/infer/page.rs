@@ -3,6 +3,7 @@
 use super::Arguments;
 use super::answers;
 use super::questions::Answers;
+use super::spreads;
 use crate::command::fit::scaling::symbol;
 use crate::command::fit::{Measured, Prepared, views};
 use crate::failure::Failure;
@@ -36,6 +37,7 @@ pub(super) fn page(
         report,
         frames: &frames,
         flows: &flows,
+        spreads: &spreads::views(result, &drawn),
         uncertainty: &answers::figures(answers, result, &prepared.scale, &report.units),
     };
     Ok(page.render()?)

@@ -1,8 +1,8 @@
 //! The result of `infer` as its report.
 
-use super::answers;
 use super::questions::Answers;
 use super::verdict::verdict;
+use super::{answers, spreads};
 use crate::command::fit::scaling::factor;
 use crate::command::fit::{OrderedField, Prepared, implied, outcome};
 use crate::run::Run;
@@ -36,6 +36,7 @@ pub(super) fn report(
         constraints: outcome::given(&prepared.constraints),
         parameters,
         activity,
+        spreads: spreads::report(result),
         implied_moduli: implied::implied(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),

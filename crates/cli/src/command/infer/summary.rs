@@ -65,6 +65,9 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         };
         let _ = writeln!(text, "{name:<13} {value:>12}  {interval:<26} {:>12}  {}", "–", own.unit);
     }
+    for spread in &report.spreads {
+        let _ = writeln!(text, "{}", spread.words);
+    }
     if !is_finding {
         let _ = writeln!(text, "in brackets: a model that explains nothing has no parameters to be found");
     }

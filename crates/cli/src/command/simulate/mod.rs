@@ -1,5 +1,6 @@
 //! `voronudge simulate`: trajectories of the model in a periodic box.
 
+mod cells;
 mod chaos;
 mod measurements;
 mod outcome;
@@ -14,6 +15,7 @@ use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, env
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
+use cells::OfCells;
 use chaos::Measure;
 use clap::{Args, ValueEnum};
 use outcome::Finished;
@@ -72,6 +74,10 @@ pub(crate) struct Arguments {
     checkpoint: f64,
     #[command(flatten)]
     parameters: ParameterArguments,
+    /// A parameter of each cell: `P_0=FILE.npy`, an array (N) of values; of K_A, P_0, A_0 and alpha. May be repeated. The
+    /// parameter itself is then the mean of the values.
+    #[arg(long, value_name = "NAME=FILE")]
+    cell_parameter: Vec<String>,
     #[command(flatten)]
     effects: EffectArguments,
     #[command(flatten)]
@@ -89,7 +95,7 @@ enum MethodName {
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("simulate", &arguments.common)?;
     let out = arguments.common.required_out()?.clone();
-    let parameters = arguments.parameters.resolve()?;
+    let mut parameters = arguments.parameters.resolve()?;
     let effects = arguments.effects.resolve()?;
     let every = Duration::try_from_secs_f64(arguments.checkpoint).map_err(|_| {
         Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", arguments.checkpoint))
@@ -97,10 +103,18 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     })?;
     let start = Start::of(&arguments.start, arguments.common.seed, arguments.frames)?;
     let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
+    let (of_cells, factors) = OfCells::read(&arguments.cell_parameter, cells, &mut parameters)?;
+    if !of_cells.is_empty() && arguments.surroundings.walls().is_some() {
+        return Err(
+            Failure::new("--cell-parameter does not go with --walls").with_hint("leave one of them out")
+        );
+    }
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;
     let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
-    let surroundings = environment(&tessellation, &start.positions, &view)?;
+    let surroundings = environment(&tessellation, &start.positions, &view)?
+        .with_cell_factors(factors)
+        .map_err(|error| Failure::new(error.to_string()).with_hint("check --cell-parameter"))?;
     let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
     let request = Request {
         cells,
@@ -114,6 +128,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             MethodName::Adaptive => Method::BogackiShampine { tolerance: arguments.tolerance },
         },
         parameters: (&parameters).into(),
+        of_cells,
         effects,
         walls: arguments.surroundings.walls(),
         driving: Driving {

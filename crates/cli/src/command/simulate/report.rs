@@ -1,5 +1,6 @@
 //! What a run was asked for, and what came of it.
 
+use super::cells::OfCells;
 use super::start::Origin;
 use crate::arguments::ChosenEffects;
 use crate::command::evaluate::ModelParameters;
@@ -20,6 +21,8 @@ pub(super) struct Request {
     pub frames: usize,
     pub method: Method,
     pub parameters: ModelParameters,
+    #[serde(rename = "cell_parameters", skip_serializing_if = "OfCells::is_empty")]
+    pub of_cells: OfCells,
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     pub effects: ChosenEffects,
     #[serde(skip_serializing_if = "Option::is_none")]

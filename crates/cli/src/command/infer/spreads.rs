@@ -1,0 +1,125 @@
+//! Cells that differ: what a fit says of them.
+
+use crate::command::fit::Prepared;
+use crate::failure::Failure;
+use crate::snapshot::to_scalars;
+use voronudge_geometry::Vector;
+use voronudge_infer::{Inference, Method, Spread};
+use voronudge_io::{DataSet, OutputDirectory};
+use voronudge_model::CellParameter;
+use voronudge_report::SpreadView;
+use voronudge_report::infer_report::SpreadReport;
+use voronudge_report::numbers::significant;
+
+/// Probability below which it is said that cells differ.
+const LEVEL: f64 = 0.05;
+
+/// A parameter by its name.
+pub(super) fn parameter(name: &str) -> Result<CellParameter, String> {
+    let names = CellParameter::ALL.map(CellParameter::name).join(", ");
+    CellParameter::from_name(name).ok_or_else(|| format!("cells may differ in {names}"))
+}
+
+/// Refuses data and requests that do not go with cells that differ.
+pub(super) fn check(
+    vary: &[CellParameter],
+    prepared: &Prepared,
+    tracks: bool,
+    asked: bool,
+) -> Result<(), Failure> {
+    if vary.is_empty() {
+        return Ok(());
+    }
+    let twice = (1..vary.len()).find(|k| vary[..*k].contains(&vary[*k]));
+    let problem = match twice {
+        Some(k) => format!("--vary has {} twice", vary[k].name()),
+        None if tracks || prepared.velocities.flow().is_some() => {
+            "--vary is for velocities of cells, not for tracks or a flow field".into()
+        }
+        None if asked => "--vary does not go with --profile, --landscape or --bootstrap".into(),
+        None if matches!(prepared.request.method, Method::Descent { .. }) => {
+            "--vary does not go with --method descent".into()
+        }
+        None => return Ok(()),
+    };
+    Err(Failure::new(problem).with_hint("leave one of the two out"))
+}
+
+/// The spreads for the report.
+pub(super) fn report(result: &Inference) -> Vec<SpreadReport> {
+    let count = result.spreads.len() as f64;
+    let told = |spread: &Spread| {
+        let [low, high] = spread.interval;
+        let p_adjusted = 1.0 - (1.0 - spread.p).powf(count);
+        let named = p_adjusted < LEVEL;
+        let percent = |share: f64| significant(100.0 * share, 2);
+        let interval = match high {
+            Some(high) => format!("{} to {} %", percent(low.unwrap_or(0.0)), percent(high)),
+            None => format!("{} % or more", percent(low.unwrap_or(0.0))),
+        };
+        let (symbol, p) = (symbol(spread.parameter), significant(p_adjusted, 2));
+        let words = match named {
+            true => format!(
+                "cells differ in {symbol}: by {} % (standard deviation; 95 %: {interval}; p = {p})",
+                percent(spread.value)
+            ),
+            false => format!("cells are not seen to differ in {symbol} (95 %: {interval}; p = {p})"),
+        };
+        SpreadReport {
+            parameter: spread.parameter.name().into(),
+            relative: spread.value,
+            ci95: [low.unwrap_or(0.0), high.unwrap_or(f64::INFINITY)],
+            p: spread.p,
+            p_adjusted,
+            named,
+            words,
+        }
+    };
+    result.spreads.iter().map(told).collect()
+}
+
+/// The deviations of the cells of the frames drawn.
+pub(super) fn views(result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
+    let view = |spread: &Spread| SpreadView {
+        symbol: symbol(spread.parameter).into(),
+        drawn: drawn
+            .iter()
+            .map(|index| spread.deviations[*index].iter().map(|own| own[0]).collect())
+            .collect(),
+    };
+    result.spreads.iter().map(view).collect()
+}
+
+/// Writes deviations and their standard errors.
+pub(super) fn write(
+    out: &mut OutputDirectory,
+    data: &DataSet,
+    prepared: &Prepared,
+    result: &Inference,
+) -> Result<(), Failure> {
+    for spread in &result.spreads {
+        for (which, name) in ["deviation", "deviation_error"].into_iter().enumerate() {
+            let of_frame = |(index, own): (usize, &Vec<[f64; 2]>)| {
+                let own = own.iter().map(|own| Vector::new(own[which], 0.0)).collect();
+                prepared.of_detections(index, own).iter().map(|own| own.x).collect::<Vec<f64>>()
+            };
+            let all: Vec<Vec<f64>> = spread.deviations.iter().enumerate().map(of_frame).collect();
+            let frames =
+                prepared.snapshots.iter().zip(&all).map(|(snapshot, own)| (snapshot, own.as_slice()));
+            out.write_array(
+                &format!("{name}_{}.npy", spread.parameter.name()),
+                to_scalars(data, frames).view(),
+            )?;
+        }
+    }
+    Ok(())
+}
+
+fn symbol(parameter: CellParameter) -> &'static str {
+    match parameter {
+        CellParameter::AreaElasticity => "K_A",
+        CellParameter::PreferredPerimeter => "P_0",
+        CellParameter::PreferredArea => "A_0",
+        CellParameter::Chirality => "α",
+    }
+}

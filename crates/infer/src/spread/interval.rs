@@ -1,0 +1,124 @@
+//! Intervals of spreads by the profile of the restricted likelihood, and their scores.
+
+use super::gram::Gram;
+use super::levels::{SMALLEST, Variances};
+use super::score::Question;
+use super::{Fitting, Linearised, State};
+use crate::Error;
+use crate::estimates::CHI_SQUARED_95;
+
+/// Factor between the spreads at which an end is looked for.
+const FACTOR: f64 = 1.3;
+
+/// Largest relative spread.
+const LARGEST: f64 = 5.0;
+
+/// Steps towards an end within its bracket.
+const STEPS: usize = 3;
+
+/// What the likelihood says of one spread.
+pub(super) struct Profile {
+    pub interval: [Option<f64>; 2],
+    pub p: f64,
+}
+
+impl Fitting<'_> {
+    /// Interval and score of each spread.
+    pub fn profiles(&self, state: &State, linearised: &Linearised) -> Result<Vec<Profile>, Error> {
+        let grams = self.grams(state, linearised, state.levels.spring().ln())?;
+        let (_, best, least) = self.over_springs(&grams, linearised.left, &state.variances, None)?;
+        let of = |parameter: usize| {
+            let interval = self.interval(&grams, linearised.left, &best, least, parameter)?;
+            Ok(Profile { interval, p: self.p_value(state, linearised, &grams, parameter)? })
+        };
+        (0..self.layout.parameters.len()).map(of).collect()
+    }
+
+    fn interval(
+        &self,
+        grams: &[Gram; 3],
+        left: f64,
+        best: &Variances,
+        least: f64,
+        parameter: usize,
+    ) -> Result<[Option<f64>; 2], Error> {
+        let rise = |spread: f64| -> Result<f64, Error> {
+            let mut at = best.clone();
+            at.of_cells[parameter] = (spread > 0.0).then(|| 2.0 * spread.ln());
+            Ok(self.over_springs(grams, left, &at, Some(parameter))?.2 - least - CHI_SQUARED_95)
+        };
+        let value = best.of_cells[parameter].map_or(0.0, |own| (0.5 * own).exp());
+        let lower = match value > 0.0 && rise(0.0)? > 0.0 {
+            false => 0.0,
+            true => {
+                let mut inside = (value, -CHI_SQUARED_95);
+                let mut outside = value / FACTOR;
+                let mut beyond = rise(outside)?;
+                while outside > SMALLEST && beyond < 0.0 {
+                    inside = (outside, beyond);
+                    outside /= FACTOR;
+                    beyond = rise(outside)?;
+                }
+                end(&rise, (outside, beyond), inside)?
+            }
+        };
+        let mut inside = (value, -CHI_SQUARED_95);
+        let mut outside = FACTOR * value.max(5.0 * SMALLEST);
+        let mut beyond = rise(outside)?;
+        while beyond < 0.0 {
+            if outside > LARGEST {
+                return Ok([Some(lower), None]);
+            }
+            inside = (outside, beyond);
+            outside *= FACTOR;
+            beyond = rise(outside)?;
+        }
+        Ok([Some(lower), Some(end(&rise, (outside, beyond), inside)?)])
+    }
+
+    fn p_value(
+        &self,
+        state: &State,
+        linearised: &Linearised,
+        grams: &[Gram; 3],
+        parameter: usize,
+    ) -> Result<f64, Error> {
+        let mut without = state.variances.clone();
+        without.of_cells[parameter] = None;
+        let (log_k, _, _) = self.over_springs(grams, linearised.left, &without, Some(parameter))?;
+        // Without the spread the most likely spring can be another.
+        let around = self.grams(state, linearised, log_k)?;
+        let (log_k, _, _) = self.over_springs(&around, linearised.left, &without, Some(parameter))?;
+        let around = self.grams(state, linearised, log_k)?;
+        let (at, _) = self.most_likely(&around[1], linearised.left, &without, Some(parameter))?;
+        let question =
+            Question { layout: self.layout, parameter, at: &at, known: self.known, left: linearised.left };
+        question.p_value(&around)
+    }
+}
+
+/// Where the rise changes its sign between a spread outside and one inside, by false positions; never further inside.
+fn end(
+    rise: &impl Fn(f64) -> Result<f64, Error>,
+    mut outside: (f64, f64),
+    mut inside: (f64, f64),
+) -> Result<f64, Error> {
+    for _ in 0..STEPS {
+        if outside.1 <= 0.0 {
+            break;
+        }
+        // The rise is nearly a parabola.
+        let depth = |at: (f64, f64)| (at.1 + CHI_SQUARED_95).max(0.0).sqrt();
+        let share = (CHI_SQUARED_95.sqrt() - depth(inside)) / (depth(outside) - depth(inside));
+        let middle = inside.0 + share.clamp(0.05, 0.95) * (outside.0 - inside.0);
+        let there = rise(middle)?;
+        match there > 0.0 {
+            true => outside = (middle, there),
+            false => inside = (middle, there),
+        }
+        if there.abs() < 0.1 {
+            return Ok(middle);
+        }
+    }
+    Ok(outside.0)
+}

@@ -1,0 +1,22 @@
+//! Cells that differ.
+
+use serde::Serialize;
+
+/// How much cells differ in one parameter.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpreadReport {
+    /// The parameter: `K_A`, `P_0`, `A_0` or `alpha`.
+    pub parameter: String,
+    /// Standard deviation over cells, relative to the mean parameter.
+    pub relative: f64,
+    /// Ends of its 95 % interval; an end that is not finite is not bounded by the data.
+    pub ci95: [f64; 2],
+    /// Probability of a score as great or greater if cells do not differ in this parameter.
+    pub p: f64,
+    /// The same for the greatest score of as many parameters as were let vary.
+    pub p_adjusted: f64,
+    /// Whether the data show that cells differ: `p_adjusted` below 0.05.
+    pub named: bool,
+    /// What it says, in words.
+    pub words: String,
+}

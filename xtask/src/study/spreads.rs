@@ -1,0 +1,117 @@
+//! Cells that differ: how often it is told, how large it is said to be, and whether the mean parameters are right.
+
+use super::seeds::{on_one_core_each, quartiles};
+use crate::Outcome;
+use claims::Noise;
+use claims::differing::Differing;
+use std::ops::ControlFlow;
+use voronudge_infer::{Quantity, infer};
+use voronudge_model::CellParameter::{self, Chirality, PreferredArea, PreferredPerimeter};
+
+const CELLS: usize = 324;
+
+/// Probability below which a spread is named, for as many as are tried together.
+const LEVEL: f64 = 0.05;
+
+const NOISE: Noise = Noise { position: 0.02, velocity: 0.05 };
+
+/// What a fit says of one set.
+struct Row {
+    /// p of each parameter that was let vary, its spread, and whether its interval covers.
+    spreads: Vec<(f64, f64, bool)>,
+    /// Whether the intervals of the mean parameters cover, with and without spreads.
+    covered: [[bool; 4]; 2],
+    seconds: f64,
+}
+
+const MEANS: [Quantity; 4] = [
+    Quantity::AreaElasticity,
+    Quantity::PerimeterElasticity,
+    Quantity::PreferredPerimeter,
+    Quantity::Chirality,
+];
+
+pub fn run(seeds: u64, cells: Option<usize>, only: &[String]) -> Outcome {
+    let cells = cells.unwrap_or(CELLS);
+    println!(
+        "| cells differ by | let vary | frames | named | median s/truth (quartiles) | s covers | means cover | without spreads | seconds |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+    let all = [PreferredPerimeter, Chirality, PreferredArea];
+    let settings: [(&str, &[CellParameter], [f64; 3]); 6] = [
+        ("nothing", &all, [0.0; 3]),
+        ("P_0 2 %", &[PreferredPerimeter], [0.02, 0.0, 0.0]),
+        ("alpha 10 %", &[Chirality], [0.0, 0.1, 0.0]),
+        ("A_0 10 %", &[PreferredArea], [0.0, 0.0, 0.1]),
+        ("all, 2 % and 10 %", &all, [0.02, 0.1, 0.1]),
+        ("all, 5 % and 25 %", &all, [0.05, 0.25, 0.25]),
+    ];
+    for frames in [1, 6] {
+        for (name, varied, sizes) in settings {
+            let full = format!("{name}; {frames} frames");
+            if !only.is_empty() && !only.iter().any(|part| full.contains(part.as_str())) {
+                continue;
+            }
+            let spreads: Vec<(CellParameter, f64)> = all.into_iter().zip(sizes).collect();
+            let rows = on_one_core_each(seeds, |seed| row(cells, frames, seed, &spreads, varied))?;
+            print(name, varied, frames, &rows, &spreads);
+        }
+    }
+    Ok(())
+}
+
+fn row(
+    cells: usize,
+    frames: usize,
+    seed: u64,
+    spreads: &[(CellParameter, f64)],
+    varied: &[CellParameter],
+) -> Result<Row, Box<dyn std::error::Error>> {
+    let tissue = Differing::new(cells, seed, frames, spreads)?;
+    let measured = tissue.measured(NOISE, seed)?;
+    let begun = std::time::Instant::now();
+    let fit = infer(&measured, &tissue.request(varied), &mut |_| ControlFlow::Continue(()))?;
+    let seconds = begun.elapsed().as_secs_f64();
+    let alike = infer(&measured, &tissue.request(&[]), &mut |_| ControlFlow::Continue(()))?;
+    let covered = [&fit, &alike].map(|fit| MEANS.map(|q| fit.parameters.get(q).covers(tissue.truth(q))));
+    let of = |found: &voronudge_infer::Spread| {
+        let truth = tissue.spread(found.parameter);
+        let [low, high] = found.interval;
+        let covers = low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high);
+        (found.p, found.value, covers)
+    };
+    Ok(Row { spreads: fit.spreads.iter().map(of).collect(), covered, seconds })
+}
+
+fn print(
+    name: &str,
+    varied: &[CellParameter],
+    frames: usize,
+    rows: &[Row],
+    spreads: &[(CellParameter, f64)],
+) {
+    let count = rows.len();
+    let each = |tell: &dyn Fn(usize) -> String| (0..varied.len()).map(tell).collect::<Vec<_>>().join(", ");
+    let named = each(&|k| {
+        let named = rows.iter().filter(|row| row.spreads[k].0 * (varied.len() as f64) < LEVEL).count();
+        format!("{} {named}/{count}", varied[k].name())
+    });
+    let sizes = each(&|k| {
+        let truth = spreads.iter().find(|(own, _)| *own == varied[k]).map_or(0.0, |(_, size)| *size);
+        let unit = if truth > 0.0 { truth } else { 1.0 };
+        let [low, median, high] = quartiles(rows.iter().map(|row| row.spreads[k].1 / unit).collect());
+        format!("{median:.3} ({low:.3}–{high:.3})")
+    });
+    let covers = each(&|k| format!("{}/{count}", rows.iter().filter(|row| row.spreads[k].2).count()));
+    let means = |which: usize| {
+        let count: usize = rows.iter().flat_map(|row| row.covered[which]).filter(|covered| *covered).count();
+        format!("{count}/{}", rows.len() * MEANS.len())
+    };
+    let [_, seconds, _] = quartiles(rows.iter().map(|row| row.seconds).collect());
+    println!(
+        "| {name} | {} | {frames} | {named} | {sizes} | {covers} | {} | {} | {seconds:.0} |",
+        varied.iter().map(|own| own.name()).collect::<Vec<_>>().join(", "),
+        means(0),
+        means(1)
+    );
+}
