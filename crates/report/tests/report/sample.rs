@@ -7,7 +7,7 @@ use voronudge_report::infer_report::{
     FlowWindow, GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells,
     MeanRemoved, MeasuredPositions, MeasuredWindow, Measurement, MeasurementSource, NaiveParameters, Nmse,
     Noise, NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, Quantity, RegionSource,
-    RunRecord, SeenRegion, Transitions, TriedWindow, Verdict, VerdictKind,
+    RunRecord, SeenRegion, SpreadReport, Transitions, TriedWindow, Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -193,6 +193,15 @@ pub fn report() -> InferReport {
             D_r: held(0.02, "min⁻¹"),
             correlation: 0.93,
         }),
+        spreads: vec![SpreadReport {
+            parameter: "alpha".into(),
+            relative: 0.11,
+            ci95: [0.07, 0.15],
+            p: 3e-9,
+            p_adjusted: 3e-9,
+            named: true,
+            words: "cells differ in alpha by 11 %".into(),
+        }],
         implied_moduli: None,
         naive: NaiveParameters {
             K_A: f64::NAN,
