@@ -15,9 +15,10 @@ use voronudge_report::infer_report::LatentCells;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Detections")]
 pub(crate) struct LatentArguments {
-    /// Look for cells that were not detected, and for detections that are no cells, before the fit.
-    #[arg(long, value_name = "true|false", default_value_t = true, action = ArgAction::Set)]
-    complete: bool,
+    /// Look for cells that were not detected, and for detections that are no cells, before the fit [default: true, but false where discover
+    /// searches tracks].
+    #[arg(long, value_name = "true|false", action = ArgAction::Set)]
+    complete: Option<bool>,
     /// Share of the cells that is not detected [default: estimated].
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     missed_rate: Option<f64>,
@@ -31,40 +32,52 @@ impl LatentArguments {
                 Err(Failure::new(format!("--missed-rate is {rate}, but it must lie between 0 and 1"))
                     .with_hint("it is a share of the cells, 0.03 for 3 %; leave it out and it is estimated"))
             }
-            Some(_) if !self.complete => Err(Failure::new("--missed-rate without a search for missed cells")
-                .with_hint("leave out --complete false, or --missed-rate")),
+            Some(_) if self.complete == Some(false) => {
+                Err(Failure::new("--missed-rate without a search for missed cells")
+                    .with_hint("leave out --complete false, or --missed-rate"))
+            }
             _ => Ok(()),
         }
     }
 
     /// Finds out how the cells of a problem were measured: which were not detected, what a position is, over which windows velocities are
-    /// averaged. Windows make the data of a flow field; what a position is can be told of complete cells only.
+    /// averaged. Windows make the data of a flow field; what a position is can be told of complete cells only. Cells are looked for if that was
+    /// said, or if it is usual.
     pub fn understand(
         &self,
+        usual: bool,
         tracks: Option<&mut PreparedTracks>,
         prepared: &mut Prepared,
         progress: &mut Progress,
     ) -> Result<(), Error> {
+        let completes = self.complete.unwrap_or(usual);
         match tracks {
             Some(tracks) => {
-                self.complete_tracks(tracks, prepared, progress)?;
+                if completes {
+                    tracks.complete(&prepared.request, self.missed_rate, progress)?;
+                }
                 tracks.measure(prepared, progress)?;
                 tracks.show(prepared)
             }
             None if prepared.velocities.flow().is_some() => {
                 prepared.measure(progress)?;
-                self.complete(prepared, progress)
+                self.complete(completes, prepared, progress)
             }
             None => {
-                self.complete(prepared, progress)?;
+                self.complete(completes, prepared, progress)?;
                 prepared.measure(progress)
             }
         }
     }
 
     /// Completes the frames of a problem.
-    fn complete(&self, prepared: &mut Prepared, progress: &mut Progress) -> Result<(), Error> {
-        if !self.complete {
+    fn complete(
+        &self,
+        completes: bool,
+        prepared: &mut Prepared,
+        progress: &mut Progress,
+    ) -> Result<(), Error> {
+        if !completes {
             return Ok(());
         }
         let completion =
@@ -74,19 +87,6 @@ impl LatentArguments {
         prepared.observations = completion.frames.iter().map(|frame| frame.observation.clone()).collect();
         prepared.completion = Some(completion);
         Ok(())
-    }
-
-    /// Completes the tracks of a problem.
-    fn complete_tracks(
-        &self,
-        tracks: &mut PreparedTracks,
-        prepared: &Prepared,
-        progress: &mut Progress,
-    ) -> Result<(), Error> {
-        match self.complete {
-            true => tracks.complete(&prepared.request, self.missed_rate, progress),
-            false => Ok(()),
-        }
     }
 }
 

@@ -116,7 +116,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
     let mut progress = Progress::new(arguments.common.verbosity());
-    let understood = arguments.latent.understand(movie.as_mut(), &mut prepared, &mut progress);
+    let understood = arguments.latent.understand(true, movie.as_mut(), &mut prepared, &mut progress);
     prepared.caution(&mut run);
     let fitted = understood.and_then(|()| {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
