@@ -1,11 +1,11 @@
-//! Intervals of spreads by the profile of the restricted likelihood, and their scores.
+//! Intervals of spreads by the profile of the restricted likelihood, and whether there are any.
 
 use super::gram::Gram;
 use super::levels::{SMALLEST, Variances};
-use super::score::Question;
 use super::{Fitting, Linearised, State};
 use crate::Error;
 use crate::estimates::CHI_SQUARED_95;
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Factor between the spreads at which an end is looked for.
 const FACTOR: f64 = 1.3;
@@ -23,13 +23,13 @@ pub(super) struct Profile {
 }
 
 impl Fitting<'_> {
-    /// Interval and score of each spread.
+    /// Interval and p of each spread.
     pub fn profiles(&self, state: &State, linearised: &Linearised) -> Result<Vec<Profile>, Error> {
         let grams = self.grams(state, linearised, state.levels.spring().ln())?;
         let (_, best, least) = self.over_springs(&grams, linearised.left, &state.variances, None)?;
         let of = |parameter: usize| {
             let interval = self.interval(&grams, linearised.left, &best, least, parameter)?;
-            Ok(Profile { interval, p: self.p_value(state, linearised, &grams, parameter)? })
+            Ok(Profile { interval, p: self.p_value(state, linearised, (&grams, least), parameter)? })
         };
         (0..self.layout.parameters.len()).map(of).collect()
     }
@@ -76,11 +76,13 @@ impl Fitting<'_> {
         Ok([Some(lower), Some(end(&rise, (outside, beyond), inside)?)])
     }
 
+    /// The probability of so large a fall of −2 log L, `least` at the end, if there is no such spread. Half of the time there is none at all,
+    /// because a variance at its bound cannot fall below it.
     fn p_value(
         &self,
         state: &State,
         linearised: &Linearised,
-        grams: &[Gram; 3],
+        (grams, least): (&[Gram; 3], f64),
         parameter: usize,
     ) -> Result<f64, Error> {
         let mut without = state.variances.clone();
@@ -88,12 +90,9 @@ impl Fitting<'_> {
         let (log_k, _, _) = self.over_springs(grams, linearised.left, &without, Some(parameter))?;
         // Without the spread the most likely spring can be another.
         let around = self.grams(state, linearised, log_k)?;
-        let (log_k, _, _) = self.over_springs(&around, linearised.left, &without, Some(parameter))?;
-        let around = self.grams(state, linearised, log_k)?;
-        let (at, _) = self.most_likely(&around[1], linearised.left, &without, Some(parameter))?;
-        let question =
-            Question { layout: self.layout, parameter, at: &at, known: self.known, left: linearised.left };
-        question.p_value(&around)
+        let (_, _, criterion) = self.over_springs(&around, linearised.left, &without, Some(parameter))?;
+        let fall = criterion - least;
+        Ok(if fall > 0.0 { 0.5 * ChiSquared::new(1.0).map_or(f64::NAN, |chi| chi.sf(fall)) } else { 1.0 })
     }
 }
 

@@ -14,7 +14,6 @@ mod gram;
 mod interval;
 mod inverse;
 mod levels;
-mod score;
 mod step;
 
 use crate::noise::{LARGEST_POSITION_NOISE, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
@@ -51,7 +50,7 @@ pub struct Spread {
     pub value: f64,
     /// Ends of the 95 % interval by the profile of the restricted likelihood; `None` where it goes on.
     pub interval: [Option<f64>; 2],
-    /// Probability of a score as great or greater if cells do not differ in this parameter but do in the others.
+    /// Probability of so large a likelihood ratio if cells do not differ in this parameter but do in the others.
     pub p: f64,
     /// Deviation and its standard error for each cell of each frame (F, N), relative to the parameter: what is expected given the data, shrunk towards zero.
     pub deviations: Vec<Vec<[f64; 2]>>,

@@ -11,9 +11,9 @@ pub struct SpreadReport {
     pub relative: f64,
     /// Ends of its 95 % interval; an end that is not finite is not bounded by the data.
     pub ci95: [f64; 2],
-    /// Probability of a score as great or greater if cells do not differ in this parameter.
+    /// Probability of so large a likelihood ratio if cells do not differ in this parameter.
     pub p: f64,
-    /// The same for the greatest score of as many parameters as were let vary.
+    /// The same for the largest ratio of as many parameters as were let vary.
     pub p_adjusted: f64,
     /// Whether the data show that cells differ: `p_adjusted` below 0.05.
     pub named: bool,
