@@ -160,9 +160,9 @@ fn cells_have_parameters_of_their_own() {
         given.write_array(name, &Array1::from_vec(values));
         given.file(name).display().to_string()
     };
-    let same = write("same.npy", vec![3.9; 60]);
-    let uneven = write("uneven.npy", (0..60).map(|i| 3.9 + 0.2 * f64::from(i % 3 - 1)).collect());
-    let plain = simulate("--P_0 3.9");
+    let same = write("same.npy", vec![4.0; 60]);
+    let uneven = write("uneven.npy", (0..60).map(|i| 4.0 + 0.2 * f64::from(i % 3 - 1)).collect());
+    let plain = simulate("");
     let alike = simulate(&format!("--cell-parameter P_0={same}"));
     let differ = simulate(&format!("--cell-parameter P_0={uneven}"));
     let positions = |out: &Folder| -> Array3<f64> { read(&out.path().join("positions.npy")) };
@@ -171,5 +171,5 @@ fn cells_have_parameters_of_their_own() {
     assert!(moved > 1e-2, "{moved}");
     let told = report(differ.path());
     assert_eq!(told["cell_parameters"]["P_0"].as_array().unwrap().len(), 60);
-    assert!((told["parameters"]["P_0"].as_f64().unwrap() - 3.9).abs() < 1e-12);
+    assert!((told["parameters"]["P_0"].as_f64().unwrap() - 4.0).abs() < 1e-12);
 }

@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     /// Let cells crawl: each has a polarity of its own that it forgets at some rate. Fits v_0 and D_r together with the model; for tracks.
     #[arg(long)]
     active: bool,
-    /// Let cells differ in some parameters: `P_0,alpha`, of K_A, P_0, A_0 and alpha. For velocities of cells.
+    /// Let cells differ in a parameter: alpha. For velocities of cells.
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
     vary: Vec<CellParameter>,
     /// Open report.html when done.
