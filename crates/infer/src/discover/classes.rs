@@ -84,11 +84,16 @@ pub(super) fn without_each(
             )
         });
         let member = Member { candidate: *candidate, places, others: &others, statistic: score.statistic };
+        let adjusted_p = chance.adjusted(score.p);
         all.push(Tested {
             candidate: *candidate,
-            weakness: member.weakness(setting, base, model)?,
+            // What is no more than chance need not be looked at.
+            weakness: match adjusted_p < setting.level(others.len()) {
+                true => member.weakness(setting, base, model)?,
+                false => None,
+            },
             p: score.p,
-            adjusted_p: chance.adjusted(score.p),
+            adjusted_p,
             statistic: score.statistic,
             size: score.size,
             others: rivals.collect(),

@@ -82,7 +82,7 @@ pub(super) fn report(result: &Inference) -> Vec<SpreadReport> {
     result.spreads.iter().map(told).collect()
 }
 
-/// The deviations of the cells of the frames drawn.
+/// The deviations of the cells of the frames drawn, in parameters in which they are not estimated to be alike.
 pub(super) fn views(result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
     let view = |spread: &Spread| SpreadView {
         symbol: symbol(spread.parameter).into(),
@@ -91,7 +91,7 @@ pub(super) fn views(result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
             .map(|index| spread.deviations[*index].iter().map(|own| own[0]).collect())
             .collect(),
     };
-    result.spreads.iter().map(view).collect()
+    result.spreads.iter().filter(|spread| spread.value > 0.0).map(view).collect()
 }
 
 /// Writes deviations and their standard errors.

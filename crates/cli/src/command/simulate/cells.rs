@@ -44,10 +44,14 @@ impl OfCells {
                 return Err(fault(found, "give an array of one number for each cell"));
             }
             let own: Vec<f64> = array.iter().copied().collect();
+            if let Some(cell) = own.iter().position(|value| !value.is_finite()) {
+                let found = format!("the value of cell {cell} is {}", own[cell]);
+                return Err(fault(found, "give one finite number for each cell"));
+            }
             let mean = own.iter().sum::<f64>() / cells as f64;
             let largest = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-            // Also refuses what is not a number.
-            if !(mean.is_finite() && mean.abs() > NO_MEAN * largest) {
+            // Values of zero, too, have none.
+            if !(mean.abs() > NO_MEAN * largest) {
                 return Err(fault(
                     format!("the mean of the values is {mean}"),
                     "give finite values whose mean is not zero",
