@@ -51,7 +51,7 @@ impl OfCells {
             let mean = own.iter().sum::<f64>() / cells as f64;
             let largest = own.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
             // Values of zero, too, have none.
-            if !(mean.abs() > NO_MEAN * largest) {
+            if !mean.is_finite() || mean.abs() <= NO_MEAN * largest {
                 return Err(fault(
                     format!("the mean of the values is {mean}"),
                     "give finite values whose mean is not zero",
