@@ -57,10 +57,13 @@ const LARGEST_DAMPING: f64 = 1e8;
 const SMALL_STEPS: u32 = 2;
 
 /// How many times the tolerance a step promises at most that counts as one that gains little if it fails.
-const LITTLE: f64 = 10.0;
+const LITTLE: f64 = 50.0;
 
 /// Share of the promised decrease below which a step gained poorly.
 const POOR: f64 = 0.25;
+
+/// Parts of a step that are tried where all of it fails.
+const SHARES: [f64; 3] = [0.4, 0.15, 0.05];
 
 /// Damping of a place where a step failed, at first; by how much it grows there with each further failure; below which it is none.
 const HELD: f64 = 1.0;
@@ -176,6 +179,17 @@ where
             let other_cost = problem.cost(&without)?;
             if other_cost < trial_cost {
                 (trial, trial_cost) = (without, other_cost);
+            }
+        }
+        if trial_cost >= cost {
+            // A step that crosses a kink: a part of it may not, and costs no factorisation.
+            for share in SHARES {
+                let part: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + share * s).collect();
+                let part_cost = problem.cost(&part)?;
+                if part_cost < cost {
+                    (trial, trial_cost) = (part, part_cost);
+                    break;
+                }
             }
         }
         let gain = (cost - trial_cost) / promised.max(f64::MIN_POSITIVE);

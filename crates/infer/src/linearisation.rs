@@ -26,13 +26,21 @@ use voronudge_linalg::{Cholesky, CholeskyPattern, SymmetricMatrix};
 pub(crate) struct Linearisation {
     velocities: Group,
     positions: Group,
-    /// Rows of what is known of unknowns beforehand, and their weight.
-    known: Option<(Group, f64)>,
-    /// What holds unknowns that no datum holds.
-    stiffness: Stiffness,
+    /// Rows of what is known of unknowns beforehand.
+    known: Option<Group>,
+    held: Held,
     pattern: CholeskyPattern,
     /// The nudges ε at which it was linearised.
     nudges: Vec<f64>,
+}
+
+/// What holds the unknowns beside the data.
+#[derive(Debug, Clone)]
+pub(crate) struct Held {
+    /// Of unknowns that no datum holds.
+    pub stiffness: Stiffness,
+    /// Weight of what is known of unknowns beforehand.
+    pub weight: f64,
 }
 
 /// What enters the linearisation of one frame.
@@ -89,24 +97,25 @@ impl Linearisation {
         };
         let (blocks, links) = (nudges.len() / 2, stiffness.links());
         let group = |rows: &Rows<'_>, normal: SymmetricMatrix| Group::new(rows, normal, nudges, *free);
+        let weight = known.as_ref().map_or(0.0, |(_, weight)| *weight);
         let (of_velocities, of_positions, known) = match known {
             None => {
                 let [of_velocities, of_positions] =
                     grams([chosen(velocities), chosen(positions)], links, blocks)?;
                 (of_velocities, of_positions, None)
             }
-            Some((rows, weight)) => {
+            Some((rows, _)) => {
                 let all = [chosen(velocities), chosen(positions), chosen(rows)];
                 let [of_velocities, of_positions, of_known] = grams(all, links, blocks)?;
-                (of_velocities, of_positions, Some((group(rows, of_known), *weight)))
+                (of_velocities, of_positions, Some(group(rows, of_known)))
             }
         };
         let pattern = CholeskyPattern::dissected(&of_velocities, places)?;
         Ok(Self {
             velocities: group(velocities, of_velocities),
             positions: group(positions, of_positions),
+            held: Held { stiffness: stiffness.clone(), weight },
             known,
-            stiffness: stiffness.clone(),
             pattern,
             nudges: nudges.to_vec(),
         })
@@ -117,17 +126,14 @@ impl Linearisation {
         self.pattern.is_large()
     }
 
-    /// Holds the unknowns otherwise, with another weight of what is known of them; what is coupled must be the same.
-    pub fn hold(&mut self, stiffness: Stiffness, weight: f64) {
-        self.stiffness = stiffness;
-        if let Some(known) = &mut self.known {
-            known.1 = weight;
-        }
+    /// Holds the unknowns otherwise; what is coupled must be the same.
+    pub fn hold(&mut self, held: Held) {
+        self.held = held;
     }
 
     /// All groups with their weights.
-    fn groups(&self, spring: f64) -> impl Iterator<Item = (&Group, f64)> {
-        let known = self.known.as_ref().map(|(group, weight)| (group, *weight));
+    fn groups<'a>(&'a self, spring: f64, held: &Held) -> impl Iterator<Item = (&'a Group, f64)> {
+        let known = self.known.as_ref().map(|group| (group, held.weight));
         [(&self.velocities, 1.0), (&self.positions, spring)].into_iter().chain(known)
     }
 
@@ -160,33 +166,33 @@ impl Linearisation {
 
     /// The factor of JᵀJ + k HᵀH and what stiffness there is beside.
     pub fn factor(&self, spring: f64) -> Result<Cholesky, Error> {
-        self.damped(spring, &[])
+        self.damped(spring, &[], &self.held)
     }
 
-    fn damped(&self, spring: f64, damping: &[f64]) -> Result<Cholesky, Error> {
+    fn damped(&self, spring: f64, damping: &[f64], held: &Held) -> Result<Cholesky, Error> {
         let mut sum: SymmetricMatrix = self.velocities.normal.plus(spring, &self.positions.normal)?;
-        if let Some((known, weight)) = &self.known {
-            sum = sum.plus(*weight, &known.normal)?;
+        if let Some(known) = &self.known {
+            sum = sum.plus(held.weight, &known.normal)?;
         }
-        self.stiffness.add_to(&mut sum)?;
+        held.stiffness.add_to(&mut sum)?;
         sum.add_to_diagonal(damping.iter().copied());
         Ok(self.pattern.factor(&sum)?)
     }
 
     /// A vector of products, summed over all kinds of data.
-    fn sum(&self, spring: f64, of: impl Fn(&Group) -> &[f64]) -> Vec<f64> {
+    fn sum(&self, spring: f64, held: &Held, of: impl Fn(&Group) -> &[f64]) -> Vec<f64> {
         let pairs = of(&self.velocities).iter().zip(of(&self.positions));
         let mut sum: Vec<f64> =
             pairs.map(|(velocities, positions)| velocities + spring * positions).collect();
-        if let Some((known, weight)) = &self.known {
-            sum.iter_mut().zip(of(known)).for_each(|(sum, known)| *sum += weight * known);
+        if let Some(known) = &self.known {
+            sum.iter_mut().zip(of(known)).for_each(|(sum, known)| *sum += held.weight * known);
         }
         sum
     }
 
     /// `JᵀX + kHᵀZ` (n × p, by columns), then `Jᵀy` with what positions add to it.
     pub fn mixed(&self, spring: f64) -> Vec<f64> {
-        self.sum(spring, |group| &group.mixed)
+        self.sum(spring, &self.held, |group| &group.mixed)
     }
 
     /// Eliminates the nudges from a damped Gauss–Newton step
@@ -198,12 +204,13 @@ impl Linearisation {
     ///
     /// with the residuals s of the positions, their derivative Z by β and a damping λ of each nudge, if any.
     pub fn eliminate(&self, spring: f64, damping: &[f64]) -> Result<Eliminated, Error> {
-        let factor = self.damped(spring, damping)?;
+        let held = &self.held;
+        let factor = self.damped(spring, damping, held)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
-        let mut right = self.sum(spring, |group| &group.mixed[..n * p]);
-        right.extend(self.sum(spring, |group| &group.gradient));
-        for (g, held) in right[n * p..].iter_mut().zip(self.stiffness.times(&self.nudges)) {
-            *g -= held;
+        let mut right = self.sum(spring, held, |group| &group.mixed[..n * p]);
+        right.extend(self.sum(spring, held, |group| &group.gradient));
+        for (g, pull) in right[n * p..].iter_mut().zip(held.stiffness.times(&self.nudges)) {
+            *g -= pull;
         }
         let mut solved = right.clone();
         factor.solve(&mut solved);
@@ -219,9 +226,14 @@ impl Linearisation {
     /// `det W = det(JᵀJ + kHᵀH) / kⁿ`, n the number of measured coordinates. Those that are not measured make W infinite along
     /// what they can do to the velocities: data are used up for them as for coefficients.
     pub fn whiten(&self, spring: f64) -> Result<Whitened, Error> {
-        let factor = self.factor(spring)?;
+        self.whiten_held(spring, &self.held)
+    }
+
+    /// The same with the unknowns held otherwise.
+    pub fn whiten_held(&self, spring: f64, held: &Held) -> Result<Whitened, Error> {
+        let factor = self.damped(spring, &[], held)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
-        let mixed = self.mixed(spring);
+        let mixed = self.sum(spring, held, |group| &group.mixed);
         let mut solved = mixed.clone();
         factor.solve(&mut solved);
         let dot = |a: usize, b: usize| product(&mixed, &solved, n, a, b);
@@ -231,7 +243,8 @@ impl Linearisation {
         Ok(Whitened {
             free: DMatrix::from_fn(p, p, |a, b| free[(a, b)] - dot(a, b)),
             mixed: DVector::from_fn(p, |a, _| data[a] - dot(a, p)),
-            data: self.groups(spring).map(|(group, weight)| weight * group.data).sum::<f64>() - dot(p, p),
+            data: self.groups(spring, held).map(|(group, weight)| weight * group.data).sum::<f64>()
+                - dot(p, p),
             log_determinant: factor.log_determinant() - positions.components as f64 * spring.ln(),
         })
     }

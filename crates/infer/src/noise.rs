@@ -10,7 +10,7 @@
 //! For given k the best σ_v² is `yᵀPy / (n − p)`, which leaves a function of k alone.
 
 use crate::Error;
-use crate::linearisation::Linearisation;
+use crate::linearisation::Held;
 use crate::normal_equations::NormalEquations;
 use crate::whitened::{Leftover, Whitened};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, State};
@@ -107,6 +107,8 @@ pub(crate) struct Restricted<'a> {
     pub equations: &'a NormalEquations,
     pub components: f64,
     pub known: KnownNoise,
+    /// What holds the unknowns, if it is not what holds them in the equations.
+    pub held: Option<&'a Held>,
 }
 
 /// The restricted likelihood at some k.
@@ -150,10 +152,7 @@ impl Restricted<'_> {
     ) -> Result<NoiseLevels, Error> {
         let centre = present.spring().ln();
         let points = [-spacing, 0.0, spacing].map(|aside| centre + aside);
-        let values: Vec<f64> = match self.equations.frames.iter().any(Linearisation::is_large) {
-            true => points.iter().map(|log_k| self.criterion(*log_k)).collect::<Result<_, Error>>()?,
-            false => points.par_iter().map(|log_k| self.criterion(*log_k)).collect::<Result<_, Error>>()?,
-        };
+        let values: Vec<f64> = self.equations.each(&points, |log_k| self.criterion(*log_k))?;
         let (slope, bend) = (values[2] - values[0], values[2] - 2.0 * values[1] + values[0]);
         let furthest = 2.0 * spacing;
         let step = match bend > 0.0 {
@@ -218,7 +217,12 @@ impl Restricted<'_> {
 
     fn leftover(&self, log_k: f64) -> Result<Leftover, Error> {
         let frames = self.equations.frames.par_iter();
-        let parts = frames.map(|frame| frame.whiten(log_k.exp())).collect::<Result<Vec<_>, _>>()?;
+        let parts = frames
+            .map(|frame| match self.held {
+                Some(held) => frame.whiten_held(log_k.exp(), held),
+                None => frame.whiten(log_k.exp()),
+            })
+            .collect::<Result<Vec<_>, _>>()?;
         Whitened::sum(&parts, self.equations.dimension()).restricted()
     }
 }
@@ -269,7 +273,7 @@ mod tests {
             KnownNoise { position: Some(0.02), velocity: None },
             KnownNoise { position: None, velocity: Some(0.07) },
         ] {
-            let restricted = Restricted { equations: &equations, components: 72.0, known };
+            let restricted = Restricted { equations: &equations, components: 72.0, known, held: None };
             let dense = |log_k: f64| {
                 let w = DMatrix::identity(72, 72) + &j * j.transpose() / log_k.exp();
                 let inverse = w.clone().try_inverse().unwrap();

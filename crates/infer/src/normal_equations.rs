@@ -1,15 +1,17 @@
 //! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
 
 use crate::least_squares::{invert, within_bounds};
-use crate::linearisation::Linearisation;
+use crate::linearisation::{Held, Linearisation};
 use crate::quadratic::HalfSpace;
-use crate::stiffness::Stiffness;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
 /// Distance from a bound, in standard errors, at which it counts as active.
 const ACTIVE: f64 = 1e-6;
+
+/// Points that are looked at together: each takes the memory of a factor.
+const TOGETHER: usize = 4;
 
 /// The linearised problem of all frames.
 #[derive(Debug)]
@@ -122,9 +124,23 @@ impl NormalEquations {
         reduce(&self.frames, priors, levels.spring())
     }
 
-    /// Holds the unknowns of each part otherwise, with another weight of what is known of them.
-    pub fn hold(&mut self, stiffness: &Stiffness, weight: f64) {
-        self.frames.iter_mut().for_each(|frame| frame.hold(stiffness.clone(), weight));
+    /// Something of each of some points for which the unknowns are eliminated, in parallel as far as memory should go.
+    pub fn each<P: Sync, T: Send>(
+        &self,
+        points: &[P],
+        of: impl Fn(&P) -> Result<T, Error> + Sync,
+    ) -> Result<Vec<T>, Error> {
+        let together = if self.frames.iter().any(Linearisation::is_large) { 1 } else { TOGETHER };
+        let mut all = Vec::with_capacity(points.len());
+        for some in points.chunks(together) {
+            all.extend(some.par_iter().map(&of).collect::<Result<Vec<T>, Error>>()?);
+        }
+        Ok(all)
+    }
+
+    /// Holds the unknowns of each part otherwise.
+    pub fn hold(&mut self, held: &Held) {
+        self.frames.iter_mut().for_each(|frame| frame.hold(held.clone()));
     }
 
     /// Number of free coefficients.

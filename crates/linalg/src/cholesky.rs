@@ -21,7 +21,7 @@ use std::sync::Arc;
 const SEQUENTIAL: Par = Par::Seq;
 
 /// Entries of a factor from which on it is worth while to share its dense blocks out to several tasks, and into how many.
-const LARGE: usize = 2_000_000;
+const LARGE: usize = 40_000_000;
 const TASKS: usize = 2;
 
 /// The fill-reducing order of a sparsity pattern: reusable for matrices that differ in their values only.

@@ -7,6 +7,7 @@ use crate::response::respond;
 use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces};
 use rayon::prelude::*;
 use std::ops::Range;
+use std::slice::from_ref;
 use std::sync::Arc;
 use voronudge_geometry::{CellPolygon, Domain, Scalar, Tessellation, Vector};
 
@@ -71,13 +72,13 @@ impl<S: Scalar> HalfEdgeForces<S> {
         self.forces.resize(tessellation.half_edges(), nan);
         velocities.resize(cells, nan);
         if cells <= CHUNK {
-            elements(tessellation, positions, model, 0..cells, &mut self.forces, velocities);
+            elements(tessellation, positions, from_ref(model), 0..cells, &mut self.forces, velocities);
         } else {
             split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
                 .into_par_iter()
                 .zip(velocities.par_chunks_mut(CHUNK))
                 .for_each(|((range, forces), velocities)| {
-                    elements(tessellation, positions, model, range, forces, velocities);
+                    elements(tessellation, positions, from_ref(model), range, forces, velocities);
                 });
         }
         let gather = |(cell, v): (usize, &mut Vector<S>)| {
@@ -139,28 +140,32 @@ impl<S: Scalar> HalfEdgeForces<S> {
     }
 }
 
-/// The elements of some cells: forces on their rings, and on the cells themselves.
+/// The elements of some cells under some models: for each cell the forces on its ring, one model after another, and those on the cell itself.
 fn elements<S: Scalar>(
     tessellation: &Tessellation,
     positions: &[Vector<S>],
-    model: &Model<S>,
+    models: &[Model<S>],
     cells: Range<usize>,
     forces: &mut [Vector<S>],
     on_cells: &mut [Vector<S>],
 ) {
     let mut polygon = CellPolygon::default();
-    let offset = tessellation.ring(cells.start).start;
-    for (cell, on_cell) in cells.zip(on_cells) {
-        let ring = tessellation.ring(cell);
-        let own = &mut forces[ring.start - offset..ring.end - offset];
+    let domain = tessellation.domain();
+    let mut rest = forces;
+    for (cell, on_cell) in cells.zip(on_cells.chunks_exact_mut(models.len())) {
+        let neighbours = tessellation.neighbours(cell);
+        let (own, after) = rest.split_at_mut(models.len() * neighbours.len());
+        rest = after;
         if tessellation.is_closed(cell) {
             polygon.fill(tessellation, positions, cell);
-            let (neighbours, domain) = (tessellation.neighbours(cell), tessellation.domain());
-            *on_cell = element(model, cell, neighbours, positions[cell], domain, &polygon, own);
+            let of_models = on_cell.iter_mut().zip(own.chunks_exact_mut(neighbours.len()));
+            for (model, (on_cell, on_ring)) in models.iter().zip(of_models) {
+                *on_cell = element(model, cell, neighbours, positions[cell], domain, &polygon, on_ring);
+            }
         } else {
             let nan = S::constant(f64::NAN);
-            *on_cell = Vector::new(nan, nan);
-            own.fill(*on_cell);
+            on_cell.fill(Vector::new(nan, nan));
+            own.fill(Vector::new(nan, nan));
         }
     }
 }
@@ -210,15 +215,35 @@ pub fn velocities<S: Scalar>(
     v
 }
 
-/// The velocity field of each term for a coefficient of one: velocities are linear in the coefficients.
+/// The velocity field of each term for a coefficient of one: velocities are linear in the coefficients. Polygons are made once for all terms.
 pub fn columns(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
     terms: &[Term],
     environment: &Arc<Environment>,
 ) -> Vec<Vec<Vector<f64>>> {
-    terms
-        .iter()
-        .map(|&term| velocities(tessellation, positions, &Model::single(term).within(environment)))
-        .collect()
+    let (count, cells) = (terms.len(), tessellation.len());
+    let models: Vec<Model<f64>> = terms.iter().map(|&term| Model::single(term).within(environment)).collect();
+    let mut forces = vec![Vector::zeros(); count * tessellation.half_edges()];
+    let mut on_cells = vec![Vector::zeros(); count * cells];
+    if count > 0 {
+        split_by_cells(&mut forces, cells, |cell| count * tessellation.half_edge_start(cell))
+            .into_par_iter()
+            .zip(on_cells.par_chunks_mut(count * CHUNK))
+            .for_each(|((range, forces), on_cells)| {
+                elements(tessellation, positions, &models, range, forces, on_cells);
+            });
+    }
+    let column = |term: usize| -> Vec<Vector<f64>> {
+        let of_cell = |cell: usize| {
+            let mut v = on_cells[count * cell + term];
+            for (h, neighbour) in tessellation.ring(cell).zip(tessellation.neighbours(cell)) {
+                let other = tessellation.ring(*neighbour as usize);
+                v += forces[count * other.start + term * other.len() + tessellation.twin(h) - other.start];
+            }
+            v
+        };
+        (0..cells).map(of_cell).collect()
+    };
+    (0..count).map(column).collect()
 }

@@ -64,7 +64,7 @@ pub(super) fn without_each(
             &own_lineup
         } else {
             // With a response in the model the columns of the terms are not their own: only a fit without it tells.
-            own_lineup = setting.fit(others.clone(), watch)?.lineup;
+            own_lineup = setting.fit(others.clone(), Some(model), watch)?.lineup;
             &own_lineup
         };
         let projected = lineup.beyond(&others);

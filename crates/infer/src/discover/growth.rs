@@ -92,20 +92,19 @@ impl<'a> Growth<'a> {
     /// Adds what the model lacks, one effect after another, as long as velocities held out become more probable, and takes
     /// back what others make superfluous.
     pub fn grow(&mut self, watch: &mut Watch<'_>) -> Result<Option<Grown>, Error> {
-        let mut grown: Option<(Model, Unseen)> = None;
+        // Each with one effect more than the one before.
+        let mut grown: Vec<(Model, Unseen)> = Vec::new();
         let mut refused: Vec<usize> = Vec::new();
-        while refused.len() < MOST_REFUSED
-            && grown.as_ref().map_or(0, |(model, _)| model.added.len()) < self.setting.search.most_effects
-        {
+        while refused.len() < MOST_REFUSED && grown.len() < self.setting.search.most_effects {
             let (current, before) =
-                grown.as_ref().map_or((self.base, &self.by_base), |(model, own)| (model, own));
+                grown.last().map_or((self.base, &self.by_base), |(model, own)| (model, own));
             let (candidate, hinted) = self.lacking(current, &refused, watch)?;
             let Some(candidate) = candidate else {
                 hinted.into_iter().for_each(|ranked| self.ranking.put(ranked));
                 break;
             };
             let added = current.added.iter().copied().chain([candidate]).collect();
-            let model = self.setting.fit(added, watch)?;
+            let model = self.setting.fit(added, Some(current), watch)?;
             let after = Unseen::new(&self.setting, (&model, &model), self.split, watch)?;
             let against = match current.is_plain() && model.is_plain() {
                 true => before.reason_against(&after),
@@ -133,12 +132,13 @@ impl<'a> Growth<'a> {
                 refused.push(candidate);
                 continue;
             }
-            grown = Some((model, after));
+            grown.push((model, after));
         }
-        let Some((model, _)) = grown else { return Ok(None) };
+        let mut models: Vec<Model> = grown.into_iter().map(|(model, _)| model).collect();
+        let Some(model) = models.pop() else { return Ok(None) };
         let grown = self.tested(model, watch)?;
         let setting = self.setting;
-        self.prune(grown, watch, |own, others| match own.adjusted_p >= setting.level(others) {
+        self.prune(grown, models, watch, |own, others| match own.adjusted_p >= setting.level(others) {
             true => Some("with all else in the model it is no more than chance"),
             false => own.weakness,
         })
@@ -152,7 +152,7 @@ impl<'a> Growth<'a> {
         watch: &mut Watch<'_>,
     ) -> Result<Option<Grown>, Error> {
         let level = self.setting.search.level;
-        self.prune(grown, watch, |own, _| {
+        self.prune(grown, Vec::new(), watch, |own, _| {
             (null_data::probability(null_sets, own.p) >= level).then_some(
                 "synthetic data without any effect, searched in the same way, lead to one as often",
             )
@@ -189,10 +189,12 @@ impl<'a> Growth<'a> {
         Ok((if hint >= least && hint > rival { Some(polarity) } else { best }, ranked))
     }
 
-    /// Takes back the effect with the largest p among those against which a reason speaks, as long as there is one.
+    /// Takes back the effect with the largest p among those against which a reason speaks, as long as there is one. `fitted` are models
+    /// that are fitted already.
     fn prune(
         &mut self,
         mut grown: Grown,
+        mut fitted: Vec<Model>,
         watch: &mut Watch<'_>,
         reason_against: impl Fn(&Tested, usize) -> Option<&'static str>,
     ) -> Result<Option<Grown>, Error> {
@@ -209,7 +211,11 @@ impl<'a> Growth<'a> {
             if kept.is_empty() {
                 return Ok(None);
             }
-            grown = self.tested(self.setting.fit(kept, watch)?, watch)?;
+            let model = match fitted.iter().position(|model| model.added == kept) {
+                Some(k) => fitted.swap_remove(k),
+                None => self.setting.fit(kept, Some(&grown.model), watch)?,
+            };
+            grown = self.tested(model, watch)?;
         }
     }
 

@@ -72,7 +72,7 @@ pub fn discover_in_tracks(movie: &Movie, search: &Search, observe: Observer<'_>)
 
 fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Error> {
     let Setting { frames, search, .. } = setting;
-    let base = setting.fit(Vec::new(), watch)?;
+    let base = setting.fit(Vec::new(), None, watch)?;
     let split = Split::new(frames, blocks(frames));
     let testable = base.lineup.left() >= base.lineup.number_of_columns() as f64;
     let mut growth = Growth::new(setting, &base, &split, watch)?;
@@ -162,7 +162,7 @@ fn describe(growth: &Growth<'_>, split: &Split, watch: &mut Watch<'_>) -> Result
         .filter(|(_, score)| score.p < setting.search.level)
         .min_by(|a, b| a.1.p.total_cmp(&b.1.p).then(b.1.statistic.total_cmp(&a.1.statistic)));
     let Some((candidate, score)) = best else { return Ok(None) };
-    let model = setting.fit(vec![candidate], watch)?;
+    let model = setting.fit(vec![candidate], Some(base), watch)?;
     // One that predicts worse than the base model describes nothing.
     if growth.likelihood_gain(&model, watch)?.is_some_and(|gain| gain[0] <= 0.0) {
         return Ok(None);

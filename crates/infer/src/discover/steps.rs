@@ -103,14 +103,21 @@ impl Setting<'_> {
         }
     }
 
-    /// Fits the base model with candidates added.
-    pub fn fit(&self, added: Vec<usize>, watch: &mut Watch<'_>) -> Result<Model, Error> {
+    /// Fits the base model with candidates added; where tracks are fitted, perhaps from where another model has come to.
+    pub fn fit(
+        &self,
+        added: Vec<usize>,
+        from: Option<&Model>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Model, Error> {
         let request = self.request(&added);
         let Some(movie) = self.movie else {
             let inference = infer(self.frames, &request, watch.observe)?;
             return self.model(added, request, inference);
         };
-        let (inference, followed) = follow(movie, &request, watch)?;
+        let coefficients = from.map_or(Vec::new(), |from| self.coefficients_of(from, &added));
+        let from = from.and_then(|from| Some((from.followed.as_ref()?, coefficients.as_slice())));
+        let (inference, followed) = follow(movie, &request, from, watch)?;
         let base = &self.search.fit;
         let lineup = Lineup::of_tracks((movie, &followed), base, self.candidates, &added, &inference)?;
         let (space, followed) = (request.space()?, Some(followed));
@@ -233,24 +240,13 @@ impl Setting<'_> {
         new: Option<(usize, &[f64])>,
     ) -> Result<f64, Error> {
         let added: Vec<usize> = kept.iter().copied().chain(new.map(|(candidate, _)| candidate)).collect();
-        let base = &self.search.fit.structure;
-        let before = added_places(base, self.candidates, &from.added);
-        let after = added_places(base, self.candidates, &added);
         let request = self.request(&added);
         let space = request.space()?;
-        let fitted = &from.inference.coefficients;
-        let mut coefficients = vec![0.0; request.structure.dimension()];
-        let mut copy = |to: &[usize], from: &[usize]| {
-            to.iter().zip(from).for_each(|(to, from)| coefficients[*to] = fitted[*from]);
-        };
-        copy(&after.model, &before.model);
-        for (candidate, places) in kept.iter().zip(&after.effects) {
-            if let Some(k) = from.added.iter().position(|own| own == candidate) {
-                copy(places, &before.effects[k]);
-            }
-        }
-        if let (Some((_, values)), Some(places)) = (new, after.effects.last()) {
-            places.iter().zip(values).for_each(|(to, value)| coefficients[*to] = *value);
+        let mut coefficients = self.coefficients_of(from, &added);
+        if let Some((_, values)) = new {
+            let after = added_places(&self.search.fit.structure, self.candidates, &added);
+            let places = after.effects.last().into_iter().flatten();
+            places.zip(values).for_each(|(to, value)| coefficients[*to] = *value);
         }
         let mut start = space.nearest(&coefficients);
         start.extend(nudges(self.frames, &from.inference).concat());
@@ -261,5 +257,22 @@ impl Setting<'_> {
             levels,
         };
         Ok(refine(&objective, start, STEPS)?.value / levels.velocity.powi(2))
+    }
+
+    /// The coefficients of a fitted model for one with candidates added, zero for those that are new.
+    fn coefficients_of(&self, from: &Model, added: &[usize]) -> Vec<f64> {
+        let base = &self.search.fit.structure;
+        let [before, after] = [&from.added, added].map(|own| added_places(base, self.candidates, own));
+        let mut coefficients = vec![0.0; after.structure.dimension()];
+        let mut copy = |to: &[usize], own: &[usize]| {
+            to.iter().zip(own).for_each(|(to, own)| coefficients[*to] = from.inference.coefficients[*own]);
+        };
+        copy(&after.model, &before.model);
+        for (candidate, places) in added.iter().zip(&after.effects) {
+            if let Some(k) = from.added.iter().position(|own| own == candidate) {
+                copy(places, &before.effects[k]);
+            }
+        }
+        coefficients
     }
 }

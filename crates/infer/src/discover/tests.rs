@@ -54,7 +54,7 @@ fn the_score_is_that_of_the_dense_problem() {
     let offered = candidates(&frames, &search);
     let setting = Setting { frames: &frames, movie: None, search: &search, candidates: &offered };
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
-    let base = setting.fit(Vec::new(), &mut Watch { observe: &mut silent }).unwrap();
+    let base = setting.fit(Vec::new(), None, &mut Watch { observe: &mut silent }).unwrap();
     let projected = base.lineup.beyond(&[]);
     // The same from the definition, W dense.
     let space = base.request.space().unwrap();
@@ -134,8 +134,8 @@ fn the_score_beside_tracks_is_that_of_a_refit() {
     let setting = Setting { frames: &frames, movie: Some(&movie), search: &search, candidates: &offered };
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
     let mut watch = Watch { observe: &mut silent };
-    let base = setting.fit(Vec::new(), &mut watch).unwrap();
-    let with = setting.fit(vec![0], &mut watch).unwrap();
+    let base = setting.fit(Vec::new(), None, &mut watch).unwrap();
+    let with = setting.fit(vec![0], None, &mut watch).unwrap();
     let gain = base.lineup.beyond(&[]).gain(0) / base.inference.noise.velocity.powi(2);
     let fall = base.inference.objective - with.inference.objective;
     assert!((gain - fall).abs() < 0.15 * gain.max(1.0), "{gain} {fall}");

@@ -5,6 +5,8 @@ use super::inference::Followed;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
+use super::states::States;
+use crate::quantity::BASE;
 use crate::search::{Watch, optimise_knowing};
 use crate::{CoefficientSpace, Error, NoiseLevels, Request};
 use nalgebra::{DMatrix, DVector};
@@ -94,7 +96,7 @@ impl Followed {
         request: &Request,
         space: &CoefficientSpace,
     ) -> Result<f64, Error> {
-        let states = self.fit.states.clone().crawling(movie, request.structure.terms.len());
+        let states = self.fit.states.clone().crawling(movie, BASE);
         let levels = self.fit.levels;
         let memory = Some(Memory { speed: levels.velocity, ..Memory::FIRST });
         let objective =
@@ -103,8 +105,23 @@ impl Followed {
         at.resize(space.dimension() + 2 * states.blocks(), 0.0);
         let placed = objective.place(&at)?;
         let components = objective.explained_components(&placed, &at);
-        let mut equations = objective.linearise_at(&placed, &at, Share::Known)?;
-        objective.hint(&mut equations, components, request.noise)
+        let equations = objective.linearise_at(&placed, &at, Share::Known)?;
+        objective.hint(&equations, components, request.noise)
+    }
+
+    /// Where the fit of a model with the same unknowns beside the coefficients may begin; `None` if it has others.
+    pub(super) fn point_for(&self, states: &States, free: Vec<f64>) -> Option<Vec<f64>> {
+        let own = &self.fit.states;
+        if own.unknowns_of_cells() != states.unknowns_of_cells() {
+            return None;
+        }
+        // The first terms are those of both models.
+        let terms = own.polarities.terms.min(states.polarities.terms);
+        let length = free.len() + 2 * states.blocks();
+        let mut at = free;
+        at.extend(&self.displacements()[..2 * own.unknowns_of_cells() + terms]);
+        at.resize(length, 0.0);
+        Some(at)
     }
 
     fn displacements(&self) -> &[f64] {

@@ -1,15 +1,15 @@
 //! Coefficients, trajectories and noise levels together, in as many steps of integration as it takes.
 
-use super::first::{forward_coefficients, naive_coefficients};
+use super::begun::Begun;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
-use super::settling::{FINAL, PASSING, ROUGH, Settling};
+use super::settling::{FINAL, PASSING, Settling};
 use super::states::States;
 use crate::inference::deviation;
 use crate::least_squares::invert;
-use crate::noise::{FIRST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
+use crate::noise::Restricted;
 use crate::normal_equations::NormalEquations;
 use crate::search::{Optimum, Watch, optimise_knowing};
 use crate::{CoefficientSpace, Error, KnownNoise, Method, NoiseLevels, Request, Status};
@@ -18,18 +18,8 @@ use std::ops::ControlFlow;
 /// A finer rule must change the coefficients by less than this share of their standard errors.
 const UNCHANGED: f64 = 0.2;
 
-/// Steps from one frame to the next, at least and at most.
-const FEWEST_STEPS: usize = 1;
-const MOST_STEPS: usize = 16;
-
-/// What twice the steps may change of the motions at first, as a share of what is left of these (squared).
-const FIRST_CHANGE: f64 = 1e-3;
-
-/// Steps of the optimiser at the first noise levels.
-const APPROACH: u64 = 40;
-
-/// Error of the dynamics at first, in units of the velocities: as much as the first coefficients leave open.
-const FIRST_VELOCITY_NOISE: f64 = 0.3;
+/// Steps from one frame to the next at most.
+pub(super) const MOST_STEPS: usize = 16;
 
 /// By what factor the error of the dynamics falls from one round to the next at most.
 const FALL: f64 = 0.4;
@@ -42,10 +32,9 @@ const LEAST_SHARE: f64 = 0.15;
 const LOOSENINGS: usize = 5;
 const ACCEPTED_EXCESS: f64 = 2.5;
 
-/// Relative decrease of the objective that counts as none: at the end, on the way, and at the first noise levels.
+/// Relative decrease of the objective that counts as none: at the end, and on the way.
 const TOLERANCE: f64 = 5e-5;
 const TOLERANCE_ON_THE_WAY: f64 = 2e-4;
-const TOLERANCE_AT_FIRST: f64 = 2e-3;
 
 /// Spacing of log k at which the likelihood is looked at.
 const SPACING: f64 = 1.0;
@@ -77,77 +66,43 @@ pub(super) struct Course<'a, 'w> {
     space: &'a CoefficientSpace,
     watch: &'a mut Watch<'w>,
     /// How the cells are followed from frame to frame.
-    rule: Rule,
+    pub(super) rule: Rule,
     levels: NoiseLevels,
-    memory: Option<Memory>,
+    pub(super) memory: Option<Memory>,
     value: f64,
     status: Status,
     steps: u64,
     trace: Vec<f64>,
 }
 
-/// Fits a movie.
+/// Fits a movie, perhaps from where another fit of it has come to, given the parameters to begin with.
 pub(super) fn fit(
     movie: &Movie,
     states: States,
     request: &Request,
     space: &CoefficientSpace,
+    from: Option<(&Fit, Vec<f64>)>,
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
-    let Begun { mut course, at, naive } = Begun::new(movie, &states, request, space, watch)?;
+    let Begun { mut course, at, naive } = match from {
+        Some(from) => Begun::further(movie, &states, request, space, watch, from)?,
+        None => Begun::new(movie, &states, request, space, watch)?,
+    };
     let (at, error) = course.finish(&states, at)?;
     let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
     Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })
 }
 
-/// A fit whose noise levels are settled roughly.
-pub(super) struct Begun<'a, 'w> {
-    pub course: Course<'a, 'w>,
-    pub at: Vec<f64>,
-    /// The first coefficients.
-    naive: Vec<f64>,
-}
-
-impl<'a, 'w> Begun<'a, 'w> {
+impl<'a, 'w> Course<'a, 'w> {
     pub fn new(
         movie: &'a Movie,
-        states: &States,
         request: &'a Request,
         space: &'a CoefficientSpace,
         watch: &'a mut Watch<'w>,
-    ) -> Result<Self, Error> {
-        request.noise.check()?;
-        let KnownNoise { position, velocity } = request.noise;
-        let first = NoiseLevels {
-            position: position.unwrap_or(FIRST_POSITION_NOISE),
-            velocity: FIRST_VELOCITY_NOISE.max(velocity.unwrap_or(SMALLEST_VELOCITY_NOISE)),
-        };
-        let mut course = Course {
-            movie,
-            request,
-            space,
-            watch,
-            rule: Rule::Trapezoid,
-            levels: first,
-            memory: (states.polarities.count() > 0).then_some(Memory::FIRST),
-            value: f64::INFINITY,
-            status: Status::StepLimit,
-            steps: 0,
-            trace: Vec::new(),
-        };
-        let naive = naive_coefficients(&course.objective(states))?;
-        let at = match course.memory {
-            // Where cells crawl, what moves them beside the model leads them astray until it is known.
-            Some(_) => {
-                course.rule = Rule::RungeKutta(FEWEST_STEPS);
-                course.resolve(states, &naive);
-                course.objective(states).start(&naive)
-            }
-            None => course.foresee(states, naive.clone())?,
-        };
-        let at = course.approach(states, at)?;
-        let at = course.settle(states, at, ROUGH)?;
-        Ok(Self { course, at, naive })
+        (rule, levels, memory): (Rule, NoiseLevels, Option<Memory>),
+    ) -> Self {
+        let (value, status, steps, trace) = (f64::INFINITY, Status::StepLimit, 0, Vec::new());
+        Self { movie, request, space, watch, rule, levels, memory, value, status, steps, trace }
     }
 }
 
@@ -173,7 +128,7 @@ impl<'a> Course<'a, '_> {
     }
 
     /// Fit and noise levels in turn.
-    fn settle(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Vec<f64>, Error> {
+    pub(super) fn settle(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Vec<f64>, Error> {
         Ok(self.settled(states, at, how)?.0)
     }
 
@@ -184,15 +139,17 @@ impl<'a> Course<'a, '_> {
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
-            let Optimum { parameters, mut equations, .. } = optimum;
+            let Optimum { parameters, equations, .. } = optimum;
             let objective = self.objective(states);
             let (wanted, memory) = match self.memory {
                 Some(_) => {
                     let placed = objective.place(&parameters)?;
                     let components = objective.explained_components(&placed, &parameters);
-                    let likely = objective.likely(&mut equations, components, self.request.noise, looked)?;
+                    let likely = objective.likely(&equations, components, self.request.noise, looked)?;
                     looked = Some(likely.looked);
                     let free = objective.free_share(&placed, &parameters, likely.memory.speed);
+                    // What is expected depends on how free it is: the mean of both does not swing.
+                    let free = (free * likely.memory.free).sqrt();
                     (likely.levels, Some(Memory { free, ..likely.memory }))
                 }
                 None => (self.likely_levels(&objective, &parameters, &equations, &mut last)?, None),
@@ -239,7 +196,7 @@ impl<'a> Course<'a, '_> {
         Ok((self.optimise(states, start, most, TOLERANCE, (1, 1))?.parameters, error))
     }
 
-    fn optimise(
+    pub(super) fn optimise(
         &mut self,
         states: &States,
         start: Start,
@@ -265,7 +222,7 @@ impl<'a> Course<'a, '_> {
     fn renewed(&self, states: &States, equations: NormalEquations) -> NormalEquations {
         let objective = self.objective(states);
         let mut equations = equations.at_levels(self.levels);
-        equations.hold(&objective.stiffness(), objective.weight_of_outset());
+        equations.hold(&objective.held());
         equations
     }
 
@@ -283,7 +240,7 @@ impl<'a> Course<'a, '_> {
             }
             known => {
                 let components = objective.explained_components(&objective.place(parameters)?, parameters);
-                Restricted { equations, components, known }.towards(self.levels, SPACING, earlier)
+                Restricted { equations, components, known, held: None }.towards(self.levels, SPACING, earlier)
             }
         }
     }
@@ -299,57 +256,8 @@ impl<'a> Course<'a, '_> {
         NoiseLevels { velocity: wanted.velocity.min(most).max(fallen).max(least), ..wanted }
     }
 
-    /// The coefficients that follow the cells best from where they were seen in one frame to where they were seen in the next, in as many
-    /// steps of integration as it takes.
-    fn foresee(&mut self, states: &States, mut free: Vec<f64>) -> Result<Vec<f64>, Error> {
-        self.rule = Rule::RungeKutta(FEWEST_STEPS);
-        self.resolve(states, &free);
-        loop {
-            let before = self.rule;
-            free = forward_coefficients(&self.objective(states), &free)?;
-            self.resolve(states, &free);
-            if self.rule == before {
-                return Ok(self.objective(states).start(&free));
-            }
-        }
-    }
-
-    /// Takes as many steps as some coefficients need where the cells were seen: too few, and the motion leads anywhere.
-    fn resolve(&mut self, states: &States, free: &[f64]) {
-        let at = self.objective(states).start(free);
-        let rests = |rule: Rule| {
-            let objective = MovieObjective { rule, ..self.objective(states) };
-            objective.place(&at).map(|placed| objective.residuals(&placed, &at)).ok()
-        };
-        let mut rule = self.rule;
-        let mut coarse = rests(rule);
-        while rule.steps() < MOST_STEPS {
-            let fine = rests(rule.twice());
-            if let (Some(coarse), Some(fine)) = (&coarse, &fine) {
-                let whole: f64 = coarse.iter().map(|rest| rest.norm_squared()).sum();
-                let changes = fine.iter().zip(coarse).map(|(fine, coarse)| (fine - coarse).norm_squared());
-                if changes.sum::<f64>() < FIRST_CHANGE * whole {
-                    break;
-                }
-            }
-            (rule, coarse) = (rule.twice(), fine);
-        }
-        self.rule = rule;
-    }
-
-    /// Fits at the first noise levels in as many steps of integration as it takes. Levels are not estimated on the way: far from the
-    /// minimum the likelihood takes for noise what a better fit would explain.
-    fn approach(&mut self, states: &States, mut at: Vec<f64>) -> Result<Vec<f64>, Error> {
-        loop {
-            at = self.optimise(states, (at, None), APPROACH, TOLERANCE_AT_FIRST, (0, 1))?.parameters;
-            if !self.refine(states, &at)?.1 {
-                return Ok(at);
-            }
-        }
-    }
-
     /// Takes as many steps as the coefficients need at a point: what more would change, and whether they have become more.
-    fn refine(&mut self, states: &States, at: &[f64]) -> Result<(f64, bool), Error> {
+    pub(super) fn refine(&mut self, states: &States, at: &[f64]) -> Result<(f64, bool), Error> {
         let before = self.rule;
         loop {
             let twice = self.rule.twice();

@@ -14,6 +14,7 @@ use crate::doubts::{EXACT, tails, voids};
 use crate::inference::{changed_edges, doubts, estimates};
 use crate::noisy_fit::at_limit;
 use crate::position_rows::PositionRows;
+use crate::quantity::BASE;
 use crate::search::Watch;
 use crate::{Activity, CrossValidation, Doubt, Error, FrameResult, Inference, Nmse, Progress, Request};
 use std::collections::BTreeMap;
@@ -38,7 +39,7 @@ pub fn infer_tracks(
     request: &Request,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<(Inference, Tracked), Error> {
-    let (inference, followed) = follow(movie, request, &mut Watch { observe })?;
+    let (inference, followed) = follow(movie, request, None, &mut Watch { observe })?;
     Ok((inference, followed.tracked))
 }
 
@@ -50,22 +51,26 @@ pub(crate) struct Followed {
     pub(super) fit: Fit,
 }
 
-/// See [`infer_tracks`].
+/// See [`infer_tracks`]; perhaps from where the fit of a similar model has come to, with coefficients to begin with.
 pub(crate) fn follow(
     movie: &Movie,
     request: &Request,
+    from: Option<(&Followed, &[f64])>,
     watch: &mut Watch<'_>,
 ) -> Result<(Inference, Followed), Error> {
     let space = request.space()?;
     let mut states = States::new(movie)?;
     if request.activity == Activity::Polarity {
-        states = states.crawling(movie, request.structure.terms.len());
+        states = states.crawling(movie, BASE);
     }
     let (explained, required) = (states.motions.len(), 2 * space.dimension() + 2);
     if explained < required {
         return Err(Error::TooFewVelocities { used: explained, required });
     }
-    let found = fit(movie, states, request, &space, watch)?;
+    let from = from.and_then(|(earlier, coefficients)| {
+        Some((&earlier.fit, earlier.point_for(&states, space.nearest(coefficients))?))
+    });
+    let found = fit(movie, states, request, &space, from, watch)?;
     let levels = found.levels;
     let (states, structure) = (&found.states, &request.structure);
     let (rule, memory) = (found.rule, found.memory);
@@ -81,7 +86,7 @@ pub(crate) fn follow(
     let parts = objective.parts(&found.parameters)?;
     let variance = levels.velocity.powi(2);
     let (value, expected) = (found.value / variance, objective.expected() / variance);
-    let mut equations = objective.linearise(&found.parameters)?;
+    let equations = objective.linearise(&found.parameters)?;
     let reduced = equations.reduced()?;
     let variance_of_fit = variance * (value / expected).max(1.0);
     let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit)?;
@@ -149,7 +154,7 @@ pub(crate) fn follow(
         used,
         total,
     };
-    tracked.polarity = objective.polarity(&mut equations, components, request.noise)?;
+    tracked.polarity = objective.polarity(&equations, components, request.noise)?;
     Ok((inference, Followed { tracked, held_out: held_out.map(|held_out| held_out.folds), fit: found }))
 }
 

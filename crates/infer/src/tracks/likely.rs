@@ -34,9 +34,13 @@ const BISECTIONS: usize = 8;
 const HINTS_OF_TIMES: [f64; 2] = [0.05, 0.5];
 const HINTS_OF_RATIO: [f64; 3] = [4.0, 2.0, 0.5];
 
-/// Steps in log k towards the noise levels of cells that do not crawl: the first, and one too short to take.
-const FIRST_STEP: f64 = 1.0;
-const LAST_STEP: f64 = 0.2;
+/// Steps in log k towards the noise levels of cells that do not crawl, and how many are looked at.
+const STEP_OF_K: f64 = 0.7;
+const FURTHER: u32 = 11;
+
+/// A step that leads to less likely levels is made shorter by this factor, so many times; then none is taken.
+const SHORTER: f64 = 0.3;
+const SHORTENINGS: usize = 4;
 
 /// Step in log (x + c) for a derivative.
 const STEP: f64 = 0.01;
@@ -89,7 +93,7 @@ impl MovieObjective<'_> {
     /// with second derivatives as they were if these are given.
     pub(super) fn likely(
         &self,
-        equations: &mut NormalEquations,
+        equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
         earlier: Option<Looked>,
@@ -111,10 +115,8 @@ impl MovieObjective<'_> {
             None => POINTS.iter().map(|point| (*point).into()).collect(),
             Some(_) => POINTS[..ENOUGH].iter().map(|point| Vector3::from(*point) * CLOSE).collect(),
         };
-        let mut values = Vec::with_capacity(points.len());
-        for point in points {
-            values.push(self.likelihood(equations, components, known, at(point.into()))?);
-        }
+        let values = equations
+            .each(&points, |point| self.likelihood(equations, components, known, at((*point).into())))?;
         let at_centre = Vector3::from_fn(|k, _| centre[k] / SPACINGS[k]);
         let criteria: Vec<f64> = values.iter().map(|own| own.criterion).collect();
         let variances: Vec<f64> = values.iter().map(|own| own.variance.ln()).collect();
@@ -126,12 +128,17 @@ impl MovieObjective<'_> {
             ),
         };
         let held = [known.position.is_some() && known.velocity.is_some(), false, false];
-        let step = criterion.newton(held);
+        let mut step = criterion.newton(held);
+        let mut reached = self.likelihood(equations, components, known, at(step.into()))?;
+        for shorter in 1..=SHORTENINGS {
+            if reached.criterion <= values[0].criterion {
+                break;
+            }
+            step *= if shorter == SHORTENINGS { 0.0 } else { SHORTER };
+            reached = self.likelihood(equations, components, known, at(step.into()))?;
+        }
         let [log_k, times, ratio] = at(step.into());
-        let velocity = known
-            .velocity
-            .unwrap_or_else(|| (0.5 * log_variance.at(step)).exp())
-            .max(SMALLEST_VELOCITY_NOISE);
+        let velocity = known.velocity.unwrap_or(reached.variance.sqrt()).max(SMALLEST_VELOCITY_NOISE);
         let position = known.position.unwrap_or_else(|| {
             (velocity / (0.5 * log_k).exp()).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)
         });
@@ -153,7 +160,7 @@ impl MovieObjective<'_> {
     /// The likelihood at some log k, x and σ_v²/σ_p².
     fn likelihood(
         &self,
-        equations: &mut NormalEquations,
+        equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
         [log_k, times, ratio]: [f64; 3],
@@ -161,8 +168,8 @@ impl MovieObjective<'_> {
         let memory = self.memory.unwrap_or(Memory::FIRST);
         let speed = self.levels.velocity / ratio.sqrt();
         let objective = MovieObjective { memory: Some(Memory { times, speed, ..memory }), ..*self };
-        equations.hold(&objective.stiffness(), objective.weight_of_outset());
-        let own = Restricted { equations, components, known }.likelihood(log_k)?;
+        let held = objective.held();
+        let own = Restricted { equations, components, known, held: Some(&held) }.likelihood(log_k)?;
         let of_lengths = ratio / self.movie.interval().powi(2);
         let determinant = self.states.polarities.log_determinant(times, of_lengths, memory.free);
         Ok(Likelihood { criterion: own.criterion - determinant, ..own })
@@ -183,7 +190,7 @@ impl MovieObjective<'_> {
     /// The polarity of the cells at a fit, about which the problem is linearised.
     pub(super) fn polarity(
         &self,
-        equations: &mut NormalEquations,
+        equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
     ) -> Result<Option<Polarity>, Error> {
@@ -219,49 +226,46 @@ impl MovieObjective<'_> {
     /// By how much −2 log L falls at most from no polarity to one of a few, at the present k.
     pub(super) fn hint(
         &self,
-        equations: &mut NormalEquations,
+        equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
     ) -> Result<f64, Error> {
         let log_k = self.levels.spring().ln();
-        let mut at = |times: f64, ratio: f64| -> Result<f64, Error> {
+        let at = |times: f64, ratio: f64| -> Result<f64, Error> {
             Ok(self.likelihood(equations, components, known, [log_k, times, ratio.exp()])?.criterion)
         };
-        let without = at(HINTS_OF_TIMES[0], RATIO[1])?;
-        let mut least = without;
-        for times in HINTS_OF_TIMES {
-            for ratio in HINTS_OF_RATIO {
-                least = least.min(at(times, ratio)?);
-            }
-        }
-        Ok(without - least)
+        let tried = HINTS_OF_TIMES.iter().flat_map(|times| HINTS_OF_RATIO.map(|ratio| (*times, ratio)));
+        let points: Vec<(f64, f64)> = std::iter::once((HINTS_OF_TIMES[0], RATIO[1])).chain(tried).collect();
+        let values = equations.each(&points, |(times, ratio)| at(*times, *ratio))?;
+        Ok(values[0] - values.iter().copied().fold(f64::INFINITY, f64::min))
     }
 
     /// By how much −2 log L falls from no polarity at all, with the noise levels that are then likeliest, to the present one.
     fn evidence(
         &self,
-        equations: &mut NormalEquations,
+        equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
         memory: Memory,
     ) -> Result<f64, Error> {
-        let mut at = |log_k: f64, ratio: f64| -> Result<f64, Error> {
+        let at = |log_k: f64, ratio: f64| -> Result<f64, Error> {
             Ok(self.likelihood(equations, components, known, [log_k, memory.times, ratio.exp()])?.criterion)
         };
         let own = self.levels.spring().ln();
         let with = at(own, 2.0 * (self.levels.velocity / memory.speed).ln())?;
         let given = known.position.is_some() && known.velocity.is_some();
-        let mut without = at(own, RATIO[1])?;
         // What moved the cells by themselves is then an error of the dynamics: k grows.
-        let mut place = own;
-        let mut step = if given { 0.0 } else { FIRST_STEP };
-        while step > LAST_STEP {
-            let next = at(place + step, RATIO[1])?;
-            if next < without {
-                (place, without) = (place + step, next);
-            } else {
-                step *= 0.5;
-            }
+        let further = if given { 0 } else { FURTHER };
+        let points: Vec<f64> = (0..=further).map(|steps| own + f64::from(steps) * STEP_OF_K).collect();
+        let values = equations.each(&points, |log_k| at(*log_k, RATIO[1]))?;
+        let least = (0..values.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
+        let mut without = values[least];
+        if let Some([before, after]) = least.checked_sub(1).map(|k| [values.get(k), values.get(least + 1)])
+            && let (Some(before), Some(after)) = (before, after)
+            && before + after > 2.0 * without
+        {
+            let aside = 0.5 * (before - after) / (before + after - 2.0 * without);
+            without = without.min(at(points[least] + aside * STEP_OF_K, RATIO[1])?);
         }
         Ok((without - with).max(0.0))
     }
@@ -269,14 +273,14 @@ impl MovieObjective<'_> {
     /// Between which multiples of v₀ the likelihood falls by less than an interval of 95 % allows, k and memory held.
     fn slowest_and_fastest(
         &self,
-        equations: &mut NormalEquations,
+        equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
         memory: Memory,
     ) -> Result<[f64; 2], Error> {
         let own = 2.0 * (self.levels.velocity / memory.speed).ln();
         // −2 log L and the multiple of v₀ at some log σ_v²/σ_p².
-        let mut at = |ratio: f64| -> Result<(f64, f64), Error> {
+        let at = |ratio: f64| -> Result<(f64, f64), Error> {
             let point = [self.levels.spring().ln(), memory.times, ratio.exp()];
             let Likelihood { criterion, variance } = self.likelihood(equations, components, known, point)?;
             Ok((criterion, (variance / ratio.exp()).sqrt() / memory.speed))

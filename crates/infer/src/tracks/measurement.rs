@@ -1,7 +1,7 @@
 //! What of a cell its position is, in a movie for which nobody said.
 
 use super::anchors::Share;
-use super::fit::Begun;
+use super::begun::Begun;
 use super::movie::Movie;
 use super::states::States;
 use crate::least_squares::invert;
@@ -73,7 +73,7 @@ fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Es
         let objective = course.objective(&states);
         let equations = objective.linearise_with(&at, Share::Unknown)?;
         let components = objective.explained_components(&objective.place(&at)?, &at);
-        let likelihood = Restricted { equations: &equations, components, known: request.noise };
+        let likelihood = Restricted { equations: &equations, components, known: request.noise, held: None };
         let criterion = likelihood.criterion(objective.levels.spring().ln())?;
         let reduced = equations.reduced()?;
         let inverse = invert(reduced.information)?;

@@ -17,6 +17,7 @@
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::states::{Instant, Motion};
+use crate::linearisation::Held;
 use crate::stiffness::Stiffness;
 
 /// Marks a cell without a polarity.
@@ -173,6 +174,11 @@ impl MovieObjective<'_> {
             self.states.polarities.hold(memory.times, self.ratio(memory), &mut stiffness);
         }
         stiffness
+    }
+
+    /// The same with the weight of what is expected of the first polarities.
+    pub(super) fn held(&self) -> Held {
+        Held { stiffness: self.stiffness(), weight: self.weight_of_outset() }
     }
 
     /// σ_v²/σ_u²

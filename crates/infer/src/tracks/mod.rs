@@ -8,6 +8,7 @@
 //! velocities along its way, so that no velocity is ever derived from positions. The problem has the form of the nudged fit of snapshots and is solved by the same means.
 
 mod anchors;
+mod begun;
 mod beside;
 mod ends;
 mod first;

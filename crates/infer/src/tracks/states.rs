@@ -231,6 +231,11 @@ impl States {
         self.start.len() + self.drifts.1 + self.polarities.blocks()
     }
 
+    /// Number of blocks of places, translations and polarities.
+    pub fn unknowns_of_cells(&self) -> usize {
+        self.start.len() + self.drifts.1 + self.polarities.count()
+    }
+
     /// The unknown of an interval's translation.
     pub fn drift(&self, interval: usize) -> Option<usize> {
         (interval < self.drifts.1).then_some(self.drifts.0 + interval)

@@ -26,7 +26,6 @@ pub(super) const CLOSE: f64 = 0.02;
 /// A function of three unknowns to second order about a point, in units of the spacings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
-    value: f64,
     pub slope: Vector3<f64>,
     pub bend: Matrix3<f64>,
 }
@@ -40,13 +39,13 @@ impl Surface {
             let mixed = corner - v[i + 1] - v[j + 1] + v[0];
             (bend[(i, j)], bend[(j, i)]) = (mixed, mixed);
         }
-        Self { value: v[0], slope, bend }
+        Self { slope, bend }
     }
 
     /// From values at the first few, drawn close together, if it bends so.
     pub fn again(v: &[f64], bend: Matrix3<f64>) -> Self {
         let slope = Vector3::from_fn(|k, _| (v[k + 1] - v[0]) / CLOSE - 0.5 * CLOSE * bend[(k, k)]);
-        Self { value: v[0], slope, bend }
+        Self { slope, bend }
     }
 
     /// With what the slope has changed by since, after a step (the formula of Broyden, Fletcher, Goldfarb and Shanno).
@@ -59,10 +58,6 @@ impl Surface {
         }
         let bend = self.bend + change * change.transpose() / by_slope - bent * bent.transpose() / by_bend;
         Self { bend, ..self }
-    }
-
-    pub fn at(&self, step: Vector3<f64>) -> f64 {
-        self.value + self.slope.dot(&step) + 0.5 * step.dot(&(self.bend * step))
     }
 
     /// The inverse of the bend without what is held, at least a little upwards along its own axes.
@@ -120,7 +115,6 @@ mod tests {
         let found = Surface::new(&all);
         assert!((found.bend - bend).amax() < 1e-12);
         assert!((found.newton([false; 3]) - least).amax() < 1e-12);
-        assert!((found.at(least) - 7.0).abs() < 1e-12);
         assert!((found.covariance([false; 3]) * bend - Matrix3::identity() * 2.0).amax() < 1e-10);
         let held = found.newton([true, false, false]);
         assert!(held[0] == 0.0 && held[1] != 0.0);
