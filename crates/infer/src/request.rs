@@ -65,6 +65,8 @@ pub enum Activity {
     None,
     /// Each cell has a polarity of its own that it forgets at some rate.
     Polarity,
+    /// The same, and it turns towards those of the neighbours.
+    Alignment,
 }
 
 /// Whether to predict velocities left out of the fit.

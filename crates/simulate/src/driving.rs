@@ -6,7 +6,7 @@ use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Tessellation, Vector};
 
 /// Cells that share a stream of random numbers.
 const CHUNK: usize = 1024;
@@ -87,7 +87,8 @@ impl Shear {
 /// Motion that the model does not have. The default is none.
 ///
 /// ```text
-/// dr_i = (v_i(r) + γ̇ y_i x̂ + v₀ (cos θ_i, sin θ_i)) dt + √(2D) dW_i        dθ_i = √(2D_r) dW′_i
+/// dr_i = (v_i(r) + γ̇ y_i x̂ + v₀ (cos θ_i, sin θ_i)) dt + √(2D) dW_i
+/// dθ_i = (J/6) Σ_j sin(θ_j − θ_i) dt + √(2D_r) dW′_i                         over the neighbours j
 /// ```
 ///
 /// Noise is additive and is put in at the end of each step: of weak order one in `Δt`, without a step-size bias of its own
@@ -101,6 +102,9 @@ pub struct Driving {
     pub speed: f64,
     /// Rotational diffusion `D_r` of the directions of self-propulsion, in 1/time.
     pub rotational_diffusion: f64,
+    /// Rate `J` at which a cell with six neighbours turns towards the mean direction of these, in 1/time.
+    #[serde(default)]
+    pub alignment: f64,
     /// Translational diffusion `D`, in length²/time.
     pub diffusion: f64,
     /// Seed of noise and of the first directions.
@@ -112,6 +116,7 @@ impl Driving {
         let amounts = [
             ("speed of self-propulsion", self.speed),
             ("rotational diffusion", self.rotational_diffusion),
+            ("alignment", self.alignment),
             ("translational diffusion", self.diffusion),
         ];
         for (name, value) in amounts {
@@ -148,6 +153,20 @@ impl Driving {
             let rows = velocities.par_iter_mut().zip(headings).with_min_len(CHUNK);
             rows.for_each(|(v, angle)| *v += Vector::new(angle.cos(), angle.sin()) * self.speed);
         }
+    }
+
+    /// Turns the directions towards those of the neighbours (first order in the step, as is the noise).
+    pub(crate) fn align(&self, headings: &mut [f64], tessellation: &Tessellation, time_step: f64) {
+        if self.alignment == 0.0 || headings.is_empty() {
+            return;
+        }
+        let before = headings.to_vec();
+        let turn = |(cell, angle): (usize, &mut f64)| {
+            let neighbours = tessellation.neighbours(cell).iter();
+            let sum: f64 = neighbours.map(|other| (before[*other as usize] - before[cell]).sin()).sum();
+            *angle += self.alignment / 6.0 * sum * time_step;
+        };
+        headings.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(turn);
     }
 
     /// Whether there is noise.

@@ -124,6 +124,33 @@ fn noise_diffuses_and_propulsion_persists() {
     assert!((found / expected - 1.0).abs() < 0.15, "{found} {expected}");
 }
 
+/// Two directions among cells that do not move: what turns them is known in closed form where all neighbours are alike, and without noise
+/// aligned cells end with one direction.
+#[test]
+fn directions_align_with_those_of_the_neighbours() {
+    let driving = Driving { speed: 1e-9, alignment: 1.5, seed: 9, ..Driving::default() };
+    let mut aligned = tissue(100, 4, &inert()).with_driving(driving).unwrap();
+    let before = aligned.state().headings.clone();
+    let rate = |cell: usize| -> f64 {
+        let neighbours = aligned.tessellation().neighbours(cell).iter();
+        1.5 / 6.0 * neighbours.map(|other| (before[*other as usize] - before[cell]).sin()).sum::<f64>()
+    };
+    let expected: Vec<f64> = (0..100).map(|cell| before[cell] + 0.01 * rate(cell)).collect();
+    advance(&mut aligned, 1, 0.01);
+    for (found, expected) in aligned.state().headings.iter().zip(&expected) {
+        assert!((found - expected).abs() < 1e-9, "{found} {expected}");
+    }
+    // The sum of the turns is zero, and the order grows.
+    let sum = |headings: &[f64]| headings.iter().sum::<f64>();
+    assert!((sum(&aligned.state().headings) - sum(&before)).abs() < 1e-9);
+    let order = |headings: &[f64]| {
+        let (x, y) = headings.iter().fold((0.0, 0.0), |(x, y), angle| (x + angle.cos(), y + angle.sin()));
+        f64::hypot(x, y) / headings.len() as f64
+    };
+    advance(&mut aligned, 4000, 0.02);
+    assert!(order(&before) < 0.3 && order(&aligned.state().headings) > 0.8);
+}
+
 #[test]
 fn noise_does_not_depend_on_threads_but_on_its_seed() {
     let end = |threads, seed| {

@@ -106,6 +106,7 @@ fn impossible_simulations_are_refused() {
     assert_line_refused("simulate --frames 0", &["0 frames"]);
     assert_line_refused("simulate --dt 0", &["time step is 0"]);
     assert_line_refused("simulate --time -5", &["duration is -5"]);
+    assert_line_refused("simulate --alignment 1", &["self-propulsion"]);
     assert_line_refused("simulate --box 0 4", &["box side x is 0"]);
     assert_line_refused("simulate --frames 99999999999999", &["--frames 99999999999999"]);
     assert_line_refused("simulate --cells 3000000000000", &["--cells 3000000000000"]);

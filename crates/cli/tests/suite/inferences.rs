@@ -168,16 +168,17 @@ fn tracks_are_fitted_themselves() {
     assert!(residual.index_axis(ndarray::Axis(0), 0).iter().any(|r| r.is_finite()));
 }
 
-/// The same tissue, which does not crawl, asked for its polarity.
+/// The same tissue, which does not crawl, asked for its polarity, and whether that aligns.
 #[test]
 fn of_cells_that_do_not_crawl_no_polarity_is_found() {
-    let out = infer(&fixture("open-field"), "--active --fix K_A=0");
+    let out = infer(&fixture("open-field"), "--align --fix K_A=0");
     assert!(out.names().contains(&"polarities.npy".into()));
     let report = report(out.path());
     assert_valid(&report);
     let v_0 = &report["activity"]["v_0"];
     assert!(number(v_0, "/ci95/0") == 0.0 && number(v_0, "/ci95/1") < 0.01, "{v_0}");
-    assert!(report["activity"]["D_r"]["ci95"].is_null());
+    assert!(report["activity"]["D_r"]["ci95"].is_null() && report["activity"]["J"]["ci95"].is_null());
+    assert!(number(&report, "/activity/evidence_of_alignment") < 4.0);
     let found = number(&report, "/parameters/K_P_alpha/value");
     assert!((found - 0.02).abs() < 0.001, "K_P_alpha is {found}");
     let measured: Array3<f64> = read(&fixture("open-field/positions.npy"));

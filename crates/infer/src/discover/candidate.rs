@@ -25,9 +25,19 @@ impl Candidate {
         self.columns.iter().flatten().all(|column| matches!(column, Column::Term(_)))
     }
 
-    /// Whether it is the polarity of cells, which has no columns.
-    pub fn is_polarity(&self) -> bool {
+    /// Whether it is of the polarity of cells, which has no columns.
+    pub fn is_of_polarity(&self) -> bool {
         self.effect.is_state()
+    }
+
+    /// Whether it is that polarities turn towards those of the neighbours.
+    pub fn is_alignment(&self) -> bool {
+        self.effect.id == "polarity_alignment"
+    }
+
+    /// Whether it is the polarity of cells itself.
+    pub fn is_polarity(&self) -> bool {
+        self.is_of_polarity() && !self.is_alignment()
     }
 
     /// Whether it is the measurement that does it.
@@ -77,14 +87,14 @@ pub(super) fn candidates_of_tracks(frames: &[Observation], effects: &[&'static E
     let mut all = offered(frames, effects);
     for own in &mut all {
         own.columns = match own.effect.id {
-            _ if own.is_polarity() && frames.len() < FEWEST_FRAMES => {
+            _ if own.is_of_polarity() && frames.len() < FEWEST_FRAMES => {
                 Err("it shows in how cells go on, which takes three frames or more")
             }
-            _ if own.is_polarity() => Ok(Vec::new()),
+            _ if own.is_of_polarity() => Ok(Vec::new()),
             "persistence" => Err("with tracks, what persists is the polarity of the cells: see there"),
-            "alignment" => Err(
-                "with tracks, polarities of neighbours are not coupled; --difference central asks of velocities",
-            ),
+            "alignment" => {
+                Err("with tracks, what aligns are the polarities of the cells: see polarity_alignment")
+            }
             "time_lag" => Err("cells are followed from frame to frame: there is no lag"),
             "flow_gain" | "flow_blur" => Err("there is no flow field"),
             "centroid_bias" => Err(OF_MEASUREMENT),

@@ -1,23 +1,27 @@
-//! The polarity of cells as a candidate: a state of each cell instead of a column.
+//! The polarity of cells as a candidate, and that it aligns: states of the cells instead of columns.
 
 use super::classes::Tested;
 use super::lineup::upper_chi_squared;
 use super::result::{Fate, Ranked};
 use super::steps::{Model, Setting};
 use crate::Estimate;
-use crate::tracks::Polarity;
+use crate::tracks::{Alignment, Polarity};
+use statrs::distribution::{ChiSquared, ContinuousCDF};
 
-/// Coefficients of a polarity: its speed and how fast it is forgotten.
-const COEFFICIENTS: usize = 2;
+/// Coefficients of a polarity: its speed and how fast it is forgotten; of its alignment: the rate.
+fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
+    if setting.candidates[candidate].is_alignment() { 1 } else { 2 }
+}
 
 /// In the ranking, by its evidence alone, as before one is fitted.
 pub(super) fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
-    let adjusted_p = adjusted_p(setting, evidence);
+    let dimension = coefficients(setting, candidate);
+    let adjusted_p = adjusted_p(setting, candidate, evidence);
     Ranked {
         effect: setting.candidates[candidate].effect,
-        dimension: COEFFICIENTS,
+        dimension,
         statistic: evidence,
-        p: p(evidence),
+        p: p(evidence, dimension),
         adjusted_p,
         detection_limit: f64::NAN,
         size: f64::NAN,
@@ -26,26 +30,30 @@ pub(super) fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> 
     }
 }
 
-/// Probability of so much evidence if there is no polarity. Its rate of forgetting then means nothing and its speed is at its bound: two
-/// degrees of freedom are more than there are.
-fn p(evidence: f64) -> f64 {
-    upper_chi_squared(evidence, COEFFICIENTS as f64)
+/// Probability of so much evidence if there is none. Its speed, or the rate at which it aligns, is then at its bound, and the rate at which
+/// it is forgotten means nothing: there are fewer degrees of freedom than coefficients.
+fn p(evidence: f64, coefficients: usize) -> f64 {
+    upper_chi_squared(evidence, coefficients as f64)
 }
 
-/// The evidence that a polarity needs beside so many other effects: χ² with two degrees of freedom is above x with probability exp(−x/2).
-pub(super) fn least_evidence(setting: &Setting<'_>, others: usize) -> f64 {
-    2.0 * (setting.named(&[]).len() as f64 / setting.level(others)).ln()
+/// The evidence that is needed beside so many other effects.
+pub(super) fn least_evidence(setting: &Setting<'_>, candidate: usize, others: usize) -> f64 {
+    let level = setting.level(others) / setting.named(&[]).len() as f64;
+    ChiSquared::new(coefficients(setting, candidate) as f64)
+        .map_or(f64::INFINITY, |own| own.inverse_cdf(1.0 - level))
 }
 
 /// The same for any of all candidates.
-fn adjusted_p(setting: &Setting<'_>, evidence: f64) -> f64 {
-    (p(evidence) * setting.named(&[]).len() as f64).min(1.0)
+fn adjusted_p(setting: &Setting<'_>, candidate: usize, evidence: f64) -> f64 {
+    (p(evidence, coefficients(setting, candidate)) * setting.named(&[]).len() as f64).min(1.0)
 }
 
-/// The polarity in a fitted model.
+/// The polarity in a fitted model, or how it aligns.
 pub(super) struct Crawling<'a> {
     candidate: usize,
     polarity: &'a Polarity,
+    /// How it aligns, if that is what the candidate is.
+    alignment: Option<&'a Alignment>,
     /// Root mean square of the velocities.
     usual: f64,
 }
@@ -55,18 +63,27 @@ impl<'a> Crawling<'a> {
     pub fn of(setting: &Setting<'_>, candidate: usize, model: &'a Model) -> Option<Self> {
         let polarity = model.followed.as_ref()?.tracked.polarity.as_ref()?;
         let inference = &model.inference;
-        setting.candidates[candidate].is_polarity().then(|| Self {
+        let own = &setting.candidates[candidate];
+        let alignment = polarity.alignment.as_ref().filter(|_| own.is_alignment());
+        (own.is_polarity() || alignment.is_some()).then(|| Self {
             candidate,
             polarity,
+            alignment,
             usual: (inference.total / inference.used as f64).sqrt(),
         })
+    }
+
+    /// By how much −2 log L falls with it.
+    fn evidence(&self) -> f64 {
+        self.alignment.map_or(self.polarity.evidence, |own| own.evidence)
     }
 
     /// With all else in the model; `others` are the other candidates in it.
     pub fn tested(&self, setting: &Setting<'_>, base: &Model, others: &[usize]) -> Tested {
         let lineup = &base.lineup;
         let worth = |statistic: f64, dimension: usize| statistic - setting.price(lineup, dimension);
-        let mine = worth(self.polarity.evidence, COEFFICIENTS);
+        let dimension = coefficients(setting, self.candidate);
+        let mine = worth(self.evidence(), dimension);
         let projected = lineup.beyond(&[]);
         // Beside others only a fit of them without it would tell.
         let rivals = if others.is_empty() { setting.named(&[self.candidate]) } else { Vec::new() };
@@ -76,28 +93,39 @@ impl<'a> Crawling<'a> {
         });
         Tested {
             candidate: self.candidate,
-            p: p(self.polarity.evidence),
-            adjusted_p: adjusted_p(setting, self.polarity.evidence),
+            p: p(self.evidence(), dimension),
+            adjusted_p: adjusted_p(setting, self.candidate, self.evidence()),
             weakness: None,
-            statistic: self.polarity.evidence,
-            size: self.polarity.speed / self.usual,
+            statistic: self.evidence(),
+            size: self.size(),
             others: rivals.collect(),
         }
     }
 
-    /// In the ranking.
-    pub fn ranked(&self, setting: &Setting<'_>) -> Ranked {
-        let [least, most] = self.polarity.speed_interval.map(|end| end / self.usual);
-        Ranked {
-            detection_limit: most - least,
-            size: self.polarity.speed / self.usual,
-            interval: Some([least, most]),
-            ..ranked(setting, self.candidate, self.polarity.evidence)
-        }
+    /// Relative to the velocities; of alignment not known.
+    fn size(&self) -> f64 {
+        if self.alignment.is_some() { f64::NAN } else { self.polarity.speed / self.usual }
     }
 
-    /// Speed and rate.
+    /// In the ranking.
+    pub fn ranked(&self, setting: &Setting<'_>) -> Ranked {
+        let plain = ranked(setting, self.candidate, self.evidence());
+        if self.alignment.is_some() {
+            return plain;
+        }
+        let [least, most] = self.polarity.speed_interval.map(|end| end / self.usual);
+        Ranked { detection_limit: most - least, size: self.size(), interval: Some([least, most]), ..plain }
+    }
+
+    /// Speed and rate, or the rate at which it aligns.
     pub fn estimates(&self) -> Vec<Estimate> {
+        if let Some(Alignment { rate, interval, .. }) = self.alignment {
+            return vec![Estimate {
+                value: *rate,
+                standard_error: 0.5 * (interval[1] - interval[0]) / 1.96,
+                interval: interval.map(Some),
+            }];
+        }
         let Polarity { speed, speed_interval, rate, rate_interval, .. } = self.polarity;
         let half = |ends: [f64; 2]| 0.5 * (ends[1] - ends[0]) / 1.96;
         let of_rate = rate_interval.map_or([Some(0.0), None], |ends| ends.map(Some));

@@ -116,10 +116,10 @@ impl<'a> Growth<'a> {
             let crawling = Crawling::of(&self.setting, candidate, &model);
             if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(hinted) {
                 let is_chance = ranked.adjusted_p >= self.setting.level(current.added.len());
-                let is_tried = self.setting.candidates[candidate].is_polarity();
+                let is_tried = self.setting.candidates[candidate].is_of_polarity();
                 if is_tried && !is_chance && against.is_none() {
                     // What goes on from frame to frame made the other tests too sure of themselves.
-                    self.ranking = Ranking::new(&self.setting, &model.lineup);
+                    self.ranking.renew(&self.setting, &model.lineup);
                 }
                 self.ranking.put(ranked);
                 if is_tried && is_chance {
@@ -179,13 +179,14 @@ impl<'a> Growth<'a> {
         let setting = self.setting;
         let best = setting.lacking(model, refused, watch)?;
         let open = |candidate: &usize| !model.added.contains(candidate) && !refused.contains(candidate);
-        let Some(polarity) = setting.polarity().filter(open) else { return Ok((best, None)) };
+        let Some(polarity) = setting.of_polarity(model).filter(open) else { return Ok((best, None)) };
         let hint = setting.hint_of_polarity(model)?;
-        let ranked = model.added.is_empty().then(|| crawling::ranked(&setting, polarity, hint));
+        let is_first = setting.candidates[polarity].is_alignment() || model.added.is_empty();
+        let ranked = is_first.then(|| crawling::ranked(&setting, polarity, hint));
         let projected = model.lineup.beyond(&model.added);
         let rival = best.map_or(0.0, |candidate| projected.score(candidate).statistic);
         // Linearised about a fit without polarities; what is better than chance has more.
-        let least = crawling::least_evidence(&setting, model.added.len());
+        let least = crawling::least_evidence(&setting, polarity, model.added.len());
         Ok((if hint >= least && hint > rival { Some(polarity) } else { best }, ranked))
     }
 

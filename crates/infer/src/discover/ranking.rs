@@ -8,6 +8,9 @@ use super::result::{Fate, Ranked};
 use super::steps::Setting;
 use voronudge_model::Effect;
 
+/// Why it is no question whether polarities align.
+const NO_POLARITY: &str = "no polarity was found that could align";
+
 /// All candidates, the smallest p first; those that cannot be tested at the end.
 pub(super) struct Ranking {
     pub candidates: Vec<Ranked>,
@@ -27,6 +30,9 @@ impl Ranking {
                 return untested(effect, Fate::NotTestable(reason));
             }
             let score = projected.score(k);
+            if candidate.is_alignment() {
+                return untested(effect, Fate::NotTestable(NO_POLARITY));
+            }
             if score.dimension == 0 {
                 return untested(effect, Fate::Absorbed);
             }
@@ -53,6 +59,15 @@ impl Ranking {
         candidates
             .sort_by(|a, b| a.p.total_cmp(&b.p).then(per_coefficient(b).total_cmp(&per_coefficient(a))));
         Self { candidates, single_p }
+    }
+
+    /// Scores beside another fit. What is known of states of the cells stays.
+    pub fn renew(&mut self, setting: &Setting<'_>, lineup: &Lineup) {
+        let known = std::mem::replace(self, Self::new(setting, lineup)).candidates;
+        known
+            .into_iter()
+            .filter(|own| own.effect.is_state() && own.dimension > 0)
+            .for_each(|own| self.put(own));
     }
 
     /// Puts in what is known of a candidate by another test than the score.

@@ -88,10 +88,14 @@ impl Setting<'_> {
     fn request(&self, added: &[usize]) -> Request {
         let base = &self.search.fit;
         let structure = added_places(&base.structure, self.candidates, added).structure;
-        let crawls = added.iter().any(|candidate| self.candidates[*candidate].is_polarity());
+        let any = |of: fn(&Candidate) -> bool| added.iter().any(|candidate| of(&self.candidates[*candidate]));
         Request {
             structure,
-            activity: if crawls { Activity::Polarity } else { base.activity },
+            activity: match (any(Candidate::is_polarity), any(Candidate::is_alignment)) {
+                (true, false) => Activity::Polarity,
+                (_, true) => Activity::Alignment,
+                (false, false) => base.activity,
+            },
             // That of tracks is part of their fit.
             cross_validation: match self.movie {
                 Some(_) => base.cross_validation,
@@ -207,12 +211,16 @@ impl Setting<'_> {
         Ok(scores.get(chosen).map(|(candidate, _)| *candidate))
     }
 
-    /// The polarity of cells, if it is a candidate.
-    pub fn polarity(&self) -> Option<usize> {
-        self.candidates.iter().position(|own| own.is_polarity() && own.columns.is_ok())
+    /// What may be next of the polarity of cells: that they have one, or, if they have, that it aligns.
+    pub fn of_polarity(&self, model: &Model) -> Option<usize> {
+        let has_one = model.added.iter().any(|candidate| self.candidates[*candidate].is_polarity());
+        let is_next =
+            |own: &Candidate| if has_one { own.is_alignment() } else { own.is_polarity() && !has_one };
+        self.candidates.iter().position(|own| is_next(own) && own.columns.is_ok())
     }
 
-    /// By how much −2 log L falls at least if the cells of a model crawl: an approximation. Zero if there are no tracks.
+    /// By how much −2 log L falls at least if the cells of a model crawl, or, if they do, align: an approximation. Zero if there are no
+    /// tracks.
     pub fn hint_of_polarity(&self, model: &Model) -> Result<f64, Error> {
         match (self.movie, &model.followed) {
             (Some(movie), Some(followed)) => followed.hint_of_polarity(movie, &model.request, &model.space),

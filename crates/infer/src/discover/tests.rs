@@ -2,7 +2,7 @@
 
 use super::candidate::{candidates, candidates_of_tracks};
 use super::steps::Setting;
-use super::{Fate, Search, Verdict, discover, discover_in_tracks};
+use super::{Discovery, Fate, Search, Verdict, discover, discover_in_tracks};
 use crate::coefficients::PREFERRED_AREA;
 use crate::sample::observation;
 use crate::search::Watch;
@@ -12,6 +12,7 @@ use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 use voronudge_model::{Effect, Structure};
+use voronudge_simulate::Driving;
 
 fn search(effects: &[&str]) -> Search {
     let fit = Request {
@@ -105,7 +106,8 @@ fn the_score_is_that_of_the_dense_problem() {
 #[test]
 fn tracks_tell_whether_cells_crawl() {
     let filmed = Filmed { size: [100, 5], step: 0.1, error: 0.01, seed: 5 };
-    let mut search = search(&["polarity", "persistence", "drift", "alpha_area", "nematic_stress"]);
+    let mut search =
+        search(&["polarity", "polarity_alignment", "persistence", "drift", "alpha_area", "nematic_stress"]);
     search.fit.noise = KnownNoise::default();
     search.fit.cross_validation = CrossValidation::Done;
     search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
@@ -116,11 +118,15 @@ fn tracks_tell_whether_cells_crawl() {
     assert_eq!((polarity.effect.id, found.verdict), ("polarity", Verdict::Attributed));
     assert!(polarity.coefficients[0].covers(speed), "{polarity:?} {speed}");
     assert!(found.predicts_better() && found.after.tracked.is_some());
+    let fate_in = |found: &Discovery, id: &str| {
+        found.ranking.iter().find(|own| own.effect.id == id).map(|own| own.fate)
+    };
+    assert_eq!(fate_in(&found, "polarity_alignment"), Some(Fate::BelowThreshold));
     let passive = discover_in_tracks(&filmed.movie().0, &search, &mut silent).unwrap();
     assert!(passive.selected.iter().all(|own| own.effect.id != "polarity"));
-    let fate = |id: &str| passive.ranking.iter().find(|own| own.effect.id == id).map(|own| own.fate);
-    assert_eq!(fate("polarity"), Some(Fate::BelowThreshold));
-    assert!(matches!(fate("persistence"), Some(Fate::NotTestable(_))));
+    assert_eq!(fate_in(&passive, "polarity"), Some(Fate::BelowThreshold));
+    assert!(matches!(fate_in(&passive, "polarity_alignment"), Some(Fate::NotTestable(_))));
+    assert!(matches!(fate_in(&passive, "persistence"), Some(Fate::NotTestable(_))));
 }
 
 /// The score of a candidate beside tracks is by how much the objective of the fit with it is less.
@@ -145,4 +151,21 @@ fn the_score_beside_tracks_is_that_of_a_refit() {
         (coefficient - refitted.value).abs() < 0.2 * refitted.standard_error,
         "{coefficient} {refitted:?}"
     );
+}
+
+/// Cells that turn towards their neighbours. So few of them have much of their motion in common, which a drift is as well: that is not asked.
+#[test]
+fn tracks_tell_whether_polarities_align() {
+    let filmed = Filmed { size: [144, 6], step: 0.15, error: 0.01, seed: 7 };
+    let mut search = search(&["polarity", "polarity_alignment", "alpha_area", "nematic_stress"]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Done;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let driving = Driving { speed: 1.0, rotational_diffusion: 1.0, alignment: 3.0, ..Driving::default() };
+    let (movie, [_, unit, _]) = filmed.movie_of_driven(driving);
+    let found = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())).unwrap();
+    let [polarity, alignment] = found.selected.as_slice() else { panic!("{:?}", found.ranking) };
+    assert_eq!((polarity.effect.id, alignment.effect.id), ("polarity", "polarity_alignment"));
+    assert_eq!(found.verdict, Verdict::Attributed);
+    assert!(alignment.coefficients[0].covers(3.0 * unit), "{alignment:?} {unit}");
 }

@@ -47,7 +47,7 @@ impl<'a, 'w> Begun<'a, 'w> {
             position: position.unwrap_or(FIRST_POSITION_NOISE),
             velocity: FIRST_VELOCITY_NOISE.max(velocity.unwrap_or(SMALLEST_VELOCITY_NOISE)),
         };
-        let memory = (states.polarities.count() > 0).then_some(Memory::FIRST);
+        let memory = (states.polarities.count() > 0).then(|| Memory::first(states.polarities.align()));
         let mut course = Course::new(movie, request, space, watch, (Rule::Trapezoid, first, memory));
         let naive = naive_coefficients(&course.objective(states))?;
         let at = match course.memory {
@@ -74,6 +74,11 @@ impl<'a, 'w> Begun<'a, 'w> {
         (earlier, at): (&Fit, Vec<f64>),
     ) -> Result<Self, Error> {
         let Fit { rule, levels, memory, .. } = *earlier;
+        let memory = memory.map(|memory| match (states.polarities.align(), memory.alignment > 0.0) {
+            (true, false) => Memory { alignment: Memory::first(true).alignment, ..memory },
+            (false, true) => Memory { alignment: 0.0, ..memory },
+            _ => memory,
+        });
         let mut course = Course::new(movie, request, space, watch, (rule, levels, memory));
         let naive = naive_coefficients(&course.objective(states))?;
         let at = course.approach(states, at)?;

@@ -88,17 +88,23 @@ impl Followed {
         Ok(optimum.value / levels.velocity.powi(2))
     }
 
-    /// By how much −2 log L falls at most, of a few polarities, if cells that do not crawl in this fit were to crawl: a fit of its own would
-    /// gain more where there is one, and little where there is none.
+    /// By how much −2 log L falls at most, of a few polarities, if cells that do not crawl in this fit were to crawl, or if those of cells that
+    /// do were to align: a fit of its own would gain more where there is something, and little where there is nothing.
     pub fn hint_of_polarity(
         &self,
         movie: &Movie,
         request: &Request,
         space: &CoefficientSpace,
     ) -> Result<f64, Error> {
-        let states = self.fit.states.clone().crawling(movie, BASE);
         let levels = self.fit.levels;
-        let memory = Some(Memory { speed: levels.velocity, ..Memory::FIRST });
+        let (states, memory) = match self.fit.memory {
+            None => (
+                self.fit.states.clone().crawling(movie, BASE),
+                Memory { speed: levels.velocity, ..Memory::FIRST },
+            ),
+            Some(memory) => (self.fit.states.clone().aligning(), memory),
+        };
+        let memory = Some(memory);
         let objective =
             MovieObjective { states: &states, memory, ..self.objective(movie, &request.structure, space) };
         let mut at = self.fit.parameters.clone();

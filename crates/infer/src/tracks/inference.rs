@@ -60,8 +60,11 @@ pub(crate) fn follow(
 ) -> Result<(Inference, Followed), Error> {
     let space = request.space()?;
     let mut states = States::new(movie)?;
-    if request.activity == Activity::Polarity {
+    if request.activity != Activity::None {
         states = states.crawling(movie, BASE);
+    }
+    if request.activity == Activity::Alignment {
+        states = states.aligning();
     }
     let (explained, required) = (states.motions.len(), 2 * space.dimension() + 2);
     if explained < required {

@@ -3,24 +3,27 @@
 use super::memory::{Memory, NONE};
 use super::objective::MovieObjective;
 use super::states::States;
-use super::surface::{CLOSE, ENOUGH, POINTS, Surface};
+use super::surface::{CLOSE, ENOUGH, Matrix, POINTS, Point, Surface};
 use crate::noise::{
     LARGEST_POSITION_NOISE, Likelihood, Restricted, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE,
 };
 use crate::normal_equations::NormalEquations;
 use crate::{Error, KnownNoise, NoiseLevels};
-use nalgebra::{Matrix3, Vector3};
 use voronudge_geometry::Vector;
 
 /// x and log σ_v²/σ_p²: at least and at most.
-const TIMES: [f64; 2] = [1e-4, 20.0];
-const RATIO: [f64; 2] = [-9.0, 6.0];
+pub(super) const TIMES: [f64; 2] = [1e-4, 20.0];
+pub(super) const RATIO: [f64; 2] = [-9.0, 6.0];
 
 /// The likelihood is a function of log (x + c): what lasts far longer than a movie is one and the same.
 const LASTING: f64 = 0.01;
 
-/// Spacings of log k, log (x + c) and the log of the ratio at which the likelihood is looked at.
-const SPACINGS: [f64; 3] = [1.0, 0.5, 1.0];
+/// J T: at least and at most; the likelihood is a function of log (J T + c).
+const ALIGNMENT: [f64; 2] = [0.0, 5.0];
+const SLOW: f64 = 0.02;
+
+/// Spacings of log k, log (x + c), the log of the ratio and log (J T + c) at which the likelihood is looked at.
+const SPACINGS: [f64; 4] = [1.0, 0.5, 1.0, 0.5];
 
 /// Quantile of the normal distribution for intervals of 95 %, and the square of it.
 const QUANTILE: f64 = 1.959_963_984_540_054;
@@ -30,13 +33,12 @@ const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
 const BROAD: f64 = 0.5;
 const BISECTIONS: usize = 8;
 
-/// x and log σ_v²/σ_p² of polarities that are tried before any is fitted.
-const HINTS_OF_TIMES: [f64; 2] = [0.05, 0.5];
-const HINTS_OF_RATIO: [f64; 3] = [4.0, 2.0, 0.5];
-
 /// Steps in log k towards the noise levels of cells that do not crawl, and how many are looked at.
 const STEP_OF_K: f64 = 0.7;
 const FURTHER: u32 = 11;
+
+/// Steps towards the likeliest noise levels and memory of cells that do not align.
+const ROUNDS_WITHOUT: usize = 5;
 
 /// A step that leads to less likely levels is made shorter by this factor, so many times; then none is taken.
 const SHORTER: f64 = 0.3;
@@ -58,7 +60,20 @@ pub struct Polarity {
     pub rate_interval: Option<[f64; 2]>,
     /// Correlation of the mean polarity of an interval with that of the next.
     pub correlation: f64,
+    /// How cells align, if that was asked for.
+    pub alignment: Option<Alignment>,
     /// By how much −2 log L, restricted, falls from none to this one: at most χ² with two degrees of freedom if there is none.
+    pub evidence: f64,
+}
+
+/// How the polarities of neighbours align, in the units of the movie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Alignment {
+    /// J, at which a cell with six neighbours takes on their mean polarity.
+    pub rate: f64,
+    /// Its 95 % interval.
+    pub interval: [f64; 2],
+    /// By how much −2 log L, restricted, falls from none to this one.
     pub evidence: f64,
 }
 
@@ -72,10 +87,12 @@ fn of_times(x: f64) -> f64 {
 pub(super) struct Likely {
     pub levels: NoiseLevels,
     pub memory: Memory,
-    /// Covariance of log k, log (x + c) and the log of the ratio.
-    covariance: Matrix3<f64>,
+    /// −2 log L there.
+    criterion: f64,
+    /// Covariance of log k, log (x + c), the log of the ratio and log (J T + c).
+    covariance: Matrix,
     /// Derivatives of log σ_v² by these, and its variance at given ones.
-    of_variance: (Vector3<f64>, f64),
+    of_variance: (Point, f64),
     /// For the next round.
     pub looked: Looked,
 }
@@ -83,7 +100,7 @@ pub(super) struct Likely {
 /// −2 log of the likelihood and log σ_v² about a point, in units of the spacings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Looked {
-    at: Vector3<f64>,
+    at: Point,
     criterion: Surface,
     log_variance: Surface,
 }
@@ -106,18 +123,27 @@ impl MovieObjective<'_> {
             self.levels.spring().ln(),
             within(of_times(memory.times), TIMES.map(of_times), SPACINGS[1]),
             within(ratio, RATIO, SPACINGS[2]),
+            within(of_alignment(memory.alignment), ALIGNMENT.map(of_alignment), 0.0),
         ];
-        let at = |point: [f64; 3]| {
-            let [log_k, times, ratio] = [0, 1, 2].map(|k| centre[k] + point[k] * SPACINGS[k]);
-            [log_k, times_of(times), ratio.clamp(RATIO[0], RATIO[1]).exp()]
+        let align = self.states.polarities.align();
+        let at = |point: [f64; 4]| {
+            let [log_k, times, ratio, alignment] = [0, 1, 2, 3].map(|k| centre[k] + point[k] * SPACINGS[k]);
+            let alignment = if align { alignment_of(alignment) } else { 0.0 };
+            [log_k, times_of(times), ratio.clamp(RATIO[0], RATIO[1]).exp(), alignment]
         };
-        let points: Vec<Vector3<f64>> = match earlier {
+        let points: Vec<Point> = match earlier {
             None => POINTS.iter().map(|point| (*point).into()).collect(),
-            Some(_) => POINTS[..ENOUGH].iter().map(|point| Vector3::from(*point) * CLOSE).collect(),
+            Some(_) => POINTS[..ENOUGH].iter().map(|point| Point::from(*point) * CLOSE).collect(),
         };
-        let values = equations
-            .each(&points, |point| self.likelihood(equations, components, known, at((*point).into())))?;
-        let at_centre = Vector3::from_fn(|k, _| centre[k] / SPACINGS[k]);
+        // Points that differ in an alignment alone that is none are one.
+        let own = |point: &Point| if align { *point } else { Point::new(point[0], point[1], point[2], 0.0) };
+        let first = |point: &Point| points.iter().position(|other| *other == own(point)).unwrap_or(0);
+        let needed: Vec<usize> = (0..points.len()).filter(|k| first(&points[*k]) == *k).collect();
+        let found = equations
+            .each(&needed, |k| self.likelihood(equations, components, known, at(points[*k].into())))?;
+        let value = |point: &Point| found[needed.binary_search(&first(point)).unwrap_or(0)];
+        let values: Vec<Likelihood> = points.iter().map(value).collect();
+        let at_centre = Point::from_fn(|k, _| centre[k] / SPACINGS[k]);
         let criteria: Vec<f64> = values.iter().map(|own| own.criterion).collect();
         let variances: Vec<f64> = values.iter().map(|own| own.variance.ln()).collect();
         let (criterion, log_variance) = match earlier {
@@ -127,7 +153,7 @@ impl MovieObjective<'_> {
                 Surface::again(&variances, log_variance.bend),
             ),
         };
-        let held = [known.position.is_some() && known.velocity.is_some(), false, false];
+        let held = [known.position.is_some() && known.velocity.is_some(), false, false, !align];
         let mut step = criterion.newton(held);
         let mut reached = self.likelihood(equations, components, known, at(step.into()))?;
         for shorter in 1..=SHORTENINGS {
@@ -137,19 +163,23 @@ impl MovieObjective<'_> {
             step *= if shorter == SHORTENINGS { 0.0 } else { SHORTER };
             reached = self.likelihood(equations, components, known, at(step.into()))?;
         }
-        let [log_k, times, ratio] = at(step.into());
+        let [log_k, times, ratio, alignment] = at(step.into());
         let velocity = known.velocity.unwrap_or(reached.variance.sqrt()).max(SMALLEST_VELOCITY_NOISE);
         let position = known.position.unwrap_or_else(|| {
             (velocity / (0.5 * log_k).exp()).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)
         });
-        let found = Memory { times, speed: velocity / ratio.sqrt(), ..memory };
-        let scales = Matrix3::from_diagonal(&Vector3::from(SPACINGS));
-        let slope = Vector3::from_fn(|k, _| {
-            if known.velocity.is_some() { 0.0 } else { log_variance.slope[k] / SPACINGS[k] }
-        });
+        let found = Memory { times, speed: velocity / ratio.sqrt(), alignment, ..memory };
+        let scales = Matrix::from_diagonal(&Point::from(SPACINGS));
+        let slope =
+            Point::from_fn(
+                |k, _| {
+                    if known.velocity.is_some() { 0.0 } else { log_variance.slope[k] / SPACINGS[k] }
+                },
+            );
         let likely = Likely {
             levels: NoiseLevels { position, velocity },
             memory: found,
+            criterion: reached.criterion,
             covariance: scales * criterion.covariance(held) * scales,
             of_variance: (slope, 2.0 / components),
             looked: Looked { at: at_centre, criterion, log_variance },
@@ -157,21 +187,21 @@ impl MovieObjective<'_> {
         Ok(likely)
     }
 
-    /// The likelihood at some log k, x and σ_v²/σ_p².
-    fn likelihood(
+    /// The likelihood at some log k, x, σ_v²/σ_p² and J T.
+    pub(super) fn likelihood(
         &self,
         equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
-        [log_k, times, ratio]: [f64; 3],
+        [log_k, times, ratio, alignment]: [f64; 4],
     ) -> Result<Likelihood, Error> {
-        let memory = self.memory.unwrap_or(Memory::FIRST);
         let speed = self.levels.velocity / ratio.sqrt();
-        let objective = MovieObjective { memory: Some(Memory { times, speed, ..memory }), ..*self };
+        let memory = Memory { times, speed, alignment, ..self.memory.unwrap_or(Memory::FIRST) };
+        let objective = MovieObjective { memory: Some(memory), ..*self };
         let held = objective.held();
         let own = Restricted { equations, components, known, held: Some(&held) }.likelihood(log_k)?;
         let of_lengths = ratio / self.movie.interval().powi(2);
-        let determinant = self.states.polarities.log_determinant(times, of_lengths, memory.free);
+        let determinant = self.states.polarities.log_determinant(memory, of_lengths)?;
         Ok(Likelihood { criterion: own.criterion - determinant, ..own })
     }
 
@@ -198,12 +228,19 @@ impl MovieObjective<'_> {
         let Likely { covariance, of_variance: (of_variance, further), .. } =
             self.likely(equations, components, known, None)?;
         let interval = self.movie.interval();
-        let own = memory.root_mean_square();
+        let root_mean_square = |memory: Memory| -> Result<f64, Error> {
+            Ok(memory.root_mean_square() * self.states.polarities.mean_variance(memory)?.sqrt())
+        };
+        let own = root_mean_square(memory)?;
         let log_times = of_times(memory.times);
         let longer = Memory { times: times_of(log_times + STEP), ..memory };
         let mut slope = 0.5 * of_variance;
-        slope[1] += (longer.root_mean_square() / own).ln() / STEP;
+        slope[1] += (root_mean_square(longer)? / own).ln() / STEP;
         slope[2] -= 0.5;
+        if self.states.polarities.align() {
+            let aligned = Memory { alignment: alignment_of(of_alignment(memory.alignment) + STEP), ..memory };
+            slope[3] += (root_mean_square(aligned)? / own).ln() / STEP;
+        }
         let spread = QUANTILE * (slope.dot(&(covariance * slope)) + 0.25 * further).max(0.0).sqrt();
         let speed_interval = match spread < BROAD {
             true => [own * (-spread).exp(), own * spread.exp()],
@@ -219,25 +256,46 @@ impl MovieObjective<'_> {
             rate_interval: (speed_interval[0] > 0.0)
                 .then(|| [slowest.max(0.0) / interval, fastest.min(TIMES[1]) / interval]),
             correlation: memory.correlation(),
+            alignment: self.alignment(equations, components, known, covariance[(3, 3)])?,
             evidence,
         }))
     }
 
-    /// By how much −2 log L falls at most from no polarity to one of a few, at the present k.
-    pub(super) fn hint(
+    /// How the cells align at a fit, with the variance of log (J T + c).
+    fn alignment(
         &self,
         equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
-    ) -> Result<f64, Error> {
-        let log_k = self.levels.spring().ln();
-        let at = |times: f64, ratio: f64| -> Result<f64, Error> {
-            Ok(self.likelihood(equations, components, known, [log_k, times, ratio.exp()])?.criterion)
-        };
-        let tried = HINTS_OF_TIMES.iter().flat_map(|times| HINTS_OF_RATIO.map(|ratio| (*times, ratio)));
-        let points: Vec<(f64, f64)> = std::iter::once((HINTS_OF_TIMES[0], RATIO[1])).chain(tried).collect();
-        let values = equations.each(&points, |(times, ratio)| at(*times, *ratio))?;
-        Ok(values[0] - values.iter().copied().fold(f64::INFINITY, f64::min))
+        variance: f64,
+    ) -> Result<Option<Alignment>, Error> {
+        let Some(memory) = self.memory.filter(|_| self.states.polarities.align()) else { return Ok(None) };
+        let interval = self.movie.interval();
+        let point = [
+            self.levels.spring().ln(),
+            memory.times,
+            (self.levels.velocity / memory.speed).powi(2),
+            memory.alignment,
+        ];
+        let with = self.likelihood(equations, components, known, point)?.criterion;
+        // The likeliest of cells that do not align.
+        let apart = States { polarities: self.states.polarities.clone().apart(), ..self.states.clone() };
+        let mut without =
+            MovieObjective { states: &apart, memory: Some(Memory { alignment: 0.0, ..memory }), ..*self };
+        let (mut looked, mut least) = (None, f64::INFINITY);
+        for _ in 0..ROUNDS_WITHOUT {
+            let likely = without.likely(equations, components, known, looked)?;
+            looked = Some(likely.looked);
+            least = least.min(likely.criterion);
+            without = MovieObjective { levels: likely.levels, memory: Some(likely.memory), ..without };
+        }
+        let error = QUANTILE * variance.max(0.0).sqrt();
+        let log = of_alignment(memory.alignment);
+        Ok(Some(Alignment {
+            rate: memory.alignment / interval,
+            interval: [-error, error].map(|aside| alignment_of(log + aside) / interval),
+            evidence: (least - with).max(0.0),
+        }))
     }
 
     /// By how much −2 log L falls from no polarity at all, with the noise levels that are then likeliest, to the present one.
@@ -249,7 +307,14 @@ impl MovieObjective<'_> {
         memory: Memory,
     ) -> Result<f64, Error> {
         let at = |log_k: f64, ratio: f64| -> Result<f64, Error> {
-            Ok(self.likelihood(equations, components, known, [log_k, memory.times, ratio.exp()])?.criterion)
+            Ok(self
+                .likelihood(
+                    equations,
+                    components,
+                    known,
+                    [log_k, memory.times, ratio.exp(), memory.alignment],
+                )?
+                .criterion)
         };
         let own = self.levels.spring().ln();
         let with = at(own, 2.0 * (self.levels.velocity / memory.speed).ln())?;
@@ -281,7 +346,7 @@ impl MovieObjective<'_> {
         let own = 2.0 * (self.levels.velocity / memory.speed).ln();
         // −2 log L and the multiple of v₀ at some log σ_v²/σ_p².
         let at = |ratio: f64| -> Result<(f64, f64), Error> {
-            let point = [self.levels.spring().ln(), memory.times, ratio.exp()];
+            let point = [self.levels.spring().ln(), memory.times, ratio.exp(), memory.alignment];
             let Likelihood { criterion, variance } = self.likelihood(equations, components, known, point)?;
             Ok((criterion, (variance / ratio.exp()).sqrt() / memory.speed))
         };
@@ -304,4 +369,14 @@ impl MovieObjective<'_> {
 /// x for what stands for it.
 fn times_of(log: f64) -> f64 {
     (log.exp() - LASTING).clamp(TIMES[0], TIMES[1])
+}
+
+/// What stands for J T in the likelihood.
+fn of_alignment(alignment: f64) -> f64 {
+    (alignment + SLOW).ln()
+}
+
+/// J T for what stands for it.
+fn alignment_of(log: f64) -> f64 {
+    (log.exp() - SLOW).clamp(ALIGNMENT[0], ALIGNMENT[1])
 }

@@ -14,14 +14,19 @@
 //! σ_u, τ and both noise levels follow together from the restricted likelihood. Errors of positions cannot pose as memory, because they are in the
 //! same fit: they make successive displacements *anti*-correlated.
 
+use super::alignment::Ties;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::states::{Instant, Motion};
+use crate::Error;
 use crate::linearisation::Held;
 use crate::stiffness::Stiffness;
 
 /// Marks a cell without a polarity.
 pub(super) const NONE: u32 = u32::MAX;
+
+/// How often cells take on the polarity of their neighbours in an interval, at first.
+const FIRST_ALIGNMENT: f64 = 0.1;
 
 /// How the polarity of a cell goes on.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,13 +37,20 @@ pub(crate) struct Memory {
     pub speed: f64,
     /// Which share of the variance of first polarities is independent of where the cells are.
     pub free: f64,
+    /// J T: how often in the usual interval a cell takes on the polarity of its neighbours; zero if it does not.
+    pub alignment: f64,
 }
 
 impl Memory {
     /// Before anything is known.
-    pub const FIRST: Self = Self { times: 0.1, speed: 0.5, free: 1.0 };
+    pub const FIRST: Self = Self { times: 0.1, speed: 0.5, free: 1.0, alignment: 0.0 };
 
-    /// v₀, the root mean square of the polarity.
+    /// Before anything is known, of cells that may align or do not.
+    pub fn first(align: bool) -> Self {
+        Self { alignment: if align { FIRST_ALIGNMENT } else { 0.0 }, ..Self::FIRST }
+    }
+
+    /// v₀, the root mean square of the polarity of cells that do not align.
     pub fn root_mean_square(self) -> f64 {
         let half = 0.5 * self.times;
         self.speed * 2.0_f64.sqrt() * half / half.tanh()
@@ -56,7 +68,10 @@ impl Memory {
 
     /// How far two are from each other.
     pub fn change(self, other: Self) -> f64 {
-        ((-self.times).exp() - (-other.times).exp()).abs() + (self.speed / other.speed).ln().abs()
+        let gone = |x: f64, y: f64| ((-x).exp() - (-y).exp()).abs();
+        gone(self.times, other.times)
+            + gone(self.alignment, other.alignment)
+            + (self.speed / other.speed).ln().abs()
     }
 }
 
@@ -67,12 +82,14 @@ pub(crate) struct Polarities {
     pub block: Vec<Vec<u32>>,
     /// First block.
     first: usize,
+    /// The neighbours of each in its frame.
+    pub(super) ties: Ties,
     /// The first ones of the tracks.
     pub firsts: Vec<First>,
     /// Number of the terms on which first polarities are regressed: the first ones of the model. Their γ stand behind (see [`super::outset`]).
     pub terms: usize,
     /// The time since the polarity before of the same cell, in usual intervals; one for each block.
-    since: Vec<Option<f64>>,
+    pub(super) since: Vec<Option<f64>>,
 }
 
 /// The first polarity of a track.
@@ -113,7 +130,7 @@ impl Polarities {
                 before = Some(time);
             }
         }
-        Self { block, first, firsts, since, terms }
+        Self { block, first, firsts, since, terms, ties: Ties::new() }
     }
 
     /// Number of polarities.
@@ -138,10 +155,13 @@ impl Polarities {
     }
 
     /// Adds how they hold each other, with σ_v²/σ_u².
-    fn hold(&self, times: f64, ratio: f64, stiffness: &mut Stiffness) {
+    fn hold(&self, memory: Memory, ratio: f64, stiffness: &mut Stiffness) {
+        if self.align() {
+            return self.hold_aligned(memory, ratio, stiffness);
+        }
         for (since, block) in self.since.iter().zip(self.first..) {
             let Some(since) = since else { continue };
-            let (own, rho) = innovation(*since, times);
+            let (own, rho) = innovation(*since, memory.times);
             stiffness.of_blocks[block] += ratio * own;
             stiffness.of_blocks[block - 1] += ratio * own * rho * rho;
             stiffness.couplings.push((block as u32, block as u32 - 1, ratio * own * rho));
@@ -149,14 +169,18 @@ impl Polarities {
     }
 
     /// −log det of the covariance of all polarities, in units of σ_v².
-    pub fn log_determinant(&self, times: f64, ratio: f64, free: f64) -> f64 {
-        let of = |since: &Option<f64>| since.map_or(1.0 / free, |since| innovation(since, times).0);
-        self.since.iter().map(|since| 2.0 * (ratio * of(since)).ln()).sum()
+    pub fn log_determinant(&self, memory: Memory, ratio: f64) -> Result<f64, Error> {
+        let later = self.since.iter().flatten().map(|since| 2.0 * innovation(*since, memory.times).0.ln());
+        let firsts = match self.align() {
+            true => self.log_determinant_of_firsts(memory)?,
+            false => -2.0 * self.firsts.len() as f64 * memory.free.ln(),
+        };
+        Ok(2.0 * self.count() as f64 * ratio.ln() + later.sum::<f64>() + firsts)
     }
 }
 
 /// `1/(1 − ρ²)` and ρ of a polarity after so long.
-fn innovation(since: f64, times: f64) -> (f64, f64) {
+pub(super) fn innovation(since: f64, times: f64) -> (f64, f64) {
     let rho = (-times * since).exp();
     (1.0 / (1.0 - rho * rho), rho)
 }
@@ -171,7 +195,7 @@ impl MovieObjective<'_> {
         let mut stiffness = Stiffness { of_blocks, couplings: Vec::new() };
         if let Some(memory) = self.memory {
             stiffness.of_blocks[own].fill(0.0);
-            self.states.polarities.hold(memory.times, self.ratio(memory), &mut stiffness);
+            self.states.polarities.hold(memory, self.ratio(memory), &mut stiffness);
         }
         stiffness
     }
@@ -209,9 +233,12 @@ mod tests {
         };
         let polarities =
             Polarities { since: TIMES.iter().flat_map(|own| since(own)).collect(), ..Polarities::default() };
+        let first = |block: usize| First { frame: 0, cell: 0, block };
+        let polarities = Polarities { firsts: vec![first(0), first(TIMES[0].len())], ..polarities };
         let count = polarities.count();
         let mut stiffness = Stiffness { of_blocks: vec![0.0; count], couplings: Vec::new() };
-        polarities.hold(times, ratio, &mut stiffness);
+        let memory = Memory { times, speed: 1.0, free, alignment: 0.0 };
+        polarities.hold(memory, ratio, &mut stiffness);
         // The first ones are held to what is expected of them.
         polarities.since.iter().enumerate().filter(|(_, since)| since.is_none()).for_each(|(block, _)| {
             stiffness.of_blocks[block] += ratio / free;
@@ -234,7 +261,7 @@ mod tests {
         });
         assert!((&precision * &covariance - DMatrix::identity(count, count)).amax() < 1e-12);
         let expected = 2.0 * precision.determinant().ln();
-        assert!((polarities.log_determinant(times, ratio, free) - expected).abs() < 1e-10);
+        assert!((polarities.log_determinant(memory, ratio).unwrap() - expected).abs() < 1e-10);
     }
 
     /// Means over intervals of what is interpolated between the polarities at frames are correlated as those of the process, and the speed
@@ -242,7 +269,7 @@ mod tests {
     #[test]
     fn means_over_intervals_are_those_of_the_process() {
         for times in [1e-4, 0.02, 0.5, 2.0] {
-            let memory = Memory { times, speed: 0.7, free: 1.0 };
+            let memory = Memory { times, speed: 0.7, ..Memory::FIRST };
             let rho = (-times).exp();
             // Of (u_0 + u_1)/2 with (u_1 + u_2)/2, σ_u = 1.
             let neighbours = 0.25 * (1.0 + 2.0 * rho + rho * rho);
@@ -252,7 +279,7 @@ mod tests {
             let own = memory.speed * memory.speed * neighbours;
             assert!((own / of_process - 1.0).abs() < 1e-6, "{times}: {own} {of_process}");
         }
-        let correlation = |times: f64| Memory { times, speed: 1.0, free: 1.0 }.correlation();
+        let correlation = |times: f64| Memory { times, speed: 1.0, ..Memory::FIRST }.correlation();
         assert!((correlation(9.99e-4) - correlation(1.001e-3)).abs() < 1e-5);
         assert!(correlation(1e-4) > 0.999 && correlation(20.0) < 0.03);
     }

@@ -7,6 +7,7 @@
 //! Positions x of the cells at the frames are unknowns. What moves a cell from one frame to the next is the integral of the model's
 //! velocities along its way, so that no velocity is ever derived from positions. The problem has the form of the nudged fit of snapshots and is solved by the same means.
 
+mod alignment;
 mod anchors;
 mod begun;
 mod beside;
@@ -14,6 +15,7 @@ mod ends;
 mod first;
 mod fit;
 mod held_out;
+mod hint;
 mod inference;
 mod join;
 mod likely;
@@ -43,7 +45,7 @@ mod turn;
 pub(crate) use beside::Beside;
 pub use inference::infer_tracks;
 pub(crate) use inference::{Followed, follow};
-pub use likely::Polarity;
+pub use likely::{Alignment, Polarity};
 pub use measurement::measure_tracks;
 pub use missed::{Latent, complete_tracks};
 pub use movie::{Drift, Movie, Sighting, Track};

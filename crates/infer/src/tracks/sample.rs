@@ -79,9 +79,13 @@ impl Filmed {
 
     /// The same of cells that crawl, as a movie; K_P α, v₀ and D_r in its units.
     pub fn movie_of_crawling(&self, speed: f64, rotational_diffusion: f64) -> (Movie, [f64; 3]) {
-        let driving = Driving { speed, rotational_diffusion, ..Driving::default() };
+        self.movie_of_driven(Driving { speed, rotational_diffusion, ..Driving::default() })
+    }
+
+    /// The same of cells that are driven in any way.
+    pub fn movie_of_driven(&self, driving: Driving) -> (Movie, [f64; 3]) {
         let (movie, unit) = self.movie_of(Point::Site, driving);
-        (movie, [TRUTH[1], speed, rotational_diffusion].map(|own| own * unit))
+        (movie, [TRUTH[1], driving.speed, driving.rotational_diffusion].map(|own| own * unit))
     }
 
     /// The same as a movie whose velocities are of order one, and K_P α.

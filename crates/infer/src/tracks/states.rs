@@ -164,6 +164,11 @@ impl States {
         Self { polarities, ..self }
     }
 
+    /// The same with polarities that may align with those of the neighbours.
+    pub fn aligning(self) -> Self {
+        Self { polarities: self.polarities.aligning(&self.instants), ..self }
+    }
+
     /// The polarity of a cell at both ends of its motion.
     pub fn polarity(&self, motion: &Motion) -> Option<[usize; 2]> {
         let block = |end: usize| {

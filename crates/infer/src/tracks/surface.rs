@@ -1,41 +1,54 @@
 //! A likelihood to second order about a point.
 
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{SMatrix, SVector};
+
+/// How many it is a function of.
+const UNKNOWNS: usize = 4;
+pub(super) type Point = SVector<f64, UNKNOWNS>;
+pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
 /// Steps of each unknown at most, in spacings.
 const FURTHEST: f64 = 2.0;
 
 /// The points at which the likelihood is looked at, in spacings. The first few are enough where it is known how it bends.
-pub(super) const POINTS: [[f64; 3]; 10] = [
-    [0.0, 0.0, 0.0],
-    [1.0, 0.0, 0.0],
-    [0.0, 1.0, 0.0],
-    [0.0, 0.0, 1.0],
-    [-1.0, 0.0, 0.0],
-    [0.0, -1.0, 0.0],
-    [0.0, 0.0, -1.0],
-    [1.0, 1.0, 0.0],
-    [1.0, 0.0, 1.0],
-    [0.0, 1.0, 1.0],
+pub(super) const POINTS: [[f64; UNKNOWNS]; 15] = [
+    [0.0, 0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0, 0.0],
+    [0.0, 0.0, 1.0, 0.0],
+    [0.0, 0.0, 0.0, 1.0],
+    [-1.0, 0.0, 0.0, 0.0],
+    [0.0, -1.0, 0.0, 0.0],
+    [0.0, 0.0, -1.0, 0.0],
+    [0.0, 0.0, 0.0, -1.0],
+    [1.0, 1.0, 0.0, 0.0],
+    [1.0, 0.0, 1.0, 0.0],
+    [0.0, 1.0, 1.0, 0.0],
+    [1.0, 0.0, 0.0, 1.0],
+    [0.0, 1.0, 0.0, 1.0],
+    [0.0, 0.0, 1.0, 1.0],
 ];
-pub(super) const ENOUGH: usize = 4;
+pub(super) const ENOUGH: usize = 1 + UNKNOWNS;
+
+/// Pairs of unknowns whose mixed derivatives the last of the points are for.
+const PAIRS: [(usize, usize); 6] = [(0, 1), (0, 2), (1, 2), (0, 3), (1, 3), (2, 3)];
 
 /// How far the few are, in spacings.
 pub(super) const CLOSE: f64 = 0.02;
 
-/// A function of three unknowns to second order about a point, in units of the spacings.
+/// A function of some unknowns to second order about a point, in units of the spacings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Surface {
-    pub slope: Vector3<f64>,
-    pub bend: Matrix3<f64>,
+    pub slope: Point,
+    pub bend: Matrix,
 }
 
 impl Surface {
     /// From values at [`POINTS`].
     pub fn new(v: &[f64]) -> Self {
-        let slope = Vector3::from_fn(|k, _| 0.5 * (v[k + 1] - v[k + 4]));
-        let mut bend = Matrix3::from_diagonal(&Vector3::from_fn(|k, _| v[k + 1] + v[k + 4] - 2.0 * v[0]));
-        for (i, j, corner) in [(0, 1, v[7]), (0, 2, v[8]), (1, 2, v[9])] {
+        let slope = Point::from_fn(|k, _| 0.5 * (v[k + 1] - v[k + ENOUGH]));
+        let mut bend = Matrix::from_diagonal(&Point::from_fn(|k, _| v[k + 1] + v[k + ENOUGH] - 2.0 * v[0]));
+        for ((i, j), corner) in PAIRS.into_iter().zip(&v[ENOUGH + UNKNOWNS..]) {
             let mixed = corner - v[i + 1] - v[j + 1] + v[0];
             (bend[(i, j)], bend[(j, i)]) = (mixed, mixed);
         }
@@ -43,13 +56,13 @@ impl Surface {
     }
 
     /// From values at the first few, drawn close together, if it bends so.
-    pub fn again(v: &[f64], bend: Matrix3<f64>) -> Self {
-        let slope = Vector3::from_fn(|k, _| (v[k + 1] - v[0]) / CLOSE - 0.5 * CLOSE * bend[(k, k)]);
+    pub fn again(v: &[f64], bend: Matrix) -> Self {
+        let slope = Point::from_fn(|k, _| (v[k + 1] - v[0]) / CLOSE - 0.5 * CLOSE * bend[(k, k)]);
         Self { slope, bend }
     }
 
     /// With what the slope has changed by since, after a step (the formula of Broyden, Fletcher, Goldfarb and Shanno).
-    pub fn updated(self, before: &Self, step: Vector3<f64>) -> Self {
+    pub fn updated(self, before: &Self, step: Point) -> Self {
         let change = self.slope - before.slope;
         let bent = self.bend * step;
         let (by_slope, by_bend) = (step.dot(&change), step.dot(&bent));
@@ -61,7 +74,7 @@ impl Surface {
     }
 
     /// The inverse of the bend without what is held, at least a little upwards along its own axes.
-    fn inverse(&self, held: [bool; 3]) -> Matrix3<f64> {
+    fn inverse(&self, held: [bool; UNKNOWNS]) -> Matrix {
         let mut bend = self.bend;
         for k in (0..3).filter(|k| held[*k]) {
             bend.fill_row(k, 0.0);
@@ -70,8 +83,7 @@ impl Surface {
         let axes = bend.symmetric_eigen();
         let largest = axes.eigenvalues.amax().max(f64::MIN_POSITIVE);
         let inverse = axes.eigenvalues.map(|bend| 1.0 / bend.abs().max(FLAT * largest));
-        let mut inverse =
-            axes.eigenvectors * Matrix3::from_diagonal(&inverse) * axes.eigenvectors.transpose();
+        let mut inverse = axes.eigenvectors * Matrix::from_diagonal(&inverse) * axes.eigenvectors.transpose();
         for k in (0..3).filter(|k| held[*k]) {
             inverse.fill_row(k, 0.0);
             inverse.fill_column(k, 0.0);
@@ -80,13 +92,13 @@ impl Surface {
     }
 
     /// The step towards the least value.
-    pub fn newton(&self, held: [bool; 3]) -> Vector3<f64> {
+    pub fn newton(&self, held: [bool; UNKNOWNS]) -> Point {
         let step = -(self.inverse(held) * self.slope);
         step * (FURTHEST / step.amax().max(FURTHEST))
     }
 
     /// Of the unknowns, if the function is −2 log of a likelihood.
-    pub fn covariance(&self, held: [bool; 3]) -> Matrix3<f64> {
+    pub fn covariance(&self, held: [bool; UNKNOWNS]) -> Matrix {
         self.inverse(held) * 2.0
     }
 }
@@ -98,12 +110,13 @@ const FLAT: f64 = 1e-4;
 mod tests {
     use super::*;
 
-    fn bowl() -> (Matrix3<f64>, Vector3<f64>) {
-        let bend = Matrix3::new(3.0, 0.4, -1.1, 0.4, 1.5, 0.2, -1.1, 0.2, 2.2);
-        (bend, Vector3::new(0.3, -0.6, 0.2))
+    fn bowl() -> (Matrix, Point) {
+        let bend =
+            Matrix::new(3.0, 0.4, -1.1, 0.1, 0.4, 1.5, 0.2, 0.0, -1.1, 0.2, 2.2, 0.3, 0.1, 0.0, 0.3, 1.1);
+        (bend, Point::new(0.3, -0.6, 0.2, 0.5))
     }
 
-    fn value(at: Vector3<f64>) -> f64 {
+    fn value(at: Point) -> f64 {
         let (bend, least) = bowl();
         7.0 + 0.5 * (at - least).dot(&(bend * (at - least)))
     }
@@ -114,9 +127,9 @@ mod tests {
         let all = POINTS.map(|point| value(point.into()));
         let found = Surface::new(&all);
         assert!((found.bend - bend).amax() < 1e-12);
-        assert!((found.newton([false; 3]) - least).amax() < 1e-12);
-        assert!((found.covariance([false; 3]) * bend - Matrix3::identity() * 2.0).amax() < 1e-10);
-        let held = found.newton([true, false, false]);
+        assert!((found.newton([false; UNKNOWNS]) - least).amax() < 1e-12);
+        assert!((found.covariance([false; UNKNOWNS]) * bend - Matrix::identity() * 2.0).amax() < 1e-10);
+        let held = found.newton([true, false, false, false]);
         assert!(held[0] == 0.0 && held[1] != 0.0);
     }
 
@@ -124,13 +137,13 @@ mod tests {
     #[test]
     fn the_bend_is_learned_from_slopes() {
         let (bend, _) = bowl();
-        let about = |centre: Vector3<f64>, bend: Matrix3<f64>| {
-            let close = |k: usize| value(centre + Vector3::from(POINTS[k]) * CLOSE);
-            Surface::again(&[0, 1, 2, 3].map(close), bend)
+        let about = |centre: Point, bend: Matrix| {
+            let close = |k: usize| value(centre + Point::from(POINTS[k]) * CLOSE);
+            Surface::again(&[0, 1, 2, 3, 4].map(close), bend)
         };
-        let guess = bend * 1.7 + Matrix3::identity() * 0.5;
-        let step = Vector3::new(0.5, 0.2, -0.4);
-        let first = about(Vector3::zeros(), bend);
+        let guess = bend * 1.7 + Matrix::identity() * 0.5;
+        let step = Point::new(0.5, 0.2, -0.4, 0.1);
+        let first = about(Point::zeros(), bend);
         let second = about(step, guess).updated(&Surface { bend: guess, ..first }, step);
         let error = CLOSE * (guess - bend).amax();
         assert!((second.bend * step - bend * step).amax() < error, "{second:?}");

@@ -35,6 +35,7 @@ mod odd_pair_force;
 mod p0_gradient;
 mod persistence;
 mod polarity;
+mod polarity_alignment;
 mod profile;
 mod quadratic_distortion;
 mod rotation;
@@ -169,7 +170,7 @@ impl Effect {
 
     /// Whether it is an unknown state of the cells, which a fit of tracks finds, instead of columns.
     pub fn is_state(&self) -> bool {
-        self.id == polarity::EFFECT.id
+        [polarity::EFFECT.id, polarity_alignment::EFFECT.id].contains(&self.id)
     }
 
     /// All effects of the catalogue.
@@ -221,6 +222,7 @@ static CATALOGUE: &[Effect] = &[
     persistence::EFFECT,
     alignment::EFFECT,
     polarity::EFFECT,
+    polarity_alignment::EFFECT,
     flow_blur::EFFECT,
     flow_gain::EFFECT,
     time_lag::EFFECT,

@@ -11,6 +11,10 @@ pub struct ActivityReport {
     pub v_0: Parameter,
     /// Rate of rotational diffusion.
     pub D_r: Parameter,
+    /// Rate of alignment, if it was asked for.
+    pub J: Option<Parameter>,
+    /// By how much −2 log L falls from cells that do not align.
+    pub evidence_of_alignment: Option<f64>,
     /// Correlation of the mean polarity over the time between two frames with that over the next.
     pub correlation: f64,
 }

@@ -118,8 +118,14 @@ pub(super) fn parameter_rows(fitted: &Parameters, naive: Option<&NaiveParameters
 pub(super) fn activity_rows(activity: &ActivityReport) -> Vec<ParameterRow> {
     let row =
         |name: &str, parameter: &Parameter, meaning: &str| parameter_row(name, parameter, None, meaning);
-    vec![
+    let alignment = activity
+        .J
+        .iter()
+        .map(|own| row("J", own, "rate at which a cell takes on the mean polarity of its neighbours"));
+    let mut rows = vec![
         row("v_0", &activity.v_0, "speed that a cell has of itself: root mean square of the polarity"),
         row("D_r", &activity.D_r, "rate at which a cell forgets the direction of its polarity"),
-    ]
+    ];
+    rows.extend(alignment);
+    rows
 }

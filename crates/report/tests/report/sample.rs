@@ -191,6 +191,8 @@ pub fn report() -> InferReport {
         activity: Some(ActivityReport {
             v_0: fitted(0.31, 0.04, "um min⁻¹"),
             D_r: held(0.02, "min⁻¹"),
+            J: Some(fitted(0.15, 0.03, "min⁻¹")),
+            evidence_of_alignment: Some(31.0),
             correlation: 0.93,
         }),
         spreads: vec![SpreadReport {

@@ -39,6 +39,7 @@ impl Simulation {
         time_step: f64,
     ) -> Result<(), Error> {
         headings.clone_from(&self.now.headings);
+        self.driving.align(headings, self.tessellation.tessellation(), time_step);
         if self.driving.shakes() {
             self.driving.shake(positions, headings, self.now.steps, time_step);
             self.check_displacements(positions, time_step)?;

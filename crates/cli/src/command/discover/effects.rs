@@ -24,7 +24,7 @@ pub(super) fn family(effect: &Effect) -> EffectKind {
         | "size_friction"
         | "alpha_area"
         | "coordination_tension" => EffectKind::Gradient,
-        "persistence" | "alignment" | "polarity" => EffectKind::History,
+        "persistence" | "alignment" | "polarity" | "polarity_alignment" => EffectKind::History,
         "label_parameter" | "external_field" => EffectKind::Measured,
         "boundary_tension" | "boundary_torque" => EffectKind::Boundary,
         _ => match effect.kind {
@@ -45,6 +45,7 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
     let count = selected.columns.len().max(selected.coefficients.len());
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
     match (selected.effect.id, count) {
+        ("polarity_alignment", 1) => owned(&["J"]),
         (_, 1) => vec![String::new()],
         ("drift", 2) => owned(&["along x", "along y"]),
         ("polarity", 2) => owned(&["v_0", "D_r"]),

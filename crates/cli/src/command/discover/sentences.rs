@@ -4,7 +4,7 @@ use super::history::has_memory;
 use super::measured::Findings;
 use crate::command::fit::Prepared;
 use voronudge_infer::NoiseSource;
-use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Search, Selected, Verdict};
+use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Ranked, Search, Selected, Verdict};
 use voronudge_model::Effect;
 use voronudge_model::effect::Kind;
 use voronudge_report::numbers::significant;
@@ -221,7 +221,9 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
             format!("{} acts much like the base model's own term ({}).", selected.effect.id, alias.of)
         }));
     }
-    if discovery.after.tracked.as_ref().is_some_and(|tracked| tracked.polarity.is_some()) {
+    let crawls = discovery.after.tracked.as_ref().is_some_and(|tracked| tracked.polarity.is_some());
+    let is_tested = |own: &Ranked| own.effect.id == "polarity_alignment" && own.dimension > 0;
+    if crawls && !discovery.ranking.iter().any(is_tested) {
         sentences.push(
             "Polarities of neighbours were taken for independent: whether they align was not tested, and where they do, intervals \
              are too narrow."

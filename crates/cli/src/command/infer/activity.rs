@@ -25,7 +25,7 @@ pub(super) fn check(movie: Option<&PreparedTracks>) -> Result<(), Failure> {
 
 /// The polarity of the cells, in the units of the data.
 pub(super) fn report(data: &DataSet, prepared: &Prepared, tracked: &Tracked) -> Option<ActivityReport> {
-    let Polarity { speed, speed_interval, rate, rate_interval, correlation, .. } =
+    let Polarity { speed, speed_interval, rate, rate_interval, correlation, alignment, .. } =
         tracked.polarity.as_ref()?;
     let (units, scale) = (outcome::units(data), &prepared.scale);
     let parameter = |value: f64, ends: Option<[f64; 2]>, factor: f64, unit: String, words: &str| Parameter {
@@ -50,6 +50,17 @@ pub(super) fn report(data: &DataSet, prepared: &Prepared, tracked: &Tracked) -> 
             units.powers(0, -1),
             "D_r is the rate at which cells forget the direction of their polarity",
         ),
+        J: alignment.map(|own| {
+            parameter(
+                own.rate,
+                // Without a polarity nothing aligns.
+                rate_interval.map(|_| own.interval),
+                1.0 / scale.time,
+                units.powers(0, -1),
+                "J is the rate at which a cell takes on the mean polarity of its neighbours",
+            )
+        }),
+        evidence_of_alignment: alignment.map(|own| own.evidence),
         correlation: *correlation,
     })
 }

@@ -42,6 +42,9 @@ pub(crate) struct Arguments {
     /// Let cells crawl: each has a polarity of its own that it forgets at some rate. Fits v_0 and D_r together with the model; for tracks.
     #[arg(long)]
     active: bool,
+    /// Let the polarities turn towards those of the neighbours, and fit the rate J of this too; as --active otherwise.
+    #[arg(long)]
+    align: bool,
     /// Let cells differ in a parameter: alpha. For velocities of cells.
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
     vary: Vec<CellParameter>,
@@ -109,9 +112,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         _ => (question.prepare(velocities, frames, &mut run)?, None),
     };
-    if arguments.active {
+    if arguments.active || arguments.align {
         activity::check(movie.as_ref())?;
-        prepared.request.activity = Activity::Polarity;
+        prepared.request.activity = if arguments.align { Activity::Alignment } else { Activity::Polarity };
     }
     spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);

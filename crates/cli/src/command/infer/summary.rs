@@ -58,7 +58,10 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         let row = format!("{name:<13} {value:>12}  {interval:<26} {naive:>12}  {}", parameter.unit);
         let _ = writeln!(text, "{}", row.trim_end());
     }
-    for (name, own) in report.activity.iter().flat_map(|own| [("v_0", &own.v_0), ("D_r", &own.D_r)]) {
+    let of_activity = report.activity.iter().flat_map(|own| {
+        [("v_0", &own.v_0), ("D_r", &own.D_r)].into_iter().chain(own.J.iter().map(|own| ("J", own)))
+    });
+    for (name, own) in of_activity {
         let [value, interval] = match own.interval() {
             Some(ends) => interval_text(own.value, ends),
             None => ["–".into(), "not determined".into()],

@@ -58,6 +58,9 @@ pub(crate) struct Arguments {
     /// Rotational diffusion of the directions of self-propulsion.
     #[arg(long, value_name = "D_R", default_value_t = 0.0, allow_negative_numbers = true)]
     rotational_diffusion: f64,
+    /// Alignment: the rate at which a cell with six neighbours turns towards the mean direction of their self-propulsion.
+    #[arg(long, value_name = "J", default_value_t = 0.0, allow_negative_numbers = true)]
+    alignment: f64,
     /// Translational diffusion: noise of the positions.
     #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true)]
     diffusion: f64,
@@ -109,6 +112,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             Failure::new("--cell-parameter does not go with --walls").with_hint("leave one of them out")
         );
     }
+    if arguments.alignment != 0.0 && arguments.self_propulsion == 0.0 {
+        return Err(Failure::new("--alignment turns directions of self-propulsion, and there is none")
+            .with_hint("give --self-propulsion too, or leave --alignment out"));
+    }
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;
     let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
@@ -135,6 +142,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             shear: arguments.surroundings.shear()?,
             speed: arguments.self_propulsion,
             rotational_diffusion: arguments.rotational_diffusion,
+            alignment: arguments.alignment,
             diffusion: arguments.diffusion,
             seed: arguments.common.seed,
         },

@@ -1,0 +1,238 @@
+//! How the polarities of neighbours hold each other.
+//!
+//! A cell that aligns turns its polarity towards those of its neighbours: `ṗ_i = −p_i/τ + (J/6) Σ_j (p_j − p_i) + noise`. From one frame to the
+//! next, with L the Laplacian of the graph of neighbours over six,
+//!
+//! ```text
+//! u_{f+1} = ρ_f M u_f + noise,     M = 1 − a L,     a = 1 − exp(−J h_f)
+//! ```
+//!
+//! with the noise of cells that do not align, of variance σ_u² (1 − ρ²). Where neighbours stay, a mode of L with the eigenvalue λ has the variance
+//! `σ_u² (1 − ρ²) / (1 − ρ² (1 − aλ)²)`; so have the first polarities of the cells whose tracks begin in one frame. Neighbours without a polarity hold
+//! nothing.
+
+use super::memory::{Memory, NONE, Polarities, innovation};
+use super::states::Instant;
+use crate::Error;
+use crate::stiffness::Stiffness;
+use voronudge_linalg::{Cholesky, SymmetricMatrix};
+
+/// Neighbours of a cell on average.
+const USUAL: f64 = 6.0;
+
+/// Polarities of which the variance is computed, at most: evenly chosen ones.
+const SAMPLES: usize = 300;
+
+/// The neighbours, as blocks, of each polarity in its frame; none at all where cells do not align.
+pub(super) type Ties = Vec<Vec<u32>>;
+
+/// Entries of a symmetric matrix to be summed: the later unknown, the earlier one, the value.
+#[derive(Default)]
+struct Entries(Vec<(u32, u32, f64)>);
+
+impl Entries {
+    /// Adds a factor times the square of a sum of different unknowns.
+    fn add_square(&mut self, factor: f64, row: &[(u32, f64)]) {
+        for (k, (one, own)) in row.iter().enumerate() {
+            for (other, weight) in &row[..=k] {
+                self.0.push((*one.max(other), *one.min(other), factor * own * weight));
+            }
+        }
+    }
+
+    /// Each place once, by columns.
+    fn summed(mut self) -> Vec<(u32, u32, f64)> {
+        self.0.sort_by_key(|(later, earlier, _)| (*earlier, *later));
+        self.0.dedup_by(|next, kept| {
+            let same = (next.0, next.1) == (kept.0, kept.1);
+            if same {
+                kept.2 += next.2;
+            }
+            same
+        });
+        self.0
+    }
+}
+
+impl Polarities {
+    /// With the ties of neighbours, by the frames as they were measured.
+    pub fn aligning(mut self, instants: &[Instant]) -> Self {
+        let first = self.range().start;
+        let mut ties = vec![Vec::new(); self.count()];
+        for (blocks, instant) in self.block.iter().zip(instants) {
+            for (cell, own) in blocks.iter().enumerate().filter(|(_, own)| **own != NONE) {
+                let all = instant.cells.tessellation.neighbours(cell);
+                let blocks = all.iter().map(|other| blocks[*other as usize]);
+                ties[*own as usize - first] = blocks.filter(|other| other != own && *other != NONE).collect();
+            }
+        }
+        self.ties = ties;
+        self
+    }
+
+    /// Without ties.
+    pub fn apart(mut self) -> Self {
+        self.ties = Ties::new();
+        self
+    }
+
+    /// Whether neighbours may hold each other.
+    pub fn align(&self) -> bool {
+        !self.ties.is_empty()
+    }
+
+    /// The row of M for a polarity, times a factor, with the neighbours that are `chosen`.
+    fn row(&self, block: u32, factor: f64, a: f64, chosen: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
+        let ties = &self.ties[block as usize - self.range().start];
+        let mut row = vec![(block, factor)];
+        for other in ties.iter().filter(|other| chosen(**other)) {
+            let share = factor * a / USUAL;
+            row[0].1 -= share;
+            match row.iter_mut().find(|own| own.0 == *other) {
+                Some(own) => own.1 += share,
+                None => row.push((*other, share)),
+            }
+        }
+        row
+    }
+
+    /// Adds how polarities hold each other, with σ_v²/σ_u²: but for what each first one is held by of itself.
+    pub(super) fn hold_aligned(&self, memory: Memory, ratio: f64, stiffness: &mut Stiffness) {
+        let mut entries = Entries::default();
+        for (since, block) in self.since.iter().zip(self.range().start as u32..) {
+            let Some(since) = since else { continue };
+            let (own, rho) = innovation(*since, memory.times);
+            let mut row = self.row(block - 1, -rho, share(memory, *since), |_| true);
+            row.push((block, 1.0));
+            entries.add_square(ratio * own, &row);
+        }
+        for firsts in self.firsts_of_frames() {
+            self.add_firsts(&firsts, memory, ratio, &mut entries);
+        }
+        for (later, earlier, value) in entries.summed() {
+            if later == earlier {
+                stiffness.of_blocks[later as usize] += value;
+            } else {
+                stiffness.couplings.push((later, earlier, -value));
+            }
+        }
+    }
+
+    /// Adds `ρ²/(1 − ρ²) (1 − M²)` for first polarities of one frame: how much more than one is the inverse of their variance.
+    fn add_firsts(&self, firsts: &[u32], memory: Memory, ratio: f64, entries: &mut Entries) {
+        let (own, rho) = innovation(1.0, memory.times);
+        let (more, a) = (ratio * own * rho * rho, share(memory, 1.0));
+        for block in firsts {
+            entries.0.push((*block, *block, more));
+            let row = self.row(*block, 1.0, a, |other| firsts.binary_search(&other).is_ok());
+            entries.add_square(-more, &row);
+        }
+    }
+
+    /// The first polarities that begin in each frame, ascending.
+    fn firsts_of_frames(&self) -> Vec<Vec<u32>> {
+        let mut all = vec![Vec::new(); self.block.len()];
+        self.firsts.iter().for_each(|first| all[first.frame].push(first.block as u32));
+        all.iter_mut().for_each(|own| own.sort_unstable());
+        all.retain(|own| !own.is_empty());
+        all
+    }
+
+    /// `1/φ + ρ²/(1 − ρ²) (1 − M²)` of first polarities of one frame.
+    fn of_firsts(&self, firsts: &[u32], memory: Memory) -> Result<SymmetricMatrix, Error> {
+        let mut entries = Entries::default();
+        self.add_firsts(firsts, memory, 1.0, &mut entries);
+        entries.0.extend(firsts.iter().map(|block| (*block, *block, 1.0 / memory.free)));
+        let number = |block: u32| firsts.binary_search(&block).unwrap_or_default();
+        let (mut start, mut row, mut value) = (vec![0; firsts.len() + 1], Vec::new(), Vec::new());
+        for (later, earlier, entry) in entries.summed() {
+            start[number(earlier) + 1] += 1;
+            row.push(number(later));
+            value.push(entry);
+        }
+        (0..firsts.len()).for_each(|k| start[k + 1] += start[k]);
+        Ok(SymmetricMatrix::new(start, row, value)?)
+    }
+
+    /// −log det of the covariance of the first polarities, in units of σ_u².
+    pub(super) fn log_determinant_of_firsts(&self, memory: Memory) -> Result<f64, Error> {
+        let of_frame =
+            |firsts: &Vec<u32>| Ok(2.0 * Cholesky::new(&self.of_firsts(firsts, memory)?)?.log_determinant());
+        self.firsts_of_frames().iter().map(of_frame).sum()
+    }
+
+    /// The mean variance of the polarities of cells that align, in units of that of cells that do not.
+    pub(super) fn mean_variance(&self, memory: Memory) -> Result<f64, Error> {
+        let all = self.firsts_of_frames();
+        let Some(firsts) = all.iter().max_by_key(|own| own.len()).filter(|_| memory.alignment > 0.0) else {
+            return Ok(1.0);
+        };
+        let factor = Cholesky::new(&self.of_firsts(firsts, Memory { free: 1.0, ..memory })?)?;
+        let stride = firsts.len().div_ceil(SAMPLES);
+        let of_one = |k: usize| {
+            let mut solved = vec![0.0; firsts.len()];
+            solved[k] = 1.0;
+            factor.solve(&mut solved);
+            solved[k]
+        };
+        let chosen: Vec<f64> = (0..firsts.len()).step_by(stride).map(of_one).collect();
+        Ok(chosen.iter().sum::<f64>() / chosen.len() as f64)
+    }
+}
+
+/// a
+fn share(memory: Memory, since: f64) -> f64 {
+    -(-memory.alignment * since).exp_m1()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::memory::First;
+    use super::*;
+    use nalgebra::DMatrix;
+
+    /// Cells in a ring, each with two neighbours, over some frames: what holds their polarities is the inverse of the covariance of the stationary
+    /// process, and so is its determinant.
+    #[test]
+    fn aligned_polarities_hold_each_other_as_the_process_does() {
+        let (cells, frames, ratio) = (7, 3, 2.5);
+        let memory = Memory { times: 0.3, speed: 1.0, free: 1.0, alignment: 0.8 };
+        let block = |cell: usize, frame: usize| (frames * cell + frame) as u32;
+        let at = |k: usize| (k / frames, k % frames);
+        let count = cells * frames;
+        let ties = (0..count)
+            .map(at)
+            .map(|(cell, frame)| [1, cells - 1].map(|step| block((cell + step) % cells, frame)).to_vec());
+        let firsts = (0..cells).map(|cell| First { frame: 0, cell, block: frames * cell });
+        let mut polarities = Polarities::default();
+        polarities.block =
+            (0..frames).map(|frame| (0..cells).map(|cell| block(cell, frame)).collect()).collect();
+        polarities.since = (0..count).map(|k| (at(k).1 > 0).then_some(1.0)).collect();
+        polarities.firsts = firsts.collect();
+        polarities.ties = ties.collect();
+        let mut stiffness = Stiffness { of_blocks: vec![0.0; count], couplings: Vec::new() };
+        polarities.hold_aligned(memory, ratio, &mut stiffness);
+        polarities.firsts.iter().for_each(|first| stiffness.of_blocks[first.block] += ratio);
+        let unit =
+            |k: usize| -> Vec<f64> { (0..2 * count).map(|j| f64::from(u8::from(j == 2 * k))).collect() };
+        let precision = DMatrix::from_fn(count, count, |i, j| stiffness.times(&unit(j))[2 * i]);
+        let (a, rho) = (1.0 - (-0.8_f64).exp(), (-0.3_f64).exp());
+        let near = |i: usize, j: usize| (i + 1) % cells == j || (j + 1) % cells == i;
+        let step = DMatrix::from_fn(cells, cells, |i, j| match (i == j, near(i, j)) {
+            (true, _) => rho * (1.0 - 2.0 * a / 6.0),
+            (_, true) => rho * a / 6.0,
+            _ => 0.0,
+        });
+        let identity = DMatrix::identity(cells, cells);
+        let stationary = (identity - &step * &step).try_inverse().unwrap() * ((1.0 - rho * rho) / ratio);
+        let covariance = DMatrix::from_fn(count, count, |i, j| {
+            let ((one, early), (other, late)) = (at(i), at(j));
+            (&stationary * step.pow(early.abs_diff(late) as u32))[(one, other)]
+        });
+        assert!((&precision * &covariance - DMatrix::identity(count, count)).amax() < 1e-12);
+        let expected = 2.0 * precision.determinant().ln();
+        assert!((polarities.log_determinant(memory, ratio).unwrap() - expected).abs() < 1e-10);
+        let mean = stationary.trace() / cells as f64 * ratio;
+        assert!((polarities.mean_variance(memory).unwrap() - mean).abs() < 1e-12);
+    }
+}
