@@ -156,10 +156,10 @@ fn the_score_beside_tracks_is_that_of_a_refit() {
 /// Cells that turn towards their neighbours. So few of them have much of their motion in common, which a drift is as well: that is not asked.
 #[test]
 fn tracks_tell_whether_polarities_align() {
-    let filmed = Filmed { size: [144, 6], step: 0.15, error: 0.01, seed: 7 };
-    let mut search = search(&["polarity", "polarity_alignment", "alpha_area", "nematic_stress"]);
+    let filmed = Filmed { size: [100, 5], step: 0.15, error: 0.01, seed: 7 };
+    let mut search = search(&["polarity", "polarity_alignment", "alpha_area"]);
     search.fit.noise = KnownNoise::default();
-    search.fit.cross_validation = CrossValidation::Done;
+    search.fit.cross_validation = CrossValidation::Skipped;
     search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
     let driving = Driving { speed: 1.0, rotational_diffusion: 1.0, alignment: 3.0, ..Driving::default() };
     let (movie, [_, unit, _]) = filmed.movie_of_driven(driving);

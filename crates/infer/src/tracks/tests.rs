@@ -2,7 +2,6 @@ use super::sample::{Filmed, TRUTH};
 use super::{infer_tracks, measure_tracks};
 use crate::{Activity, Constraints, KnownMeasurement, Quantity, Request};
 use std::ops::ControlFlow;
-use voronudge_simulate::Driving;
 
 /// Cells that move a fifth of their size from frame to frame: parameters within their intervals, where differences miss a third.
 #[test]
@@ -74,26 +73,21 @@ fn polarities_are_told_from_forces() {
     assert!((0.5..1.1).contains(&(mean / speed.powi(2))), "{mean} {speed}");
 }
 
-/// Cells that turn towards their neighbours, and cells that do not.
+/// Of cells that crawl, each by itself, no alignment is reported. (Of those that align it is: see the tests of the search for effects.)
 #[test]
-fn alignment_is_told_from_its_absence() {
+fn no_alignment_is_made_of_crawling() {
     let request = Request { activity: Activity::Alignment, ..crawling() };
-    for (rate, seed) in [(0.0, 5), (3.0, 7)] {
-        let filmed = Filmed { size: [144, 6], step: 0.15, error: 0.01, seed };
-        let driving =
-            Driving { speed: 1.0, rotational_diffusion: 1.0, alignment: rate, ..Driving::default() };
-        let (movie, [chiral, speed, _]) = filmed.movie_of_driven(driving);
-        let (found, tracked) = infer_tracks(&movie, &request, &mut |_| ControlFlow::Continue(())).unwrap();
-        let own = found.parameters.chiral_coefficient;
-        assert!((own.value / chiral - 1.0).abs() < 0.03, "{rate}: {own:?} {chiral}");
-        let polarity = tracked.polarity.unwrap();
-        let within = |[low, high]: [f64; 2], value: f64| low <= value && value <= high;
-        assert!(within(polarity.speed_interval, speed), "{rate}: {polarity:?} {speed}");
-        let alignment = polarity.alignment.unwrap();
-        // The rate is that of the simulated directions in units of the movie, in which v_0 is 1.
-        assert!(within(alignment.interval, rate * speed), "{rate}: {alignment:?} {speed}");
-        assert_eq!(alignment.evidence > 12.0, rate > 0.0, "{rate}: {alignment:?}");
-    }
+    let filmed = Filmed { size: [144, 6], step: 0.15, error: 0.01, seed: 5 };
+    let (movie, [chiral, speed, _]) = filmed.movie_of_crawling(1.0, 1.0);
+    let (found, tracked) = infer_tracks(&movie, &request, &mut |_| ControlFlow::Continue(())).unwrap();
+    let own = found.parameters.chiral_coefficient;
+    assert!((own.value / chiral - 1.0).abs() < 0.03, "{own:?} {chiral}");
+    let polarity = tracked.polarity.unwrap();
+    let [low, high] = polarity.speed_interval;
+    assert!((low..high).contains(&speed), "{polarity:?} {speed}");
+    let alignment = polarity.alignment.unwrap();
+    assert!(alignment.interval[0] == 0.0 && alignment.interval[1] < speed, "{alignment:?}");
+    assert!(alignment.evidence < 4.0, "{alignment:?}");
 }
 
 /// Of cells that do not crawl no polarity is reported.
