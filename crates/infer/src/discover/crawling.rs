@@ -1,12 +1,11 @@
 //! The polarity of cells as a candidate, and that it aligns: states of the cells instead of columns.
 
 use super::classes::Tested;
-use super::lineup::upper_chi_squared;
+use super::lineup::{critical_chi_squared, upper_chi_squared};
 use super::result::{Fate, Ranked};
 use super::steps::{Model, Setting};
 use crate::Estimate;
 use crate::tracks::{Alignment, Polarity};
-use statrs::distribution::{ChiSquared, ContinuousCDF};
 
 /// Coefficients of a polarity: its speed and how fast it is forgotten; of its alignment: the rate.
 fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
@@ -39,8 +38,7 @@ fn p(evidence: f64, coefficients: usize) -> f64 {
 /// The evidence that is needed beside so many other effects.
 pub(super) fn least_evidence(setting: &Setting<'_>, candidate: usize, others: usize) -> f64 {
     let level = setting.level(others) / setting.named(&[]).len() as f64;
-    ChiSquared::new(coefficients(setting, candidate) as f64)
-        .map_or(f64::INFINITY, |own| own.inverse_cdf(1.0 - level))
+    critical_chi_squared(level, coefficients(setting, candidate) as f64)
 }
 
 /// The same for any of all candidates.

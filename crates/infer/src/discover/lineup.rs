@@ -363,7 +363,7 @@ impl Score {
             return f64::NAN;
         }
         let d = self.dimension as f64;
-        let critical = ChiSquared::new(d).map_or(f64::NAN, |chi| chi.inverse_cdf(1.0 - single_p));
+        let critical = critical_chi_squared(single_p, d);
         // The noncentral χ² has mean d + λ and variance 2 d + 4 λ: λ such that its 10 % quantile is the critical value.
         let z = 1.2816;
         let (mean, spread) = (critical - d, 2.0 * z * z);
@@ -375,6 +375,11 @@ impl Score {
 /// P(χ²_d > x)
 pub(super) fn upper_chi_squared(x: f64, d: f64) -> f64 {
     ChiSquared::new(d).map_or(f64::NAN, |chi| chi.sf(x.max(0.0)))
+}
+
+/// x such that P(χ²_d > x) is p.
+pub(super) fn critical_chi_squared(p: f64, d: f64) -> f64 {
+    ChiSquared::new(d).map_or(f64::NAN, |chi| chi.inverse_cdf(1.0 - p))
 }
 
 fn upper_fisher(x: f64, d: f64, left: f64) -> f64 {

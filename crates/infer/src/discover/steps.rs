@@ -214,8 +214,7 @@ impl Setting<'_> {
     /// What may be next of the polarity of cells: that they have one, or, if they have, that it aligns.
     pub fn of_polarity(&self, model: &Model) -> Option<usize> {
         let has_one = model.added.iter().any(|candidate| self.candidates[*candidate].is_polarity());
-        let is_next =
-            |own: &Candidate| if has_one { own.is_alignment() } else { own.is_polarity() && !has_one };
+        let is_next = if has_one { Candidate::is_alignment } else { Candidate::is_polarity };
         self.candidates.iter().position(|own| is_next(own) && own.columns.is_ok())
     }
 

@@ -279,7 +279,7 @@ impl MovieObjective<'_> {
         ];
         let with = self.likelihood(equations, components, known, point)?.criterion;
         // The likeliest of cells that do not align.
-        let apart = States { polarities: self.states.polarities.clone().apart(), ..self.states.clone() };
+        let apart = self.states.clone().apart();
         let mut without =
             MovieObjective { states: &apart, memory: Some(Memory { alignment: 0.0, ..memory }), ..*self };
         let (mut looked, mut least) = (None, f64::INFINITY);
@@ -325,8 +325,8 @@ impl MovieObjective<'_> {
         let values = equations.each(&points, |log_k| at(*log_k, RATIO[1]))?;
         let least = (0..values.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
         let mut without = values[least];
-        if let Some([before, after]) = least.checked_sub(1).map(|k| [values.get(k), values.get(least + 1)])
-            && let (Some(before), Some(after)) = (before, after)
+        let before = least.checked_sub(1).and_then(|k| values.get(k));
+        if let Some((before, after)) = before.zip(values.get(least + 1))
             && before + after > 2.0 * without
         {
             let aside = 0.5 * (before - after) / (before + after - 2.0 * without);

@@ -169,6 +169,12 @@ impl States {
         Self { polarities: self.polarities.aligning(&self.instants), ..self }
     }
 
+    /// The same with polarities each by itself.
+    pub fn apart(mut self) -> Self {
+        self.polarities = self.polarities.apart();
+        self
+    }
+
     /// The polarity of a cell at both ends of its motion.
     pub fn polarity(&self, motion: &Motion) -> Option<[usize; 2]> {
         let block = |end: usize| {
