@@ -3,21 +3,21 @@
 use claims::Noise;
 use claims::differing::Differing;
 use std::ops::ControlFlow;
-use voronudge_infer::{Inference, infer};
-use voronudge_model::CellParameter::Chirality;
+use voronudge_infer::{Inference, Quantity, infer};
+use voronudge_model::CellParameter::{self, Chirality, PreferredArea, PreferredPerimeter};
 
 const NOISE: Noise = Noise { position: 0.01, velocity: 0.05 };
 
-fn fit(tissue: &Differing) -> Inference {
+fn fit(tissue: &Differing, varied: CellParameter) -> Inference {
     let frames = tissue.measured(NOISE, 1).unwrap();
-    infer(&frames, &tissue.request(&[Chirality]), &mut |_| ControlFlow::Continue(())).unwrap()
+    infer(&frames, &tissue.request(&[varied]), &mut |_| ControlFlow::Continue(())).unwrap()
 }
 
 /// A spread of α of a quarter, and which cells have more of it.
 #[test]
 fn a_spread_put_into_a_simulation_comes_out_of_the_fit() {
     let tissue = Differing::new(144, 1, 2, &[(Chirality, 0.25)]).unwrap();
-    let result = fit(&tissue);
+    let result = fit(&tissue, Chirality);
     let (found, truth) = (&result.spreads[0], tissue.spread(Chirality));
     assert!(found.p < 1e-4, "{}", found.p);
     assert!((found.value / truth - 1.0).abs() < 0.25, "{} {truth}", found.value);
@@ -31,10 +31,30 @@ fn a_spread_put_into_a_simulation_comes_out_of_the_fit() {
     assert_eq!(found.deviations[0], found.deviations[1]);
 }
 
+/// Were what a cell has of its own to follow the coefficients, these would come out too large and the spread too small by the same factor.
+#[test]
+fn spreads_do_not_grow_at_the_cost_of_what_all_cells_share() {
+    for (parameter, size, shared) in [
+        (PreferredArea, 0.2, Quantity::AreaElasticity),
+        (PreferredPerimeter, 0.04, Quantity::PerimeterElasticity),
+    ] {
+        let tissue = Differing::new(196, 3, 2, &[(parameter, size)]).unwrap();
+        let result = fit(&tissue, parameter);
+        let (found, truth) = (&result.spreads[0], tissue.spread(parameter));
+        assert!(found.p < 1e-3, "{}", found.p);
+        // The share hangs on what is known of the coefficient that it is a share of.
+        assert!((found.value / truth - 1.0).abs() < 0.4, "{} {truth}", found.value);
+        let [low, high] = found.interval;
+        assert!(low.unwrap() < truth && high.is_none_or(|high| truth < high), "{:?} {truth}", found.interval);
+        let (estimate, truth) = (result.parameters.get(shared), tissue.truth(shared));
+        assert!(estimate.covers(truth), "{estimate:?} {truth}");
+    }
+}
+
 #[test]
 fn cells_that_are_alike_are_not_found_to_differ() {
     let tissue = Differing::new(144, 2, 2, &[]).unwrap();
-    let found = &fit(&tissue).spreads[0];
+    let found = &fit(&tissue, Chirality).spreads[0];
     assert!(found.p > 0.01, "{}", found.p);
     assert_eq!(found.interval[0], Some(0.0));
 }

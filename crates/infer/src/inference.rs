@@ -43,7 +43,7 @@ pub fn infer(
     let naive = least_squares::fit(frames, structure, &space)?;
     let mut watch = Watch { observe };
     let unset = NoiseLevels { position: 1.0, velocity: 1.0 };
-    let mut objective = Objective { frames, structure, space: &space, levels: unset };
+    let mut objective = Objective::new(frames, structure, &space, unset);
     let mut found = fit(&mut objective, &naive, request, &mut watch)?;
     let mut levels = objective.levels;
     let mut weighted: Option<Vec<Observation>> = None;
@@ -95,8 +95,12 @@ pub fn infer(
         }
     };
     // Neither is what single cells are like.
+    let mut spreads = Vec::new();
     if let Some(differing) = &differing {
         reduced.information -= &differing.spent;
+        let covariance =
+            space.covariance(&least_squares::invert(&reduced.information / (variance * excess))?);
+        spreads = differing.spreads_beside(&coefficients, &covariance);
     }
     let estimated = estimates(&equations, reduced, &space, request, free, variance * excess)?;
     let residual_at = |beta: &[f64]| -> f64 {
@@ -151,7 +155,7 @@ pub fn infer(
         starts: found.starts.iter().map(|phi| phi / variance).collect(),
         transitions: [found.transitions_tried, found.transitions_made],
         doubts: doubts(value, expected, &levels, &request.noise, found.status),
-        spreads: differing.as_ref().map_or_else(Vec::new, |differing| differing.spreads.clone()),
+        spreads,
         used,
         total,
     };

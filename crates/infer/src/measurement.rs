@@ -245,19 +245,15 @@ fn settle(
     let naive = least_squares::fit(&frames, structure, &space)?;
     let estimated = request.noise.position.is_none() || request.noise.velocity.is_none();
     let mut levels = NoiseLevels { position: 1.0, velocity: 1.0 };
-    levels = first_levels(
-        &Objective { frames: &frames, structure, space: &space, levels },
-        &naive,
-        &request.noise,
-    )?;
+    levels = first_levels(&Objective::new(&frames, structure, &space, levels), &naive, &request.noise)?;
     let mut parameters = {
-        let objective = Objective { frames: &frames, structure, space: &space, levels };
+        let objective = Objective::new(&frames, structure, &space, levels);
         follow(&objective, &naive, STEPS_PER_ROUND, "measurement", watch)?.parameters
     };
     let (mut found, mut criterion) = (Vec::new(), f64::INFINITY);
     for round in 0..ROUNDS {
         watch.tell("measurement", (round as u64, ROUNDS as u64), 1.0)?;
-        let mut objective = Objective { frames: &frames, structure, space: &space, levels };
+        let mut objective = Objective::new(&frames, structure, &space, levels);
         let mut equations = objective.linearise_with(&parameters, unknowns)?;
         let (next, likelihood) = most_likely(&objective, &equations, &request.noise)?;
         criterion = likelihood;
@@ -289,7 +285,7 @@ fn settle(
             found.push([after, error]);
         }
         parameters[..own].iter_mut().zip(step.iter()).for_each(|(beta, step)| *beta += step);
-        let objective = Objective { frames: &frames, structure, space: &space, levels };
+        let objective = Objective::new(&frames, structure, &space, levels);
         parameters = refine(&objective, parameters, STEPS_PER_ROUND)?.parameters;
         if settled {
             break;

@@ -253,7 +253,7 @@ mod tests {
         let space = CoefficientSpace::new(&Constraints::default()).unwrap();
         let structure = Structure::base(1.0);
         let levels = NoiseLevels { position: 0.03, velocity: 0.05 };
-        let objective = Objective { frames: &frames, structure: &structure, space: &space, levels };
+        let objective = Objective::new(&frames, &structure, &space, levels);
         let mut at = vec![0.1, 3.9, 1.0, 1.6];
         at.extend((0..72).map(|k| 0.01 * f64::from(k).sin()));
         let equations = objective.linearise(&at).unwrap();

@@ -8,6 +8,7 @@ use crate::measurement::Unknown;
 use crate::normal_equations::NormalEquations;
 use crate::position_rows::{self, PositionRows};
 use crate::rows::Rows;
+use crate::spread::OwnParts;
 use crate::stiffness::Stiffness;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
@@ -28,6 +29,8 @@ pub(crate) struct Objective<'a> {
     pub structure: &'a Structure,
     pub space: &'a CoefficientSpace,
     pub levels: NoiseLevels,
+    /// What single cells do beyond what all of them do alike.
+    pub own: Option<&'a OwnParts<'a>>,
 }
 
 /// Standard deviation of a coordinate of a cell that was not seen about where it is put, in units of ℓ₀: enough to find its
@@ -131,6 +134,16 @@ impl<'a> Nudged<'a> {
 }
 
 impl<'a> Objective<'a> {
+    /// Φ of cells that are alike.
+    pub fn new(
+        frames: &'a [Observation],
+        structure: &'a Structure,
+        space: &'a CoefficientSpace,
+        levels: NoiseLevels,
+    ) -> Self {
+        Self { frames, structure, space, levels, own: None }
+    }
+
     /// k = σ_v² / σ_r².
     pub fn spring(&self) -> f64 {
         self.levels.spring()
@@ -184,6 +197,25 @@ impl<'a> Objective<'a> {
         Ok(Nudged::new(frame, self.structure, positions, tessellation))
     }
 
+    /// The same with what the model says of it. Derivatives by the coefficients are those of cells that are alike.
+    fn evaluated(
+        &self,
+        index: usize,
+        coefficients: &[f64],
+        nudges: &[f64],
+    ) -> Result<(Nudged<'a>, Evaluated), Error> {
+        let nudged = self.place(index, nudges)?;
+        let alike = nudged.evaluate(coefficients);
+        let Some(own) = self.own else {
+            return Ok((nudged, alike));
+        };
+        let environment = own.environment(index, &nudged.environment, coefficients)?;
+        let Nudged { positions, tessellation, sampling, structure, .. } = nudged;
+        let nudged = Nudged::placed(structure, environment, positions, tessellation, sampling);
+        let differing = nudged.evaluate(coefficients);
+        Ok((nudged, Evaluated { by_coefficient: alike.by_coefficient, ..differing }))
+    }
+
     /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
     pub fn parts(&self, parameters: &[f64]) -> Parts {
         let (free, nudges) = self.split(parameters);
@@ -195,11 +227,10 @@ impl<'a> Objective<'a> {
             .enumerate()
             .map(|(index, (frame, nudges))| {
                 // A trial that moves cells onto each other, or opens the polygon of a cell that counts, is no solution.
-                let Ok(nudged) = self.place(index, nudges) else {
+                let Ok((nudged, evaluated)) = self.evaluated(index, coefficients.as_slice(), nudges) else {
                     return (f64::INFINITY, 0.0);
                 };
-                let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
-                let squares = residuals(frame, &predicted)
+                let squares = residuals(frame, &evaluated.predicted)
                     .into_iter()
                     .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
                 let free = self.floor() / self.spring();
@@ -245,8 +276,7 @@ impl<'a> Objective<'a> {
         nudges: &[f64],
     ) -> Result<Measurable<'a>, Error> {
         let frame = &self.frames[index];
-        let nudged = self.place(index, nudges)?;
-        let evaluated = nudged.evaluate(coefficients);
+        let (nudged, evaluated) = self.evaluated(index, coefficients, nudges)?;
         let rows = residuals(frame, &evaluated.predicted)
             .into_iter()
             .zip(free_rows(frame, &evaluated.by_coefficient, self.space))

@@ -112,7 +112,7 @@ mod tests {
         let structure = Structure::base(1.0);
         let levels = NoiseLevels { position: 0.03, velocity: 0.05 };
         for frames in [&three[..1], &three[..]] {
-            let objective = Objective { frames, structure: &structure, space: &space, levels };
+            let objective = Objective::new(frames, &structure, &space, levels);
             let mut at = vec![0.1, 3.9, 1.0, 1.6];
             at.extend((0..72 * frames.len()).map(|k| 0.01 * (k as f64).sin()));
             let split = Split::new(frames, 2);

@@ -32,7 +32,7 @@ pub(crate) fn whitened_residuals(
 ) -> Result<Vec<Vec<Vector<f64>>>, Error> {
     let space = request.space()?;
     let levels = inference.noise;
-    let objective = Objective { frames, structure: &request.structure, space: &space, levels };
+    let objective = Objective::new(frames, &request.structure, &space, levels);
     let coefficients = inference.coefficients.as_slice();
     let mut fields = Vec::with_capacity(frames.len());
     for (index, nudges) in nudges(frames, inference).iter().enumerate() {

@@ -6,7 +6,7 @@ use claims::Noise;
 use claims::differing::Differing;
 use std::ops::ControlFlow;
 use voronudge_infer::{Quantity, infer};
-use voronudge_model::CellParameter::{self, Chirality, PreferredArea, PreferredPerimeter};
+use voronudge_model::CellParameter::{self, AreaElasticity, Chirality, PreferredArea, PreferredPerimeter};
 
 const CELLS: usize = 324;
 
@@ -37,14 +37,16 @@ pub fn run(seeds: u64, cells: Option<usize>, only: &[String]) -> Outcome {
         "| cells differ by | let vary | frames | named | median s/truth (quartiles) | s covers | means cover | without spreads | seconds |"
     );
     println!("|---|---|---|---|---|---|---|---|---|");
-    let all = [PreferredPerimeter, Chirality, PreferredArea];
-    let settings: [(&str, &[CellParameter], [f64; 3]); 6] = [
-        ("nothing", &all, [0.0; 3]),
-        ("P_0 2 %", &[PreferredPerimeter], [0.02, 0.0, 0.0]),
-        ("alpha 10 %", &[Chirality], [0.0, 0.1, 0.0]),
-        ("A_0 10 %", &[PreferredArea], [0.0, 0.0, 0.1]),
-        ("all, 2 % and 10 %", &all, [0.02, 0.1, 0.1]),
-        ("all, 5 % and 25 %", &all, [0.05, 0.25, 0.25]),
+    let all = [PreferredPerimeter, Chirality, PreferredArea, AreaElasticity];
+    let three = &all[..3];
+    let settings: [(&str, &[CellParameter], [f64; 4]); 7] = [
+        ("nothing", three, [0.0; 4]),
+        ("P_0 2 %", &[PreferredPerimeter], [0.02, 0.0, 0.0, 0.0]),
+        ("alpha 10 %", &[Chirality], [0.0, 0.1, 0.0, 0.0]),
+        ("A_0 10 %", &[PreferredArea], [0.0, 0.0, 0.1, 0.0]),
+        ("K_A 25 %", &[AreaElasticity], [0.0, 0.0, 0.0, 0.25]),
+        ("all, 2 % and 10 %", three, [0.02, 0.1, 0.1, 0.0]),
+        ("all, 5 % and 25 %", three, [0.05, 0.25, 0.25, 0.0]),
     ];
     for frames in [1, 6] {
         for (name, varied, sizes) in settings {

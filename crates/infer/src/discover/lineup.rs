@@ -192,7 +192,7 @@ impl Lineup {
         let Widened { structure, space, coefficients, .. } = &widened;
         let mut at = space.nearest(coefficients);
         at.extend(nudges(frames, result).concat());
-        let objective = Objective { frames, structure, space, levels: result.noise };
+        let objective = Objective::new(frames, structure, space, result.noise);
         let unknowns = frames.first().map_or(&[][..], Observation::unknowns);
         let equations = objective.linearise_with(&at, unknowns)?;
         let spring = objective.spring();

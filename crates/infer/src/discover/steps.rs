@@ -72,7 +72,7 @@ impl Model {
     /// The same for frames with other weights.
     pub fn objective_on<'a>(&'a self, frames: &'a [Observation]) -> Objective<'a> {
         let levels = self.inference.noise;
-        Objective { frames, structure: &self.request.structure, space: &self.space, levels }
+        Objective::new(frames, &self.request.structure, &self.space, levels)
     }
 
     /// Where it was least.
@@ -257,12 +257,7 @@ impl Setting<'_> {
         }
         let mut start = space.nearest(&coefficients);
         start.extend(nudges(self.frames, &from.inference).concat());
-        let objective = Objective {
-            frames: from.frames(self.frames),
-            structure: &request.structure,
-            space: &space,
-            levels,
-        };
+        let objective = Objective::new(from.frames(self.frames), &request.structure, &space, levels);
         Ok(refine(&objective, start, STEPS)?.value / levels.velocity.powi(2))
     }
 

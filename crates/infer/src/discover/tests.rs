@@ -60,12 +60,7 @@ fn the_score_is_that_of_the_dense_problem() {
     // The same from the definition, W dense.
     let space = base.request.space().unwrap();
     let levels = base.inference.noise;
-    let objective = crate::objective::Objective {
-        frames: &frames,
-        structure: &base.request.structure,
-        space: &space,
-        levels,
-    };
+    let objective = crate::objective::Objective::new(&frames, &base.request.structure, &space, levels);
     let nudges = &crate::uncertainty::nudges(&frames, &base.inference)[0];
     let placed = objective.place(0, nudges).unwrap();
     let c = base.inference.coefficients.as_slice();

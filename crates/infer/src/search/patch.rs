@@ -78,7 +78,7 @@ impl Patch {
         pinned: &'s CoefficientSpace,
         levels: NoiseLevels,
     ) -> Objective<'s> {
-        Objective { frames: &self.frame, structure, space: pinned, levels }
+        Objective::new(&self.frame, structure, pinned, levels)
     }
 
     /// Index in the patch of a cell of the frame.

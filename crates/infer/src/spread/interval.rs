@@ -16,6 +16,17 @@ const LARGEST: f64 = 5.0;
 /// Steps towards an end within its bracket.
 const STEPS: usize = 3;
 
+/// A 95 % interval of a share `S/c`, given that for the c at hand and the relative standard error of c: on a logarithmic scale both add in
+/// squares. There is no upper end where c may be nought.
+pub(super) fn of_share(value: f64, interval: [Option<f64>; 2], relative_error: f64) -> [Option<f64>; 2] {
+    let of_coefficient = CHI_SQUARED_95.sqrt() * relative_error;
+    let wider = |end: f64| (end / value).ln().hypot(of_coefficient);
+    let [low, high] = interval;
+    let low = low.map(|low| if low > 0.0 { value * (-wider(low)).exp() } else { low });
+    let high = high.filter(|_| of_coefficient < 1.0);
+    [low, high.map(|high| if value > 0.0 { value * wider(high).exp() } else { high })]
+}
+
 /// What the likelihood says of one spread.
 pub(super) struct Profile {
     pub interval: [Option<f64>; 2],
@@ -120,4 +131,23 @@ fn end(
         }
     }
     Ok(outside.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_share_is_known_no_better_than_what_it_is_a_share_of() {
+        let own = [Some(0.08), Some(0.125)];
+        let known = of_share(0.1, own, 0.0);
+        assert!(known.iter().zip(own).all(|(a, b)| (a.unwrap() - b.unwrap()).abs() < 1e-12));
+        let [low, high] = of_share(0.1, own, 0.2);
+        let expected = (1.25_f64.ln().powi(2) + 3.841_458_8 * 0.04).sqrt().exp();
+        assert!(
+            (high.unwrap() / 0.1 - expected).abs() < 1e-6 && (0.1 / low.unwrap() - expected).abs() < 1e-6
+        );
+        assert_eq!(of_share(0.1, own, 0.6)[1], None);
+        assert_eq!(of_share(0.0, [Some(0.0), Some(0.03)], 0.1), [Some(0.0), Some(0.03)]);
+    }
 }

@@ -6,6 +6,10 @@
 //! v = F_β(r + ε) + Σ_q Z_q u_q + n,        u_q ~ N(0, s_q²),    ε ~ N(0, σ_r²),    n ~ N(0, σ_v²)
 //! ```
 //!
+//! What a cell has of its own stays as it is where the coefficients change: u is relative to a coefficient c̄ held for the time of a step, so X is that of
+//! cells that are alike and Z does not depend on β. Were both to follow the coefficients, the least `Σ u²/s²` would be had with coefficients too large and
+//! deviations too small by the same factor.
+//!
 //! The deviations are unknowns beside the nudges. Variances are found by restricted likelihood of the linearised problem, deviations and nudges are
 //! what is expected of them given the data, and both follow from each other until they stay.
 
@@ -14,6 +18,7 @@ mod gram;
 mod interval;
 mod inverse;
 mod levels;
+mod own;
 mod step;
 
 use crate::noise::{LARGEST_POSITION_NOISE, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
@@ -24,10 +29,11 @@ use crate::{Error, KnownNoise, NoiseLevels, Observation, Request};
 use columns::{FrameColumns, Layout, columns};
 use gram::Gram;
 use levels::{Held, Likelihood, SMALLEST, Variances};
-use nalgebra::{DMatrix, DVector};
+use nalgebra::{DMatrix, DVector, Matrix4};
+pub(crate) use own::OwnParts;
+use own::coefficient;
 use rayon::prelude::*;
-use std::sync::Arc;
-use voronudge_model::{CellFactors, CellParameter, Environment};
+use voronudge_model::CellParameter;
 
 /// Rounds of variances and steps.
 const ROUNDS: u64 = 8;
@@ -58,7 +64,8 @@ pub struct Spread {
 
 /// A fit with cells that differ.
 pub(crate) struct Differing {
-    pub spreads: Vec<Spread>,
+    /// With intervals that take the coefficients for known.
+    spreads: Vec<Spread>,
     /// The frames with the parameters of their cells.
     pub frames: Vec<Observation>,
     pub found: Found,
@@ -67,11 +74,29 @@ pub(crate) struct Differing {
     pub spent: DMatrix<f64>,
 }
 
+impl Differing {
+    /// The spreads where the coefficients that they are shares of are not known any better than to a covariance.
+    pub fn spreads_beside(&self, coefficients: &DVector<f64>, covariance: &Matrix4<f64>) -> Vec<Spread> {
+        let of = |spread: &Spread| {
+            let which = coefficient(spread.parameter);
+            let relative_error = covariance[(which, which)].sqrt() / coefficients[which].abs();
+            Spread {
+                interval: interval::of_share(spread.value, spread.interval, relative_error),
+                ..spread.clone()
+            }
+        };
+        self.spreads.iter().map(of).collect()
+    }
+}
+
 /// Where the fit stands.
+#[derive(Clone)]
 struct State {
-    frames: Vec<Observation>,
     parameters: Vec<f64>,
+    /// u, relative to the parameters of `reference`.
     deviations: DVector<f64>,
+    /// c̄
+    reference: DVector<f64>,
     levels: NoiseLevels,
     variances: Variances,
 }
@@ -81,23 +106,6 @@ struct Linearised {
     equations: NormalEquations,
     columns: Vec<FrameColumns>,
     left: f64,
-}
-
-/// The frames with the multiples 1 + u.
-fn differing(frames: &[Observation], layout: &Layout, u: &DVector<f64>) -> Result<Vec<Observation>, Error> {
-    let refused = |_| Error::Spread("parameters of cells are not finite");
-    let of_frame = |(frame, cells): (&Observation, &Vec<usize>)| {
-        let mut factors = CellFactors::default();
-        for (block, parameter) in layout.parameters.iter().enumerate() {
-            let first = layout.block(block).start;
-            let own = cells.iter().map(|cell| 1.0 + u[first + cell]).collect();
-            factors = factors.with(*parameter, own).map_err(refused)?;
-        }
-        let environment = Environment::clone(frame.environment());
-        let environment = environment.with_cell_factors(factors).map_err(refused)?;
-        Ok(frame.clone().within(Arc::new(environment)))
-    };
-    frames.iter().zip(&layout.of_frames).map(of_frame).collect()
 }
 
 /// Lets cells differ in the parameters of the request, from a fit in which they do not.
@@ -120,15 +128,16 @@ pub(crate) fn fit(
     let u = DVector::zeros(layout.order());
     let velocity = 2.0 * objective.levels.velocity.ln();
     let mut state = State {
-        frames: differing(objective.frames, &layout, &u)?,
         parameters: found.parameters.clone(),
         deviations: u,
+        reference: objective.space.coefficients(objective.split(&found.parameters).0),
         levels: objective.levels,
         variances: Variances { velocity, of_cells: vec![Some(2.0 * FIRST.ln()); request.varied.len()] },
     };
     let mut steps = 0;
     for round in 0..ROUNDS {
         watch.tell("spreads", (round, ROUNDS), found.value / objective.expected())?;
+        fitting.refer(&mut state);
         let linearised = fitting.linearise(&state)?;
         fitting.estimate(&mut state, &linearised)?;
         let gained = fitting.step(&mut state, &linearised)?;
@@ -138,12 +147,13 @@ pub(crate) fn fit(
         }
     }
     watch.tell("spreads", (ROUNDS, ROUNDS), found.value / objective.expected())?;
+    fitting.refer(&mut state);
     let linearised = fitting.linearise(&state)?;
     let spreads = fitting.spreads(&state, &linearised)?;
-    let (penalty, spent) =
-        (fitting.penalty(&state.variances, &state.deviations), fitting.spent(&state, &linearised)?);
-    let value = fitting.at(&state).value(&state.parameters) + penalty * state.levels.velocity.powi(2);
-    let State { frames, parameters, levels, .. } = state;
+    let spent = fitting.spent(&state, &linearised)?;
+    let value = fitting.value(&state);
+    let frames = fitting.own(&state).frames(objective.frames)?;
+    let State { parameters, levels, .. } = state;
     let found = Found { parameters, value, steps: found.steps + steps, ..found };
     Ok(Differing { spreads, frames, found, levels, spent })
 }
@@ -156,13 +166,36 @@ struct Fitting<'a> {
 }
 
 impl<'a> Fitting<'a> {
-    /// The objective of coefficients and nudges where the deviations are those of a state.
-    fn at<'s>(&'s self, state: &'s State) -> Objective<'s> {
-        Objective { frames: &state.frames, levels: state.levels, ..*self.objective }
+    fn own<'s>(&'s self, state: &'s State) -> OwnParts<'s> {
+        OwnParts { layout: self.layout, deviations: &state.deviations, reference: &state.reference }
+    }
+
+    /// The objective of coefficients and nudges where single cells have parts of their own.
+    fn with<'s>(&'s self, own: &'s OwnParts<'s>, state: &State) -> Objective<'s> {
+        Objective { own: Some(own), levels: state.levels, ..*self.objective }
+    }
+
+    fn coefficients(&self, state: &State) -> DVector<f64> {
+        self.objective.space.coefficients(self.objective.split(&state.parameters).0)
+    }
+
+    /// Makes what cells have of their own relative to the present coefficients.
+    fn refer(&self, state: &mut State) {
+        let present = self.coefficients(state);
+        for (block, parameter) in self.layout.parameters.iter().enumerate() {
+            let ratio = state.reference[coefficient(*parameter)] / present[coefficient(*parameter)];
+            if ratio.is_finite() {
+                state.deviations.rows_range_mut(self.layout.block(block)).scale_mut(ratio);
+                let variance = &mut state.variances.of_cells[block];
+                *variance = variance.map(|own| own + 2.0 * ratio.abs().ln());
+            }
+        }
+        state.reference = present;
     }
 
     fn linearise(&self, state: &State) -> Result<Linearised, Error> {
-        let objective = self.at(state);
+        let own = self.own(state);
+        let objective = self.with(&own, state);
         let equations = objective.linearise(&state.parameters)?;
         let left = (objective.components() as f64 - equations.dimension() as f64).max(1.0);
         Ok(Linearised { equations, columns: columns(&objective, &state.parameters, self.layout)?, left })

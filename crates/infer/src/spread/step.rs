@@ -2,10 +2,11 @@
 
 use super::gram::Gram;
 use super::inverse::inverse;
-use super::{Fitting, Linearised, Spread, State, differing};
+use super::{Fitting, Linearised, Spread, State};
 use crate::Error;
 use crate::least_squares::{invert, within_bounds};
 use crate::noisy_fit::STEPS_PER_ROUND;
+use crate::objective::Objective;
 use crate::search::refine;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -47,17 +48,23 @@ impl Fitting<'_> {
         Gram::new(&linearised.equations, &linearised.columns, log_k, &state.deviations)
     }
 
-    /// What the spreads take off the information on the coefficients.
+    /// What the spreads take off the information that coefficients would have were the multiples of the cells known.
     pub fn spent(&self, state: &State, linearised: &Linearised) -> Result<DMatrix<f64>, Error> {
         let gram = self.gram(state, linearised)?;
         let prior = Prior::new(state.variances.roots(self.layout), &gram.of_cells)?;
-        Ok(gram.mixed.tr_mul(&prior.times(&gram.mixed)))
+        let frames = self.own(state).frames(self.objective.frames)?;
+        let known = Objective { frames: &frames, levels: state.levels, ..*self.objective };
+        let known = known.linearise(&state.parameters)?.reduced()?.information;
+        let information = linearised.equations.reduced_at(state.levels)?.information
+            - gram.mixed.tr_mul(&prior.times(&gram.mixed));
+        Ok(known - information)
     }
 
     /// Φ with the penalty of the deviations.
-    fn value(&self, state: &State) -> f64 {
+    pub fn value(&self, state: &State) -> f64 {
         let penalty = self.penalty(&state.variances, &state.deviations);
-        self.at(state).value(&state.parameters) + penalty * state.levels.velocity.powi(2)
+        let own = self.own(state);
+        self.with(&own, state).value(&state.parameters) + penalty * state.levels.velocity.powi(2)
     }
 
     /// One Gauss–Newton step, halved until it gains; by what share of itself the objective decreases.
@@ -92,17 +99,13 @@ impl Fitting<'_> {
             .collect::<Result<Vec<_>, Error>>()?;
         debug_assert_eq!(of_frames.len(), nudges.len());
         step.extend(of_frames.into_iter().flatten());
-        state.frames = differing(self.objective.frames, self.layout, &state.deviations)?;
         let before = self.value(state);
         let mut scale = 1.0;
         for _ in 0..HALVINGS {
-            let deviations = &state.deviations + &of_cells * scale;
             let next = State {
-                frames: differing(self.objective.frames, self.layout, &deviations)?,
                 parameters: state.parameters.iter().zip(&step).map(|(at, step)| at + scale * step).collect(),
-                deviations,
-                levels: state.levels,
-                variances: state.variances.clone(),
+                deviations: &state.deviations + &of_cells * scale,
+                ..state.clone()
             };
             let after = self.value(&next);
             if after < before {
@@ -113,14 +116,7 @@ impl Fitting<'_> {
             scale *= 0.5;
         }
         // Where contacts change, the nudges may have to go another way.
-        let deviations = &state.deviations + &of_cells;
-        let mut next = State {
-            frames: differing(self.objective.frames, self.layout, &deviations)?,
-            parameters: state.parameters.clone(),
-            deviations,
-            levels: state.levels,
-            variances: state.variances.clone(),
-        };
+        let mut next = State { deviations: &state.deviations + &of_cells, ..state.clone() };
         self.settle(&mut next)?;
         let after = self.value(&next);
         if after < before {
@@ -131,7 +127,8 @@ impl Fitting<'_> {
 
     /// Lets coefficients and nudges follow the deviations.
     fn settle(&self, state: &mut State) -> Result<(), Error> {
-        let settled = refine(&self.at(state), state.parameters.clone(), STEPS_PER_ROUND)?;
+        let own = self.own(state);
+        let settled = refine(&self.with(&own, state), state.parameters.clone(), STEPS_PER_ROUND)?;
         state.parameters = settled.parameters;
         Ok(())
     }

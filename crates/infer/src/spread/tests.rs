@@ -11,27 +11,33 @@ fn the_criterion_is_that_of_the_dense_form() {
     let space = CoefficientSpace::new(&Constraints::default()).unwrap();
     let structure = Structure::base(1.0);
     let levels = NoiseLevels { position: 0.03, velocity: 0.05 };
-    let objective = Objective { frames: &frames, structure: &structure, space: &space, levels };
+    let objective = Objective::new(&frames, &structure, &space, levels);
     let parameters = [CellParameter::PreferredPerimeter, CellParameter::Chirality];
     let layout = Layout::new(&frames, &parameters).unwrap();
     let u = DVector::from_fn(72, |i, _| 0.05 * (i as f64).sin());
-    let frames = differing(&frames, &layout, &u).unwrap();
-    let objective = Objective { frames: &frames, ..objective };
     let mut at = vec![0.1, 3.9, 1.0, 1.6];
+    let reference = space.coefficients(&at);
+    let own = OwnParts { layout: &layout, deviations: &u, reference: &reference };
+    let objective = Objective { own: Some(&own), ..objective };
     at.extend((0..72).map(|k| 0.01 * f64::from(k).sin()));
     let equations = objective.linearise(&at).unwrap();
-    let own = columns(&objective, &at, &layout).unwrap();
+    let of_cells = columns(&objective, &at, &layout).unwrap();
     let log_k = 0.7;
-    let gram = Gram::new(&equations, &own, log_k, &u).unwrap();
+    let gram = Gram::new(&equations, &of_cells, log_k, &u).unwrap();
     let likelihood = Likelihood { layout: &layout, products: &gram.reduced, left: 68.0 };
     let variances = Variances { velocity: -5.0, of_cells: vec![Some(-6.0), Some(-4.0)] };
 
     let (free, nudges) = objective.split(&at);
-    let nudged = objective.place(0, nudges[0]).unwrap();
+    // Columns of the coefficients are those of cells that are alike.
+    let alike = objective.place(0, nudges[0]).unwrap();
     let c = space.coefficients(free);
+    let columns = alike.evaluate(c.as_slice()).by_coefficient;
+    let differing = own.frames(&frames).unwrap();
+    let differing = Objective { frames: &differing, own: None, ..objective };
+    let nudged = differing.place(0, nudges[0]).unwrap();
     let evaluated = nudged.evaluate(c.as_slice());
     let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated).to_dense());
-    let x = DMatrix::from_fn(72, 4, |row, term| evaluated.by_coefficient[term][row / 2][row % 2]);
+    let x = DMatrix::from_fn(72, 4, |row, term| columns[term][row / 2][row % 2]);
     let rest: Vec<f64> =
         residuals(&frames[0], &evaluated.predicted).iter().flat_map(|(_, rest)| [rest.x, rest.y]).collect();
     // Deviations by finite differences: velocities are linear in them.
@@ -40,8 +46,8 @@ fn the_criterion_is_that_of_the_dense_form() {
             .map(|i| {
                 let mut other = u.clone();
                 other[i] += 1.0;
-                let moved = differing(&frames, &layout, &other).unwrap();
-                let moved = Objective { frames: &moved, ..objective }.place(0, nudges[0]).unwrap();
+                let moved = OwnParts { deviations: &other, ..own }.frames(&frames).unwrap();
+                let moved = Objective { frames: &moved, ..differing }.place(0, nudges[0]).unwrap();
                 let moved = moved.evaluate(c.as_slice()).predicted;
                 DVector::from_fn(72, |row, _| (moved[row / 2] - evaluated.predicted[row / 2])[row % 2])
             })

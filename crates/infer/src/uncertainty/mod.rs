@@ -52,7 +52,7 @@ impl<'a> Point<'a> {
     }
 
     fn objective<'s>(&'s self, space: &'s CoefficientSpace) -> Objective<'s> {
-        Objective { frames: self.frames, structure: self.structure, space, levels: self.result.noise }
+        Objective::new(self.frames, self.structure, space, self.result.noise)
     }
 
     /// −2 log likelihood with quantities held, everything else refitted.

@@ -16,13 +16,11 @@ const LEVEL: f64 = 0.05;
 
 /// A parameter by its name.
 pub(super) fn parameter(name: &str) -> Result<CellParameter, String> {
-    CellParameter::from_name(name).filter(|own| *own == OFFERED).ok_or_else(|| {
-        format!("cells may differ in {} only: spreads of other parameters come out too small", OFFERED.name())
+    CellParameter::from_name(name).ok_or_else(|| {
+        let known: Vec<&str> = CellParameter::ALL.iter().map(|own| own.name()).collect();
+        format!("cells may differ in {}", known.join(", "))
     })
 }
-
-/// The parameter whose spread comes out right, as docs/validation/inference.md has it.
-const OFFERED: CellParameter = CellParameter::Chirality;
 
 /// Refuses data and requests that do not go with cells that differ.
 pub(super) fn check(
