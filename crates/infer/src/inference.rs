@@ -10,7 +10,7 @@ use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Nudged, Objective};
 use crate::robust::reweighed;
 use crate::search::Watch;
-use crate::spread;
+use crate::spread::{self, Differing};
 use crate::{
     CoefficientSpace, CrossValidation, Direction, Doubt, Error, Estimate, Examination, FrameResult,
     Inference, KnownNoise, Nmse, NoiseLevels, Observation, ParameterEstimates, Progress, Request, Status,
@@ -74,6 +74,7 @@ pub fn infer(
             Some(spread::fit(&alike, found.clone(), request, &mut watch)?)
         }
     };
+    let alike = frames;
     if let Some(differing) = &differing {
         (frames, levels, found) = (&differing.frames, differing.levels, differing.found.clone());
     }
@@ -85,13 +86,15 @@ pub fn infer(
     let (value, expected) = (found.value / variance, objective.expected() / variance);
     // Where the model misses more than the noise explains, the misfit counts as noise.
     let excess = (value / expected).max(1.0);
-    let equations = objective.linearise(&found.parameters)?;
+    let own = differing.as_ref().map(Differing::own);
+    let fitted = Objective { frames: alike, own: own.as_ref(), ..objective };
+    let equations = fitted.linearise(&found.parameters)?;
     // What is not known of the measurement makes coefficients uncertain.
     let unknowns = frames.first().map_or(&[][..], Observation::unknowns);
     let mut reduced = match unknowns.is_empty() {
         true => equations.reduced()?,
         false => {
-            objective.linearise_with(&found.parameters, unknowns)?.reduced()?.without_last(unknowns.len())?
+            fitted.linearise_with(&found.parameters, unknowns)?.reduced()?.without_last(unknowns.len())?
         }
     };
     // Neither is what single cells are like.

@@ -189,31 +189,37 @@ impl<'a> Objective<'a> {
 
     /// The frame of an index displaced by its nudges, with a new tessellation; a fault is that frame's.
     pub fn place(&self, index: usize, nudges: &[f64]) -> Result<Nudged<'a>, Error> {
+        self.place_within(index, nudges, self.frames[index].environment().clone())
+    }
+
+    /// The same where single cells have parts of their own, which depend on the coefficients.
+    fn place_with_own(
+        &self,
+        index: usize,
+        nudges: &[f64],
+        coefficients: &[f64],
+    ) -> Result<Nudged<'a>, Error> {
+        let around = self.frames[index].environment();
+        let environment = match self.own {
+            Some(own) => own.environment(index, around, coefficients)?,
+            None => around.clone(),
+        };
+        self.place_within(index, nudges, environment)
+    }
+
+    fn place_within(
+        &self,
+        index: usize,
+        nudges: &[f64],
+        environment: Arc<Environment>,
+    ) -> Result<Nudged<'a>, Error> {
         let frame = &self.frames[index];
         let nudges = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1]));
         let positions: Vec<Vector<f64>> = frame.positions.iter().zip(nudges).map(|(r, e)| r + e).collect();
         let tessellation = Tessellation::new(&positions, frame.tessellation.domain())
             .map_err(|source| Error::Geometry { frame: index, source })?;
-        Ok(Nudged::new(frame, self.structure, positions, tessellation))
-    }
-
-    /// The same with what the model says of it. Derivatives by the coefficients are those of cells that are alike.
-    fn evaluated(
-        &self,
-        index: usize,
-        coefficients: &[f64],
-        nudges: &[f64],
-    ) -> Result<(Nudged<'a>, Evaluated), Error> {
-        let nudged = self.place(index, nudges)?;
-        let alike = nudged.evaluate(coefficients);
-        let Some(own) = self.own else {
-            return Ok((nudged, alike));
-        };
-        let environment = own.environment(index, &nudged.environment, coefficients)?;
-        let Nudged { positions, tessellation, sampling, structure, .. } = nudged;
-        let nudged = Nudged::placed(structure, environment, positions, tessellation, sampling);
-        let differing = nudged.evaluate(coefficients);
-        Ok((nudged, Evaluated { by_coefficient: alike.by_coefficient, ..differing }))
+        let sampling = frame.sampling(&tessellation, &positions);
+        Ok(Nudged::placed(self.structure, environment, positions, tessellation, sampling))
     }
 
     /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
@@ -227,10 +233,11 @@ impl<'a> Objective<'a> {
             .enumerate()
             .map(|(index, (frame, nudges))| {
                 // A trial that moves cells onto each other, or opens the polygon of a cell that counts, is no solution.
-                let Ok((nudged, evaluated)) = self.evaluated(index, coefficients.as_slice(), nudges) else {
+                let Ok(nudged) = self.place_with_own(index, nudges, coefficients.as_slice()) else {
                     return (f64::INFINITY, 0.0);
                 };
-                let squares = residuals(frame, &evaluated.predicted)
+                let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
+                let squares = residuals(frame, &predicted)
                     .into_iter()
                     .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
                 let free = self.floor() / self.spring();
@@ -276,7 +283,12 @@ impl<'a> Objective<'a> {
         nudges: &[f64],
     ) -> Result<Measurable<'a>, Error> {
         let frame = &self.frames[index];
-        let (nudged, evaluated) = self.evaluated(index, coefficients, nudges)?;
+        let nudged = self.place_with_own(index, nudges, coefficients)?;
+        let mut evaluated = nudged.evaluate(coefficients);
+        if self.own.is_some() {
+            // What a cell has of its own does not change with the coefficients.
+            evaluated.by_coefficient = self.place(index, nudges)?.evaluate(coefficients).by_coefficient;
+        }
         let rows = residuals(frame, &evaluated.predicted)
             .into_iter()
             .zip(free_rows(frame, &evaluated.by_coefficient, self.space))

@@ -54,7 +54,8 @@ pub struct Spread {
     pub parameter: CellParameter,
     /// Standard deviation over cells, relative to the parameter.
     pub value: f64,
-    /// Ends of the 95 % interval by the profile of the restricted likelihood; `None` where it goes on.
+    /// Ends of the 95 % interval by the profile of the restricted likelihood and the standard error of the coefficient that this is a share of;
+    /// `None` where it goes on.
     pub interval: [Option<f64>; 2],
     /// Probability of so large a likelihood ratio if cells do not differ in this parameter but do in the others.
     pub p: f64,
@@ -72,9 +73,17 @@ pub(crate) struct Differing {
     pub levels: NoiseLevels,
     /// What the spreads take off the information on the coefficients, in units of 1/σ_v².
     pub spent: DMatrix<f64>,
+    layout: Layout,
+    deviations: DVector<f64>,
+    reference: DVector<f64>,
 }
 
 impl Differing {
+    /// What cells have of their own beside the frames in which they are alike.
+    pub fn own(&self) -> OwnParts<'_> {
+        OwnParts { layout: &self.layout, deviations: &self.deviations, reference: &self.reference }
+    }
+
     /// The spreads where the coefficients that they are shares of are not known any better than to a covariance.
     pub fn spreads_beside(&self, coefficients: &DVector<f64>, covariance: &Matrix4<f64>) -> Vec<Spread> {
         let of = |spread: &Spread| {
@@ -153,9 +162,9 @@ pub(crate) fn fit(
     let spent = fitting.spent(&state, &linearised)?;
     let value = fitting.value(&state);
     let frames = fitting.own(&state).frames(objective.frames)?;
-    let State { parameters, levels, .. } = state;
+    let State { parameters, deviations, reference, levels, .. } = state;
     let found = Found { parameters, value, steps: found.steps + steps, ..found };
-    Ok(Differing { spreads, frames, found, levels, spent })
+    Ok(Differing { spreads, frames, found, levels, spent, layout, deviations, reference })
 }
 
 /// What stays the same throughout a fit.

@@ -6,7 +6,6 @@ use super::{Fitting, Linearised, Spread, State};
 use crate::Error;
 use crate::least_squares::{invert, within_bounds};
 use crate::noisy_fit::STEPS_PER_ROUND;
-use crate::objective::Objective;
 use crate::search::refine;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -48,16 +47,11 @@ impl Fitting<'_> {
         Gram::new(&linearised.equations, &linearised.columns, log_k, &state.deviations)
     }
 
-    /// What the spreads take off the information that coefficients would have were the multiples of the cells known.
+    /// What the spreads take off the information on the coefficients.
     pub fn spent(&self, state: &State, linearised: &Linearised) -> Result<DMatrix<f64>, Error> {
         let gram = self.gram(state, linearised)?;
         let prior = Prior::new(state.variances.roots(self.layout), &gram.of_cells)?;
-        let frames = self.own(state).frames(self.objective.frames)?;
-        let known = Objective { frames: &frames, levels: state.levels, ..*self.objective };
-        let known = known.linearise(&state.parameters)?.reduced()?.information;
-        let information = linearised.equations.reduced_at(state.levels)?.information
-            - gram.mixed.tr_mul(&prior.times(&gram.mixed));
-        Ok(known - information)
+        Ok(gram.mixed.tr_mul(&prior.times(&gram.mixed)))
     }
 
     /// Φ with the penalty of the deviations.

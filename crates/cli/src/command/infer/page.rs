@@ -37,7 +37,7 @@ pub(super) fn page(
         report,
         frames: &frames,
         flows: &flows,
-        spreads: &spreads::views(result, &drawn),
+        spreads: &spreads::views(prepared, result, &drawn),
         uncertainty: &answers::figures(answers, result, &prepared.scale, &report.units),
     };
     Ok(page.render()?)

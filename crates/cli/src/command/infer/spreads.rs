@@ -80,14 +80,18 @@ pub(super) fn report(result: &Inference) -> Vec<SpreadReport> {
     result.spreads.iter().map(told).collect()
 }
 
-/// The deviations of the cells of the frames drawn, in parameters in which they are not estimated to be alike.
-pub(super) fn views(result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
+/// The deviations of the cells of the frames drawn whose velocities are explained, in parameters in which they are not estimated to be alike.
+pub(super) fn views(prepared: &Prepared, result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
+    // Of other cells nothing is known but the mean.
+    let of_frame = |spread: &Spread, index: usize| {
+        let mut own = vec![f64::NAN; spread.deviations[index].len()];
+        let explained = prepared.observations[index].targets();
+        explained.for_each(|(cell, _)| own[cell] = spread.deviations[index][cell][0]);
+        own
+    };
     let view = |spread: &Spread| SpreadView {
         symbol: symbol(spread.parameter).into(),
-        drawn: drawn
-            .iter()
-            .map(|index| spread.deviations[*index].iter().map(|own| own[0]).collect())
-            .collect(),
+        drawn: drawn.iter().map(|index| of_frame(spread, *index)).collect(),
     };
     result.spreads.iter().filter(|spread| spread.value > 0.0).map(view).collect()
 }
