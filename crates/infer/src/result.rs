@@ -1,9 +1,10 @@
 //! What a fit answers.
 
-use crate::{Doubt, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
+use crate::{Doubt, Error, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
 use nalgebra::DVector;
+use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::Parameters;
+use voronudge_model::{CellFactors, CellParameter, Environment, Parameters};
 
 /// How a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -181,5 +182,28 @@ impl Inference {
         }
         let pairs = frames.iter().zip(&self.frames);
         Some(pairs.map(|(frame, own)| frame.clone().with_weights(own.weights.clone())).collect())
+    }
+
+    /// The frames with what their cells have of their own in some parameters.
+    ///
+    /// # Errors
+    /// [`Error::Spread`] if that is not finite.
+    pub(crate) fn differing(
+        &self,
+        frames: &[Observation],
+        parameters: &[CellParameter],
+    ) -> Result<Vec<Observation>, Error> {
+        let refused = |_| Error::Spread("parameters of cells are not finite");
+        let of_frame = |(index, frame): (usize, &Observation)| {
+            let mut factors = CellFactors::default();
+            for spread in self.spreads.iter().filter(|own| parameters.contains(&own.parameter)) {
+                let own = spread.deviations[index].iter().map(|own| 1.0 + own[0]).collect();
+                factors = factors.with(spread.parameter, own).map_err(refused)?;
+            }
+            let around =
+                Environment::clone(frame.environment()).with_cell_factors(factors).map_err(refused)?;
+            Ok(frame.clone().within(Arc::new(around)))
+        };
+        frames.iter().enumerate().map(of_frame).collect()
     }
 }

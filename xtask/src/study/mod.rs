@@ -100,7 +100,10 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Pinching => flows::pinching(arguments.seeds),
         Study::PinchRelaxation => pinch_relaxation::run(arguments.seeds),
         Study::Measured => measured::run(&arguments.measured, arguments.seeds, arguments.cells),
-        Study::Spreads => spreads::run(arguments.seeds, arguments.cells, &arguments.only),
+        Study::Spreads => {
+            let searching = arguments.measured.discover;
+            spreads::run(arguments.seeds, arguments.cells, &arguments.only, searching)
+        }
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

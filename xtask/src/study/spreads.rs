@@ -4,7 +4,9 @@ use super::seeds::{on_one_core_each, quartiles};
 use crate::Outcome;
 use claims::Noise;
 use claims::differing::Differing;
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
+use voronudge_infer::discover::{Discovery, Search, discover};
 use voronudge_infer::{Quantity, infer};
 use voronudge_model::CellParameter::{self, AreaElasticity, Chirality, PreferredArea, PreferredPerimeter};
 
@@ -31,12 +33,15 @@ const MEANS: [Quantity; 4] = [
     Quantity::Chirality,
 ];
 
-pub fn run(seeds: u64, cells: Option<usize>, only: &[String]) -> Outcome {
+/// `searching`: whether the sets are given to the search for what is missing, instead of a fit in which cells differ.
+pub fn run(seeds: u64, cells: Option<usize>, only: &[String], searching: bool) -> Outcome {
     let cells = cells.unwrap_or(CELLS);
-    println!(
-        "| cells differ by | let vary | frames | named | median s/truth (quartiles) | s covers | means cover | without spreads | seconds |"
-    );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    if searching {
+        println!("| cells differ by | frames | effects named, in so many sets | verdicts | seconds |");
+        println!("|---|---|---|---|---|");
+    } else {
+        head();
+    }
     let all = [PreferredPerimeter, Chirality, PreferredArea, AreaElasticity];
     let three = &all[..3];
     let settings: [(&str, &[CellParameter], [f64; 4]); 7] = [
@@ -55,11 +60,57 @@ pub fn run(seeds: u64, cells: Option<usize>, only: &[String]) -> Outcome {
                 continue;
             }
             let spreads: Vec<(CellParameter, f64)> = all.into_iter().zip(sizes).collect();
+            if searching {
+                let found = on_one_core_each(seeds, |seed| searched(cells, frames, seed, &spreads))?;
+                print_found(name, frames, &found);
+                continue;
+            }
             let rows = on_one_core_each(seeds, |seed| row(cells, frames, seed, &spreads, varied))?;
             print(name, varied, frames, &rows, &spreads);
         }
     }
     Ok(())
+}
+
+fn head() {
+    println!(
+        "| cells differ by | let vary | frames | named | median s/truth (quartiles) | s covers | means cover | without spreads | seconds |"
+    );
+    println!("|---|---|---|---|---|---|---|---|---|");
+}
+
+/// What is found to be missing in one set.
+fn searched(
+    cells: usize,
+    frames: usize,
+    seed: u64,
+    spreads: &[(CellParameter, f64)],
+) -> Result<(Discovery, f64), Box<dyn std::error::Error>> {
+    let tissue = Differing::new(cells, seed, frames, spreads)?;
+    let measured = tissue.measured(NOISE, seed)?;
+    let begun = std::time::Instant::now();
+    let found = discover(&measured, &Search::new(tissue.request(&[])), &mut |_| ControlFlow::Continue(()))?;
+    Ok((found, begun.elapsed().as_secs_f64()))
+}
+
+/// Effects and verdicts with the number of sets in which they were found.
+fn print_found(name: &str, frames: usize, all: &[(Discovery, f64)]) {
+    let (mut effects, mut verdicts) = (BTreeMap::new(), BTreeMap::new());
+    for (found, _) in all {
+        found.selected.iter().for_each(|own| *effects.entry(own.effect.id).or_insert(0) += 1);
+        *verdicts.entry(format!("{:?}", found.verdict)).or_insert(0) += 1;
+    }
+    let told = |(what, count): (String, i32)| format!("{what} {count}");
+    let effects: Vec<String> =
+        effects.into_iter().map(|(id, count)| told((format!("`{id}`"), count))).collect();
+    let verdicts: Vec<String> = verdicts.into_iter().map(told).collect();
+    let [_, seconds, _] = quartiles(all.iter().map(|(_, seconds)| *seconds).collect());
+    println!(
+        "| {name} | {frames} | {} | {} of {} | {seconds:.0} |",
+        effects.join(", "),
+        verdicts.join(", "),
+        all.len()
+    );
 }
 
 fn row(

@@ -1,12 +1,15 @@
 //! Which effects can be tested on the data.
 
 use super::result::Search;
-use crate::Observation;
+use crate::{Observation, Velocities};
 use voronudge_model::effect::Kind;
-use voronudge_model::{Column, Effect};
+use voronudge_model::{CellParameter, Column, Effect};
 
 /// Frames below which nothing goes on.
 const FEWEST_FRAMES: usize = 3;
+
+/// Cells of all frames above which it is not looked for what single ones have of their own.
+const MOST_CELLS: usize = 2000;
 
 /// Why an effect of the measurement is no candidate.
 const OF_MEASUREMENT: &str = "it belongs to the measurement, and was determined with it before the search";
@@ -27,7 +30,7 @@ impl Candidate {
 
     /// Whether it is of the polarity of cells, which has no columns.
     pub fn is_of_polarity(&self) -> bool {
-        self.effect.is_state()
+        self.effect.is_of_polarity()
     }
 
     /// Whether it is that polarities turn towards those of the neighbours.
@@ -38,6 +41,11 @@ impl Candidate {
     /// Whether it is the polarity of cells itself.
     pub fn is_polarity(&self) -> bool {
         self.is_of_polarity() && !self.is_alignment()
+    }
+
+    /// The parameter in which cells differ, if that is what it says. It has no columns.
+    pub fn differing(&self) -> Option<CellParameter> {
+        self.effect.differing_parameter()
     }
 
     /// Whether it is the measurement that does it.
@@ -58,7 +66,22 @@ pub(super) fn candidates(frames: &[Observation], search: &Search) -> Vec<Candida
     for own in all.iter_mut().filter(|own| search.determined.contains(&own.effect.id)) {
         own.columns = Err(OF_MEASUREMENT);
     }
+    let of_cells = of_cells(frames);
+    for own in all.iter_mut().filter(|own| own.differing().is_some()) {
+        own.columns = of_cells.map(|()| Vec::new());
+    }
     all
+}
+
+/// Whether cells can have parameters of their own.
+fn of_cells(frames: &[Observation]) -> Result<(), &'static str> {
+    match frames.iter().map(|frame| frame.positions.len()).sum::<usize>() {
+        _ if frames.iter().any(|frame| matches!(frame.velocities, Velocities::OnGrid(_))) => {
+            Err("velocities on a grid are not those of single cells")
+        }
+        0..=MOST_CELLS => Ok(()),
+        _ => Err("it is looked for among 2000 cells of all frames at most; infer --vary takes more"),
+    }
 }
 
 /// The same for effects whatever is known.
@@ -91,6 +114,9 @@ pub(super) fn candidates_of_tracks(frames: &[Observation], effects: &[&'static E
                 Err("it shows in how cells go on, which takes three frames or more")
             }
             _ if own.is_of_polarity() => Ok(Vec::new()),
+            _ if own.differing().is_some() => Err(
+                "it is told from velocities of cells: --difference central, and infer --vary, ask of these",
+            ),
             "persistence" => Err("with tracks, what persists is the polarity of the cells: see there"),
             "alignment" => {
                 Err("with tracks, what aligns are the polarities of the cells: see polarity_alignment")

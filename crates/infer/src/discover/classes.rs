@@ -2,6 +2,7 @@
 
 use super::chance::Chance;
 use super::crawling::Crawling;
+use super::heterogeneity::Heterogeneity;
 use super::lineup::added_places;
 use super::resilience::{Member, partial};
 use super::result::Selected;
@@ -75,13 +76,16 @@ pub(super) fn without_each(
         let mine = worth(score.statistic, score.dimension);
         // What another explains is measured with the same noise.
         let unit = score.statistic / projected.gain(*candidate).max(f64::MIN_POSITIVE);
-        let rivals = on_offer.iter().filter(|k| *k != candidate).map(|k| {
+        let rivals = on_offer.iter().filter(|k| *k != candidate).filter_map(|k| {
             let other = projected.score(*k);
-            (
-                *k,
-                mine - worth(projected.gain(*k) * unit, other.dimension),
-                other.coefficients.as_slice().to_vec(),
-            )
+            // What has no columns cannot stand in its place here.
+            (other.dimension > 0).then(|| {
+                (
+                    *k,
+                    mine - worth(projected.gain(*k) * unit, other.dimension),
+                    other.coefficients.as_slice().to_vec(),
+                )
+            })
         });
         let member = Member { candidate: *candidate, places, others: &others, statistic: score.statistic };
         let adjusted_p = chance.adjusted(score.p);
@@ -102,16 +106,17 @@ pub(super) fn without_each(
     Ok(all)
 }
 
-/// The effects added with all that is known of them.
+/// The effects added with all that is known of them, and the parameters in which cells differ beside them.
 pub(super) fn selection(
     setting: &Setting<'_>,
     base: &Model,
-    model: &Model,
-    tested: &[Tested],
+    (model, tested): (&Model, &[Tested]),
+    differing: Option<&Heterogeneity>,
     watch: &mut Watch<'_>,
 ) -> Result<Selection, Error> {
     let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
-    let excess = Excess::new(setting, base, model, watch)?;
+    let last = differing.map_or(model, |own| &own.model);
+    let excess = Excess::new(setting, base, last, watch)?;
     let mut selected = Vec::with_capacity(tested.len());
     for (tested, places) in tested.iter().zip(&places.effects) {
         let candidate = &setting.candidates[tested.candidate];
@@ -136,6 +141,10 @@ pub(super) fn selection(
         for (own, tested) in selected.iter_mut().zip(tested) {
             own.share_of_excess = share * tested.statistic / sum.max(f64::MIN_POSITIVE);
         }
+    }
+    if let Some(differing) = differing {
+        let explained: f64 = selected.iter().map(|own: &Selected| own.share_of_excess).sum();
+        selected.extend(differing.selected(setting, (share - explained).max(0.0))?);
     }
     Ok(Selection { selected, share, largest_share: excess.share(1.645) })
 }

@@ -14,6 +14,9 @@ use crate::search::Watch;
 /// Effects refused because of velocities held out before the search ends.
 const MOST_REFUSED: usize = 3;
 
+/// Why an effect is taken back.
+const CHANCE: &str = "with all else in the model it is no more than chance";
+
 /// A search under way.
 pub(super) struct Growth<'a> {
     pub setting: Setting<'a>,
@@ -139,7 +142,7 @@ impl<'a> Growth<'a> {
         let grown = self.tested(model, watch)?;
         let setting = self.setting;
         self.prune(grown, models, watch, |own, others| match own.adjusted_p >= setting.level(others) {
-            true => Some("with all else in the model it is no more than chance"),
+            true => Some(CHANCE),
             false => own.weakness,
         })
     }
@@ -156,6 +159,22 @@ impl<'a> Growth<'a> {
             (null_data::probability(null_sets, own.p) >= level).then_some(
                 "synthetic data without any effect, searched in the same way, lead to one as often",
             )
+        })
+    }
+
+    /// Takes back one effect, for a reason, and what is then no more than chance.
+    pub fn take_back(
+        &mut self,
+        grown: Grown,
+        candidate: usize,
+        reason: &'static str,
+        watch: &mut Watch<'_>,
+    ) -> Result<Option<Grown>, Error> {
+        let setting = self.setting;
+        self.prune(grown, Vec::new(), watch, |own, others| match own.candidate == candidate {
+            true => Some(reason),
+            false if own.adjusted_p >= setting.level(others) => Some(CHANCE),
+            false => own.weakness,
         })
     }
 

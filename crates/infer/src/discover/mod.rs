@@ -15,6 +15,7 @@ mod classes;
 mod crawling;
 mod evidence;
 mod growth;
+mod heterogeneity;
 mod lineup;
 mod measurement;
 mod null_data;
@@ -85,26 +86,43 @@ fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Er
             grown = growth.confirm(unconfirmed, &null_sets, watch)?;
         }
     }
+    let mut differing = None;
+    if testable && setting.movie.is_none() {
+        (grown, differing) = heterogeneity::beside(&mut growth, grown, watch)?;
+    }
     let base_folds = folds(&setting, &base, &split, watch)?;
     let base_error = evidence::error(&base, base_folds.as_ref());
     let evidence = Evidence { frames, identities: search.identities.as_deref(), base_error };
     let before = evidence.of(&base, base_folds.as_ref())?;
-    let (mut after, mut selected) = (before.clone(), Selection::default());
+    let mut own_folds = None;
     let (mut gain, mut likelihood_gain) = (None, None);
-    if let Some(Grown { model, tested }) = &grown {
-        let own_folds = folds(&setting, model, &split, watch)?;
-        after = evidence.of(model, own_folds.as_ref())?;
-        selected = selection(&setting, &base, model, tested, watch)?;
+    if let Some(Grown { model, .. }) = &grown {
+        own_folds = folds(&setting, model, &split, watch)?;
         gain = base_folds.as_ref().zip(own_folds.as_ref()).map(|(base, own)| base.gain(own));
         likelihood_gain = growth.likelihood_gain(model, watch)?;
+    }
+    let (extended, tested) = grown.as_ref().map_or((&base, &[][..]), |own| (&own.model, &own.tested));
+    let after = match (&differing, &grown) {
+        // Velocities held out are predicted with what all cells share.
+        (Some(own), _) => {
+            let evidence = Evidence { frames: own.model.frames(frames), ..evidence };
+            evidence.of(&own.model, own_folds.as_ref().or(base_folds.as_ref()))?
+        }
+        (None, Some(grown)) => evidence.of(&grown.model, own_folds.as_ref())?,
+        (None, None) => before.clone(),
+    };
+    let mut selected = Selection::default();
+    if grown.is_some() || differing.is_some() {
+        selected = selection(&setting, &base, (extended, tested), differing.as_ref(), watch)?;
     }
     // Where something goes on in time, what describes it in space alone says little.
     let describes = testable && (setting.movie.is_none() || grown.is_none());
     let description = if describes { describe(&growth, &split, watch)? } else { None };
     let mut ranking = growth.ranking;
     ranking.settle(&selected);
-    let last = grown.as_ref().map_or(&base, |grown| &grown.model);
+    let last = differing.as_ref().map_or(extended, |own| &own.model);
     let proven = match search.fit.cross_validation {
+        _ if differing.is_some() => false,
         CrossValidation::Done => gain.is_some_and(verdict::predicts_better),
         CrossValidation::Skipped => true,
     };

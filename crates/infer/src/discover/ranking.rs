@@ -11,6 +11,9 @@ use voronudge_model::Effect;
 /// Why it is no question whether polarities align.
 const NO_POLARITY: &str = "no polarity was found that could align";
 
+/// Why it was not asked whether cells differ.
+const NOTHING_TO_TELL: &str = "the velocities are too few to tell";
+
 /// All candidates, the smallest p first; those that cannot be tested at the end.
 pub(super) struct Ranking {
     pub candidates: Vec<Ranked>,
@@ -32,6 +35,9 @@ impl Ranking {
             let score = projected.score(k);
             if candidate.is_alignment() {
                 return untested(effect, Fate::NotTestable(NO_POLARITY));
+            }
+            if candidate.differing().is_some() {
+                return untested(effect, Fate::NotTestable(NOTHING_TO_TELL));
             }
             if score.dimension == 0 {
                 return untested(effect, Fate::Absorbed);
@@ -66,7 +72,7 @@ impl Ranking {
         let known = std::mem::replace(self, Self::new(setting, lineup)).candidates;
         known
             .into_iter()
-            .filter(|own| own.effect.is_state() && own.dimension > 0)
+            .filter(|own| own.effect.is_of_polarity() && own.dimension > 0)
             .for_each(|own| self.put(own));
     }
 
@@ -89,7 +95,10 @@ impl Ranking {
     pub fn settle(&mut self, selection: &Selection) {
         for ranked in &mut self.candidates {
             let is = |other: &Effect| other.id == ranked.effect.id;
-            let fate = if selection.selected.iter().any(|own| is(own.effect)) {
+            let fate = if let Some(own) = selection.selected.iter().find(|own| is(own.effect)) {
+                if ranked.size.is_nan() {
+                    ranked.size = own.size;
+                }
                 Some(Fate::Selected)
             } else if let Some(own) =
                 selection.selected.iter().find(|own| own.class.iter().any(|other| is(other)))

@@ -244,6 +244,16 @@ impl Discovery {
         super::verdict::doubt_of_measurement(&self.after)
     }
 
+    /// The effects added that act on all cells alike.
+    pub fn shared(&self) -> impl Iterator<Item = &Selected> {
+        self.selected.iter().filter(|own| own.effect.differing_parameter().is_none())
+    }
+
+    /// Whether single cells have something of their own.
+    pub fn cells_differ(&self) -> bool {
+        self.shared().count() < self.selected.len()
+    }
+
     /// Whether the effects predict data held out better, by more than the standard error of the difference.
     pub fn predicts_better(&self) -> bool {
         self.gain.is_some_and(super::verdict::predicts_better)

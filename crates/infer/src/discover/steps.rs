@@ -13,6 +13,7 @@ use crate::{
     Activity, CoefficientSpace, CrossValidation, Error, Examination, Inference, NoiseLevels, Observation,
     Request, infer,
 };
+use voronudge_model::CellParameter;
 
 /// Fall of `−2 log L` by which a candidate may be behind the first and is still refitted with it.
 const CONTENDERS: f64 = 16.0;
@@ -134,6 +135,24 @@ impl Setting<'_> {
         let frames = weighed.as_deref().unwrap_or(self.frames);
         let lineup = Lineup::new(frames, &self.search.fit, self.candidates, &added, &inference)?;
         Ok(Model { space: request.space()?, added, request, inference, lineup, followed: None, weighed })
+    }
+
+    /// A model whose cells differ in some parameters, too. Its frames have the parameters of their cells.
+    pub fn differing(
+        &self,
+        model: &Model,
+        varied: Vec<CellParameter>,
+        watch: &mut Watch<'_>,
+    ) -> Result<Model, Error> {
+        let request = Request { varied, ..model.request.clone() };
+        let inference = infer(self.frames, &request, watch.observe)?;
+        let weighed = inference.weighed(self.frames);
+        let frames = weighed.as_deref().unwrap_or(self.frames);
+        let frames = inference.differing(frames, &request.varied)?;
+        let (candidates, added) = (self.candidates, model.added.clone());
+        let lineup = Lineup::new(&frames, &self.search.fit, candidates, &added, &inference)?;
+        let space = request.space()?;
+        Ok(Model { space, added, request, inference, lineup, followed: None, weighed: Some(frames) })
     }
 
     /// Whether it takes too long to refit candidates that are close to each other.

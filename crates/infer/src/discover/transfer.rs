@@ -27,14 +27,14 @@ pub struct Absent {
 }
 
 impl Discovery {
-    /// Predicts the velocities of other frames, in the same units, at their measured positions. `search` is what led to the
+    /// Predicts the velocities of other frames, in the same units, at their measured positions, with what all cells share. `search` is what led to the
     /// result.
     ///
     /// # Errors
     /// [`Absent`] if an effect that was added needs what the other data do not have.
     pub fn predict(&self, search: &Search, frames: &[Observation]) -> Result<Transfer, Absent> {
         let mut columns: Vec<Column> = Vec::new();
-        for own in &self.selected {
+        for own in self.shared() {
             let absent = |reason| Absent { effect: own.effect, reason };
             for frame in frames {
                 let there = own.effect.columns(frame.environment(), frame.tessellation.domain());

@@ -16,6 +16,8 @@ const LARGEST: usize = 4000;
 #[derive(Debug, Clone)]
 pub(super) struct Layout {
     pub parameters: Vec<CellParameter>,
+    /// Unknowns of one cell.
+    pub blocks: usize,
     /// Number of cells of the tissue.
     pub cells: usize,
     /// Which of them the cells of each frame are.
@@ -47,12 +49,24 @@ impl Layout {
         if cells * parameters.len() > LARGEST {
             return Err(Error::Spread("cells that differ are told of up to 4000 cells times parameters"));
         }
-        Ok(Self { parameters: parameters.to_vec(), cells, of_frames })
+        Ok(Self { parameters: parameters.to_vec(), blocks: parameters.len(), cells, of_frames })
+    }
+
+    /// The two components of a smooth velocity that is another in each frame, with a centre at each cell.
+    pub fn of_field(frames: &[Observation]) -> Self {
+        let mut cells = 0;
+        let of_frame = |frame: &Observation| {
+            let first = cells;
+            cells += frame.positions.len();
+            (first..cells).collect()
+        };
+        let of_frames = frames.iter().map(of_frame).collect();
+        Self { parameters: Vec::new(), blocks: 2, cells, of_frames }
     }
 
     /// Number of unknowns.
     pub fn order(&self) -> usize {
-        self.parameters.len() * self.cells
+        self.blocks * self.cells
     }
 
     /// The unknowns of one parameter.
@@ -79,29 +93,54 @@ pub(super) fn columns(
     parameters: &[f64],
     layout: &Layout,
 ) -> Result<Vec<FrameColumns>, Error> {
+    about(objective, parameters, |index, linear| of_parameters(linear, layout, index))
+}
+
+/// The same for a smooth velocity, as a sum of patches of a width.
+pub(super) fn columns_of_field(
+    objective: &Objective<'_>,
+    parameters: &[f64],
+    (layout, width): (&Layout, f64),
+) -> Result<Vec<FrameColumns>, Error> {
+    about(objective, parameters, |index, linear| of_patches(linear, (layout, width), index))
+}
+
+/// A frame linearised about a point.
+struct Linear<'a> {
+    frame: &'a Observation,
+    measurable: Measurable<'a>,
+    coefficients: &'a [f64],
+    /// The row of each datum; none is as large as [`usize::MAX`].
+    row_of: Vec<usize>,
+}
+
+/// All frames with the columns that `of_cells` makes of them.
+fn about(
+    objective: &Objective<'_>,
+    parameters: &[f64],
+    of_cells: impl Fn(usize, &Linear<'_>) -> DMatrix<f64> + Sync,
+) -> Result<Vec<FrameColumns>, Error> {
     let (free, nudges) = objective.split(parameters);
     let coefficients = objective.space.coefficients(free);
     let frames = (0..objective.frames.len()).into_par_iter().map(|index| {
-        let measurable = objective.measurable(index, coefficients.as_slice(), nudges[index])?;
         let frame = &objective.frames[index];
-        Ok(of_frame(frame, measurable, coefficients.as_slice(), nudges[index], (layout, index)))
+        let mut measurable = objective.measurable(index, coefficients.as_slice(), nudges[index])?;
+        frame.weigh(&mut measurable.rows, &mut measurable.jacobian);
+        let mut row_of = vec![usize::MAX; frame.velocities.values().len()];
+        measurable.rows.iter().enumerate().for_each(|(row, (datum, ..))| row_of[*datum] = row);
+        let linear = Linear { frame, measurable, coefficients: coefficients.as_slice(), row_of };
+        let of_cells = of_cells(index, &linear);
+        Ok(linear.with(of_cells, nudges[index]))
     });
     frames.collect()
 }
 
-fn of_frame(
-    frame: &Observation,
-    measurable: Measurable<'_>,
-    coefficients: &[f64],
-    nudges: &[f64],
-    (layout, index): (&Layout, usize),
-) -> FrameColumns {
-    let Measurable { nudged, mut rows, mut jacobian, .. } = measurable;
-    frame.weigh(&mut rows, &mut jacobian);
+/// What the parameters of single cells do.
+fn of_parameters(linear: &Linear<'_>, layout: &Layout, index: usize) -> DMatrix<f64> {
+    let Linear { frame, measurable, coefficients, row_of } = linear;
+    let nudged = &measurable.nudged;
     let model = nudged.model(coefficients);
-    let mut row_of = vec![usize::MAX; frame.positions.len()];
-    rows.iter().enumerate().for_each(|(row, (datum, ..))| row_of[*datum] = row);
-    let mut of_cells = DMatrix::zeros(2 * rows.len(), layout.order());
+    let mut of_cells = DMatrix::zeros(2 * measurable.rows.len(), layout.order());
     for (block, parameter) in layout.parameters.iter().enumerate() {
         let tessellation = &nudged.tessellation;
         let found = cell_derivatives(tessellation, &nudged.positions, &model, *parameter);
@@ -117,25 +156,50 @@ fn of_frame(
             tessellation.ring(cell).for_each(|h| add(tessellation.neighbour(h), found.on_neighbour[h]));
         }
     }
-    if frame.background_dimension() > 0 {
-        for mut column in of_cells.column_iter_mut() {
-            let mut field: Vec<Vector<f64>> =
-                column.as_slice().chunks_exact(2).map(|v| Vector::new(v[0], v[1])).collect();
-            frame.remove_background(&mut field);
-            column.iter_mut().zip(field.iter().flatten()).for_each(|(to, from)| *to = *from);
+    of_cells
+}
+
+/// Velocities that fall off with the distance from each cell, along x and along y.
+fn of_patches(linear: &Linear<'_>, (layout, width): (&Layout, f64), index: usize) -> DMatrix<f64> {
+    let Linear { frame, measurable, row_of, .. } = linear;
+    let domain = frame.tessellation.domain();
+    let mut of_cells = DMatrix::zeros(2 * measurable.rows.len(), layout.order());
+    for (cell, centre) in frame.positions.iter().enumerate() {
+        for (datum, row) in row_of.iter().enumerate().filter(|own| *own.1 != usize::MAX) {
+            let away = domain.shortest(frame.place(datum) - centre).norm_squared();
+            let value = (-0.5 * away / (width * width)).exp();
+            for (block, start) in [layout.block(0).start, layout.block(1).start].into_iter().enumerate() {
+                of_cells[(2 * row + block, start + layout.of_frames[index][cell])] = value;
+            }
         }
     }
-    for (row, (datum, ..)) in rows.iter().enumerate() {
-        let root = frame.weight(*datum).sqrt();
-        of_cells.rows_mut(2 * row, 2).iter_mut().for_each(|entry| *entry *= root);
+    of_cells
+}
+
+impl Linear<'_> {
+    /// The columns of one frame as they are measured and weighed.
+    fn with(self, mut of_cells: DMatrix<f64>, nudges: &[f64]) -> FrameColumns {
+        let Self { frame, measurable: Measurable { rows, jacobian, .. }, .. } = self;
+        if frame.background_dimension() > 0 {
+            for mut column in of_cells.column_iter_mut() {
+                let mut field: Vec<Vector<f64>> =
+                    column.as_slice().chunks_exact(2).map(|v| Vector::new(v[0], v[1])).collect();
+                frame.remove_background(&mut field);
+                column.iter_mut().zip(field.iter().flatten()).for_each(|(to, from)| *to = *from);
+            }
+        }
+        for (row, (datum, ..)) in rows.iter().enumerate() {
+            let root = frame.weight(*datum).sqrt();
+            of_cells.rows_mut(2 * row, 2).iter_mut().for_each(|entry| *entry *= root);
+        }
+        let p = rows.first().map_or(0, |(_, _, x)| x.ncols());
+        let free = DMatrix::from_fn(2 * rows.len(), p, |i, k| rows[i / 2].2[(i % 2, k)]);
+        let back: Vec<Vector<f64>> =
+            rows.iter().map(|(datum, rest, _)| linearised_back(&jacobian, (*datum, *rest), nudges)).collect();
+        let data = DVector::from_fn(2 * rows.len(), |i, _| back[i / 2][i % 2]);
+        let datum_of: Vec<usize> = rows.iter().map(|row| row.0).collect();
+        FrameColumns { coupled: coupled(&jacobian, &datum_of, &of_cells, nudges.len()), of_cells, free, data }
     }
-    let p = rows.first().map_or(0, |(_, _, x)| x.ncols());
-    let free = DMatrix::from_fn(2 * rows.len(), p, |i, k| rows[i / 2].2[(i % 2, k)]);
-    let back: Vec<Vector<f64>> =
-        rows.iter().map(|(datum, rest, _)| linearised_back(&jacobian, (*datum, *rest), nudges)).collect();
-    let data = DVector::from_fn(2 * rows.len(), |i, _| back[i / 2][i % 2]);
-    let datum_of: Vec<usize> = rows.iter().map(|row| row.0).collect();
-    FrameColumns { coupled: coupled(&jacobian, &datum_of, &of_cells, nudges.len()), of_cells, free, data }
 }
 
 /// JᵀZ

@@ -27,6 +27,12 @@ pub(super) fn of_share(value: f64, interval: [Option<f64>; 2], relative_error: f
     [low, high.map(|high| if value > 0.0 { value * wider(high).exp() } else { high })]
 }
 
+/// The probability of so large a fall of −2 log L if cells do not differ. Half of the time there is none at all, because a variance at its bound
+/// cannot fall below it.
+pub(crate) fn probability(fall: f64) -> f64 {
+    if fall > 0.0 { 0.5 * ChiSquared::new(1.0).map_or(f64::NAN, |chi| chi.sf(fall)) } else { 1.0 }
+}
+
 /// What the likelihood says of one spread.
 pub(super) struct Profile {
     pub interval: [Option<f64>; 2],
@@ -40,7 +46,7 @@ impl Fitting<'_> {
         let (_, best, least) = self.over_springs(&grams, linearised.left, &state.variances, None)?;
         let of = |parameter: usize| {
             let interval = self.interval(&grams, linearised.left, &best, least, parameter)?;
-            Ok(Profile { interval, p: self.p_value(state, linearised, (&grams, least), parameter)? })
+            Ok(Profile { interval, p: self.p_value(state, linearised, least, parameter)? })
         };
         (0..self.layout.parameters.len()).map(of).collect()
     }
@@ -87,23 +93,18 @@ impl Fitting<'_> {
         Ok([Some(lower), Some(end(&rise, (outside, beyond), inside)?)])
     }
 
-    /// The probability of so large a fall of −2 log L, `least` at the end, if there is no such spread. Half of the time there is none at all,
-    /// because a variance at its bound cannot fall below it.
+    /// The probability of so low a −2 log L, `least`, if there is no such spread.
     fn p_value(
         &self,
         state: &State,
         linearised: &Linearised,
-        (grams, least): (&[Gram; 3], f64),
+        least: f64,
         parameter: usize,
     ) -> Result<f64, Error> {
         let mut without = state.variances.clone();
         without.of_cells[parameter] = None;
-        let (log_k, _, _) = self.over_springs(grams, linearised.left, &without, Some(parameter))?;
-        // Without the spread the most likely spring can be another.
-        let around = self.grams(state, linearised, log_k)?;
-        let (_, _, criterion) = self.over_springs(&around, linearised.left, &without, Some(parameter))?;
-        let fall = criterion - least;
-        Ok(if fall > 0.0 { 0.5 * ChiSquared::new(1.0).map_or(f64::NAN, |chi| chi.sf(fall)) } else { 1.0 })
+        let criterion = self.criterion(state, linearised, &without)?;
+        Ok(probability(criterion - least))
     }
 }
 

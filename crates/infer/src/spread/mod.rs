@@ -14,6 +14,7 @@
 //! what is expected of them given the data, and both follow from each other until they stay.
 
 mod columns;
+mod evidence;
 mod gram;
 mod interval;
 mod inverse;
@@ -27,7 +28,9 @@ use crate::objective::Objective;
 use crate::search::{Found, Watch};
 use crate::{Error, KnownNoise, NoiseLevels, Observation, Request};
 use columns::{FrameColumns, Layout, columns};
+pub(crate) use evidence::{evidence, evidence_of_field};
 use gram::Gram;
+pub(crate) use interval::probability;
 use levels::{Held, Likelihood, SMALLEST, Variances};
 use nalgebra::{DMatrix, DVector, Matrix4};
 pub(crate) use own::OwnParts;
@@ -204,10 +207,17 @@ impl<'a> Fitting<'a> {
 
     fn linearise(&self, state: &State) -> Result<Linearised, Error> {
         let own = self.own(state);
+        let columns = columns(&self.with(&own, state), &state.parameters, self.layout)?;
+        self.linearised(state, columns)
+    }
+
+    /// The same with columns of the cells that are known.
+    fn linearised(&self, state: &State, columns: Vec<FrameColumns>) -> Result<Linearised, Error> {
+        let own = self.own(state);
         let objective = self.with(&own, state);
         let equations = objective.linearise(&state.parameters)?;
         let left = (objective.components() as f64 - equations.dimension() as f64).max(1.0);
-        Ok(Linearised { equations, columns: columns(&objective, &state.parameters, self.layout)?, left })
+        Ok(Linearised { equations, columns, left })
     }
 
     /// `Σ u² / s²`

@@ -23,6 +23,7 @@ mod external_field;
 mod flow_blur;
 mod flow_gain;
 mod friction_gradient;
+mod heterogeneity;
 mod internal_drag;
 mod kp_gradient;
 mod label_parameter;
@@ -85,7 +86,7 @@ pub use size_friction::SizeFriction;
 pub use smooth_field::{Polarisation, WaveFlow};
 pub use time_lag::TimeLag;
 
-use crate::{Environment, Parity, Response, Term};
+use crate::{CellParameter, Environment, Parity, Response, Term};
 use voronudge_geometry::Domain;
 
 /// One coefficient's contribution to the velocities.
@@ -168,9 +169,14 @@ impl Effect {
         self.columns(environment, domain).map(|_| ())
     }
 
-    /// Whether it is an unknown state of the cells, which a fit of tracks finds, instead of columns.
-    pub fn is_state(&self) -> bool {
+    /// Whether it is about the polarity of cells, an unknown state that a fit of tracks finds, and has no columns.
+    pub fn is_of_polarity(&self) -> bool {
         [polarity::EFFECT.id, polarity_alignment::EFFECT.id].contains(&self.id)
+    }
+
+    /// The parameter in which cells differ, if that is what it says; it then has no columns.
+    pub fn differing_parameter(&self) -> Option<CellParameter> {
+        heterogeneity::parameter(self)
     }
 
     /// All effects of the catalogue.
@@ -223,6 +229,9 @@ static CATALOGUE: &[Effect] = &[
     alignment::EFFECT,
     polarity::EFFECT,
     polarity_alignment::EFFECT,
+    heterogeneity::ADHESION,
+    heterogeneity::AREA,
+    heterogeneity::CHIRALITY,
     flow_blur::EFFECT,
     flow_gain::EFFECT,
     time_lag::EFFECT,

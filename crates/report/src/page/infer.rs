@@ -3,16 +3,16 @@
 use serde::Serialize;
 
 use super::parameter_table::{TableRow, activity_rows, parameter_rows};
+use super::spreads::SpreadView;
 use super::uncertainty::{Known, Uncertainty};
 use super::words::{data, fit_status, mean_removed, noise_source, warnings};
 use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
-use crate::colour::Palette;
 use crate::error::ReportError;
 use crate::figure::{
     CellScalar, Emphasis, ErrorBar, FlowMap, NudgeHistogram, ObjectiveTrace, ParameterRow, Prediction,
-    VelocityField, cell_map, distribution, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace,
-    polarity_map, predicted_against_measured, velocity_map,
+    VelocityField, cell_map, error_bars, flow_map, nudge_histogram, nudge_map, objective_trace, polarity_map,
+    predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
 use crate::numbers::{NO_VALUE, significant};
@@ -39,40 +39,6 @@ pub struct InferPage<'a> {
     pub spreads: &'a [SpreadView],
     /// What was asked beyond the fit.
     pub uncertainty: &'a Uncertainty,
-}
-
-/// Deviations of cells in one parameter.
-#[derive(Debug, Clone, PartialEq)]
-pub struct SpreadView {
-    /// Symbol of the parameter.
-    pub symbol: String,
-    /// Deviation of each cell of each frame drawn, relative to the mean; NaN where there is none.
-    pub drawn: Vec<Vec<f64>>,
-}
-
-impl SpreadView {
-    fn label(&self) -> String {
-        format!("{} of the cell / mean − 1", self.symbol)
-    }
-
-    fn map(&self, index: usize) -> CellScalar {
-        CellScalar {
-            values: self.drawn.get(index).cloned().unwrap_or_default(),
-            label: self.label(),
-            palette: Palette::Diverging { centre: 0.0 },
-            limits: None,
-        }
-    }
-
-    fn histogram(&self) -> Figure {
-        let values: Vec<f64> = self.drawn.iter().flatten().copied().filter(|own| own.is_finite()).collect();
-        let title = format!("cells differ in {}", self.symbol);
-        Figure::new(
-            distribution(&title, &self.label(), &values, None),
-            "What is expected of each cell of the frames drawn, given the data. Estimates are shrunk towards the mean: they spread \
-             less than the cells do, the less the data say of each.",
-        )
-    }
 }
 
 impl InferPage<'_> {
@@ -201,10 +167,7 @@ impl InferPage<'_> {
                 let map = polarity_map(frame, velocities.as_ref(), units);
                 figures.push(Figure::new(map, "polarities: what the cells move by of themselves"));
             }
-            figures.extend(self.spreads.iter().map(|spread| {
-                let caption = format!("deviations of {}, shrunk towards the mean", spread.symbol);
-                Figure::new(cell_map(frame, &spread.map(index), units), &caption)
-            }));
+            figures.extend(self.spreads.iter().map(|spread| spread.drawn_on(frame, index, units)));
             figures.extend([
                 Figure::new(nudge_map(frame, nudges.as_ref(), units), "nudges, magnified as stated"),
                 Figure::new(cell_map(frame, &area, units), "cell areas"),

@@ -12,16 +12,18 @@ mod phase_diagram;
 mod sections;
 mod simulate;
 mod spectrum;
+mod spreads;
 mod uncertainty;
 mod words;
 
 pub use discover::{DiscoverFigures, DiscoverPage};
-pub use infer::{InferPage, SpreadView};
+pub use infer::InferPage;
 pub use moduli::ModuliPage;
 pub use phase_diagram::PhasePage;
 pub use sections::{Section, SectionPage, Table};
 pub use simulate::SimulatePage;
 pub use spectrum::SpectrumPage;
+pub use spreads::SpreadView;
 pub use uncertainty::Uncertainty;
 
 use minijinja::{AutoEscape, Environment, Value};

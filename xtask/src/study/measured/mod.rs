@@ -43,9 +43,9 @@ pub struct Arguments {
     /// The program to try, instead of the one beside this.
     #[arg(long, value_name = "FILE")]
     program: Option<PathBuf>,
-    /// Also search for missing effects, of which there are none.
+    /// Also search for missing effects, of which there are none; of spreads, search instead of fits in which cells differ.
     #[arg(long)]
-    discover: bool,
+    pub discover: bool,
     /// Hide this share of the detections of `--data`, and see which are found again.
     #[arg(long, value_name = "SHARE", requires = "data", value_parser = share)]
     hidden: Option<f64>,

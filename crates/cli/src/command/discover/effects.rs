@@ -23,6 +23,9 @@ pub(super) fn family(effect: &Effect) -> EffectKind {
         | "friction_gradient"
         | "size_friction"
         | "alpha_area"
+        | "p0_heterogeneity"
+        | "a0_heterogeneity"
+        | "alpha_heterogeneity"
         | "coordination_tension" => EffectKind::Gradient,
         "persistence" | "alignment" | "polarity" | "polarity_alignment" => EffectKind::History,
         "label_parameter" | "external_field" => EffectKind::Measured,
@@ -46,6 +49,7 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
     match (selected.effect.id, count) {
         ("polarity_alignment", 1) => owned(&["J"]),
+        ("p0_heterogeneity" | "a0_heterogeneity" | "alpha_heterogeneity", 1) => owned(&["s"]),
         (_, 1) => vec![String::new()],
         ("drift", 2) => owned(&["along x", "along y"]),
         ("polarity", 2) => owned(&["v_0", "D_r"]),

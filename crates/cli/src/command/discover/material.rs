@@ -139,10 +139,9 @@ fn extended(raw: &Raw, discovery: &Discovery) -> Option<Structure> {
     let domain = prepared.observations.first()?.tessellation.domain();
     let anywhere = Environment::default().about(surroundings::origin(prepared));
     let can_act = discovery
-        .selected
-        .iter()
+        .shared()
         .all(|own| own.effect.columns(&anywhere, domain).is_ok_and(|columns| columns == own.columns));
-    let columns: Vec<Column> = discovery.selected.iter().flat_map(|own| own.columns.clone()).collect();
+    let columns: Vec<Column> = discovery.shared().flat_map(|own| own.columns.clone()).collect();
     can_act.then(|| prepared.request.structure.with(&columns))
 }
 

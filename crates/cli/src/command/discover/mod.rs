@@ -14,7 +14,7 @@ mod surroundings;
 
 use super::fit::{
     ConstraintArguments, Measured, Prepared, PreparedTracks, Question, SearchArguments, SnapshotArguments,
-    arrays, browser, latent, words,
+    arrays, browser, latent, spreads, words,
 };
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -37,7 +37,8 @@ use voronudge_model::Effect;
 ///
 /// Writes report.json, report.html and, each beginning with before_ and after_, nudged_positions.npy,
 /// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy). Where there are tracks and no
-/// velocities, the tracks themselves are searched, which also writes trajectories.npy and, if cells crawl, polarities.npy.
+/// velocities, the tracks themselves are searched, which also writes trajectories.npy and, if cells crawl, polarities.npy. Where cells differ,
+/// after_deviation_*.npy is what each has of its own.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -97,6 +98,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             tracks.write(&mut out, prefix, &data, &prepared, tracked)?;
         }
     }
+    spreads::write(&mut out, "after_", &data, &prepared, last)?;
     latent::write(&mut out, &data, &prepared, last)?;
     let predictions =
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();

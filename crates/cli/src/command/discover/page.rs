@@ -1,7 +1,7 @@
 //! The result of `discover` as a page with figures.
 
 use super::report::Found;
-use crate::command::fit::{Prepared, views};
+use crate::command::fit::{Prepared, spreads, views};
 use crate::failure::Failure;
 use voronudge_geometry::Vector;
 use voronudge_infer::diagnostics::{Bin, Cause, Correlation as Measured, Diagnostics};
@@ -46,6 +46,7 @@ pub(super) fn page(
             .filter(|selected| !selected.partial.is_empty())
             .map(|selected| regression(selected, prepared))
             .collect(),
+        spreads: spreads::views(prepared, fits.after, &drawn),
         outliers: drawn
             .iter()
             .map(|&index| outliers(prepared, &discovery.after.diagnostics, index))

@@ -66,6 +66,14 @@ fn others(selected: &Selected) -> impl Iterator<Item = &'static Effect> {
 fn meaning(selected: &Selected) -> String {
     let text = selected.effect.meaning.trim_end_matches('.');
     match selected.coefficients.as_slice() {
+        [only] if selected.effect.differing_parameter().is_some() => {
+            let [low, high] = only.interval.map(|end| end.map(percent));
+            let interval = match (low, high) {
+                (Some(low), Some(high)) => format!(" (95 %: {low} to {high})"),
+                _ => String::new(),
+            };
+            format!("{text}, by {}{interval}", percent(only.value))
+        }
         [only] if text.contains(POSITIVE) => {
             format!("{text}; here c {} 0", if only.value > 0.0 { ">" } else { "<" })
         }
@@ -100,6 +108,9 @@ fn errors(discovery: &Discovery) -> String {
 
 /// Why effects that were found are not all that is missing.
 fn reservation(discovery: &Discovery) -> String {
+    if discovery.cells_differ() && discovery.shared().all(|_| discovery.predicts_better()) {
+        return "but what single cells have of their own predicts no cell that was not seen, so data held out cannot show it".into();
+    }
     if !discovery.predicts_better() {
         let why = discovery.gain.map_or("this could not be put to the test".into(), |[value, error]| {
             format!(
@@ -235,6 +246,13 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
     if discovery.verdict == Verdict::Partial && !discovery.predicts_better() && rest > LEAST_REST {
         sentences.push(format!("A rest of {} of the squared velocities has no name.", percent(rest)));
     }
+    if discovery.cells_differ() {
+        sentences.push(
+            "What single cells have of their own explains whatever varies from cell to cell in the same way: what a cell does beside \
+             the model may pose as it."
+                .into(),
+        );
+    }
     if !discovery.selected.is_empty() {
         sentences.push(format!(
             "This is an association, not a mechanism shown: {} candidates were compared, and something that is not among them may \
@@ -303,6 +321,11 @@ pub(super) fn measure_next(
         Verdict::UnexplainedStructured => advice.push(
             "Whatever else varies across the tissue as the residual does: a marker as labels of cells, or a field to compare \
              with (--field)."
+                .into(),
+        ),
+        Verdict::Partial if discovery.cells_differ() => advice.push(
+            "The same cells in further frames, tracked by name: what a cell has of its own must stay with it. Or a marker as labels, \
+             if cells are of several kinds."
                 .into(),
         ),
         Verdict::Partial => {

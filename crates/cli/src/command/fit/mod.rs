@@ -21,6 +21,7 @@ pub(crate) mod outcome;
 mod prepare;
 pub(crate) mod scaling;
 mod search;
+pub(crate) mod spreads;
 mod tracks;
 pub(crate) mod views;
 pub(crate) mod words;

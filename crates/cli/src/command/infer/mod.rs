@@ -140,7 +140,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
-    spreads::write(&mut out, &data, &prepared, &result)?;
+    super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
     if let Some((tracks, tracked)) = &tracked {
         tracks.write(&mut out, "", &data, &prepared, tracked)?;

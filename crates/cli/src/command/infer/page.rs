@@ -3,9 +3,8 @@
 use super::Arguments;
 use super::answers;
 use super::questions::Answers;
-use super::spreads;
 use crate::command::fit::scaling::symbol;
-use crate::command::fit::{Measured, Prepared, views};
+use crate::command::fit::{Measured, Prepared, spreads, views};
 use crate::failure::Failure;
 use voronudge_geometry::Domain;
 use voronudge_infer::{Inference, Quantity};

@@ -12,6 +12,7 @@ use self::candidates::{CandidateRow, ranking_figure};
 use self::effects::{EffectView, coefficient_figure};
 use self::remainder::Remainder;
 use super::directions::{Directions, directions};
+use super::spreads::SpreadView;
 use super::words::{self, listed, percent};
 use super::{Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
@@ -50,6 +51,8 @@ pub struct DiscoverFigures {
     pub correlations: Vec<CorrelationFunction>,
     /// Partial regression plots of selected effects.
     pub regressions: Vec<PartialRegression>,
+    /// Deviations of the cells in each parameter in which they differ.
+    pub spreads: Vec<SpreadView>,
     /// Suspicious cells, one list for each frame drawn; shorter if the last frames have none.
     pub outliers: Vec<Vec<Outlier>>,
 }
@@ -67,6 +70,7 @@ struct Context<'a> {
     comparison: Comparison,
     panels: Vec<Panel>,
     effects: Vec<EffectView>,
+    spreads: Vec<Figure>,
     coefficients: Option<Figure>,
     ranking_figure: Option<Figure>,
     candidates: Vec<CandidateRow>,
@@ -113,6 +117,7 @@ impl DiscoverPage<'_> {
             comparison: Comparison::new(report),
             panels: self.panels(),
             effects: effects::views(report, &self.figures.regressions),
+            spreads: self.figures.spreads.iter().map(SpreadView::histogram).collect(),
             coefficients: coefficient_figure(report),
             ranking_figure: ranking_figure(report),
             candidates: candidates::rows(report),
@@ -164,6 +169,8 @@ impl DiscoverPage<'_> {
                     "polarities: what the cells move by of themselves",
                 ));
             }
+            let spreads = self.figures.spreads.iter();
+            figures.extend(spreads.map(|spread| spread.drawn_on(&frames.before, index, units)));
             if let Some(outliers) = self.figures.outliers.get(index).filter(|found| !found.is_empty()) {
                 figures.push(Figure::new(
                     outlier_map(&frames.before, outliers, units),
