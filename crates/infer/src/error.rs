@@ -35,6 +35,9 @@ pub enum Error {
     /// All velocities are zero.
     #[error("all measured velocities are zero")]
     NothingMoves,
+    /// Nothing can be forecast.
+    #[error("nothing can be forecast: {0}")]
+    NoForecast(&'static str),
     /// Frames that are no movie.
     #[error(
         "{frames} frames at {times} times are no movie: it takes two frames or more, at times that ascend"
@@ -112,6 +115,9 @@ impl Error {
             ),
             Self::NothingMoves => Some("check the velocities, or give frames in which cells move"),
             Self::TooFewFrames { .. } => Some("choose more frames"),
+            Self::NoForecast(_) => {
+                Some("give the fit fewer of the frames with --frames, so that some are left to be forecast")
+            }
             Self::TooFewPatternCells { .. } => Some(
                 "ask for fewer wave vectors, or choose frames in which more cells are tracked throughout",
             ),

@@ -22,6 +22,7 @@ mod doubts;
 mod error;
 mod estimates;
 mod flow;
+pub mod forecast;
 mod gram;
 mod inference;
 mod latent;

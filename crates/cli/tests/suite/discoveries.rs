@@ -27,7 +27,7 @@ fn discover(data: &Path, flags: &str) -> Folder {
 }
 
 #[track_caller]
-fn assert_valid(report: &Value) {
+pub fn assert_valid(report: &Value) {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/discover.schema.json");
     let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
     let schema = jsonschema::validator_for(&schema).unwrap();

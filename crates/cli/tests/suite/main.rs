@@ -13,6 +13,7 @@ mod evaluations;
 mod fields_of_view;
 mod flow_imports;
 mod flow_inferences;
+mod forecasts;
 mod gradient_checks;
 mod imports;
 mod inferences;

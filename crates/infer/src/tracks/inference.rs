@@ -4,6 +4,7 @@ use super::fit::{Fit, fit};
 use super::held_out::{AsMeasured, HeldOut, MeanVelocities, cross_validate};
 use super::movie::Movie;
 use super::objective::{MovieObjective, Placed};
+use super::present::Dynamics;
 use super::result::{Integration, Tracked};
 use super::rule::Rule;
 use super::states::States;
@@ -263,6 +264,7 @@ fn tracked(objective: &MovieObjective<'_>, found: &Fit) -> Tracked {
             error: found.error,
         },
         polarity: None,
+        dynamics: Dynamics { rule: found.rule, memory: found.memory, levels: found.levels },
     }
 }
 

@@ -5,7 +5,7 @@ use super::states::States;
 use crate::{Error, Observation};
 use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Vector};
-use voronudge_model::Environment;
+use voronudge_model::{Column, Effect, Environment};
 
 /// A cell has room for itself if none is nearer than this, in units of ℓ₀.
 const ROOM: f64 = 0.5;
@@ -60,7 +60,7 @@ impl Track {
         self.sighting(frame).map_or(f64::INFINITY, |sighting| sighting.error)
     }
 
-    fn sighting(&self, frame: usize) -> Option<Sighting> {
+    pub(super) fn sighting(&self, frame: usize) -> Option<Sighting> {
         self.seen.get(frame.checked_sub(self.first)?).copied().flatten()
     }
 
@@ -145,13 +145,13 @@ pub struct Movie {
     /// What moves all cells alike.
     pub drift: Drift,
     /// The share c of the way from a cell's site to its centroid at which its position is measured.
-    share: f64,
+    pub(super) share: f64,
     /// The usual time between two frames.
-    usual: f64,
+    pub(super) usual: f64,
     /// How far the stage had moved in each frame, as far as the increments tell.
-    stage: Vec<Vector<f64>>,
+    pub(super) stage: Vec<Vector<f64>>,
     /// What terms refer to: the middle of the box, or the mean place of the cells.
-    environment: Arc<Environment>,
+    pub(super) environment: Arc<Environment>,
 }
 
 impl Movie {
@@ -212,7 +212,7 @@ impl Movie {
     }
 
     /// What surrounds the cells.
-    pub(super) fn environment(&self) -> Arc<Environment> {
+    pub(crate) fn environment(&self) -> Arc<Environment> {
         self.environment.clone()
     }
 
@@ -221,30 +221,21 @@ impl Movie {
         self.share
     }
 
-    /// The first frames alone. A cell in a gap that goes beyond these is there, unseen.
-    pub(super) fn beginning(&self, frames: usize) -> Self {
-        let frames = frames.min(self.frames());
-        let part = |(number, track): (usize, &Track)| {
-            let sighting = |frame: usize| {
-                track.sighting(frame).or_else(|| self.near(number, frame).map(Sighting::unseen))
-            };
-            let seen: Vec<_> = (track.first..track.end().min(frames)).map(sighting).collect();
-            (!seen.is_empty()).then(|| Track { seen, ..track.clone() })
-        };
-        Self {
-            times: self.times[..frames].to_vec(),
-            tracks: self.tracks.iter().enumerate().filter_map(part).collect(),
-            stage: self.stage[..frames].to_vec(),
-            ..self.clone()
-        }
-    }
-
     /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.
     ///
     /// A track that ends and one that begins a frame or two later are taken for one cell where that is more likely than two that are
     /// there by chance, given how well the motion of its neighbours predicts that of a cell.
     pub fn join(&mut self) -> usize {
         join(self)
+    }
+
+    /// The columns of an effect among its cells.
+    ///
+    /// # Errors
+    /// The reason why the effect cannot act there.
+    pub fn columns(&self, effect: &Effect) -> Result<Vec<Column>, &'static str> {
+        let earlier = Environment::clone(&self.environment).with_earlier(vec![Some(Vector::zeros())]);
+        effect.columns(&earlier.unwrap_or_default(), self.domain)
     }
 
     /// Number of frames.
@@ -296,6 +287,11 @@ impl Movie {
     /// cells do not decide.
     pub fn first_drift(&self, frame: usize) -> Vector<f64> {
         self.stage[frame + 1] - self.stage[frame]
+    }
+
+    /// The same from one frame to another.
+    pub(crate) fn drifted(&self, from: usize, to: usize) -> Vector<f64> {
+        self.stage[to] - self.stage[from]
     }
 
     /// The median of the increments, if the stage may move.

@@ -1,6 +1,7 @@
 //! What the fit of a movie answers beyond parameters.
 
 use super::likely::Polarity;
+use super::present::Dynamics;
 use voronudge_geometry::Vector;
 
 /// How the motion between frames is integrated.
@@ -25,4 +26,6 @@ pub struct Tracked {
     pub integration: Integration,
     /// Polarity of the cells, if it was asked for.
     pub polarity: Option<Polarity>,
+    /// What went on between frames, for those that come.
+    pub(crate) dynamics: Dynamics,
 }

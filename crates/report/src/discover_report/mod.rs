@@ -5,12 +5,14 @@
 //! [`crate::infer_report`].
 
 mod evidence;
+mod forecast;
 mod model_fit;
 mod ranking;
 mod selected;
 mod verdict;
 
 pub use evidence::{Calibration, NoiseBudget, NullSets, Prediction, Predictors, StructureTest, Unexplained};
+pub use forecast::{ForecastReport, Forecasters};
 pub use model_fit::{DescriptionFit, HeldOutError, ModelFit, ModelNmse};
 pub use ranking::{CandidateStatus, EffectKind, Gain, RankedEffect};
 pub use selected::{EffectCoefficient, SelectedEffect};
@@ -69,6 +71,8 @@ pub struct DiscoverReport {
     pub predictors: Option<Predictors>,
     /// Other data sets that were predicted.
     pub predictions: Vec<Prediction>,
+    /// What the cells do next, said before; `null` if that was not asked for.
+    pub forecast: Option<ForecastReport>,
     /// By how much the added effects lower −2 log p of velocities held out, given all others.
     pub likelihood_gain: Option<Gain>,
     /// The synthetic data without an effect to which the search was put.

@@ -35,6 +35,9 @@ fn an_attribution_is_told_from_verdict_to_seed() {
         "<h2>Before and after",
         "0.530 ± 0.024</td><td>0.310 ± 0.024</td><td>0.320 ± 0.024",
         "noise alone: 0.29",
+        "<h2>What the cells do next, said before",
+        "gain by the effects</th><td>0.270 ± 0.010",
+        "wrong by 1.12",
         "after adding density gradient, arrows on the same scale",
         "mis-tracked (1)",
         "<h2>The effect that was added",
@@ -62,7 +65,7 @@ fn an_attribution_is_told_from_verdict_to_seed() {
         assert!(found.is_some(), "{text}");
         rest = &rest[found.unwrap_or(0)..];
     }
-    assert_eq!(figure_count(&html), 1 + (3 + 2) + 2 + 1 + 3 + 1);
+    assert_eq!(figure_count(&html), 1 + 2 + (3 + 2) + 2 + 2 + 1 + 1 + 3 + 1);
 }
 
 #[test]

@@ -2,6 +2,7 @@
 
 mod candidates;
 mod effects;
+mod forecasts;
 mod history;
 mod material;
 mod measured;
@@ -14,7 +15,7 @@ mod surroundings;
 
 use super::fit::{
     ConstraintArguments, Measured, Prepared, PreparedTracks, Question, SearchArguments, SnapshotArguments,
-    arrays, browser, latent, spreads, words,
+    arrays, browser, latent, outcome, spreads, words,
 };
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -23,6 +24,7 @@ use crate::progress::Progress;
 use crate::run::Run;
 use candidates::SearchOptions;
 use clap::Args;
+use forecasts::ForecastArguments;
 use history::{GivenDifference, History};
 use material::{Material, Past, Searched};
 use predictions::PredictionArguments;
@@ -59,6 +61,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     predictions: PredictionArguments,
     #[command(flatten)]
+    forecast: ForecastArguments,
+    #[command(flatten)]
     latent: latent::LatentArguments,
     #[command(flatten)]
     known: ConstraintArguments,
@@ -68,23 +72,31 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("discover", &arguments.common)?;
-    let snapshots = &arguments.snapshots;
-    snapshots.check()?;
+    arguments.snapshots.check()?;
     arguments.latent.check()?;
     let constraints = arguments.known.constraints()?;
     let candidates = arguments.options.candidates()?;
-    let mut data = snapshots.data.load()?;
+    let mut data = arguments.snapshots.data.load()?;
     let map = arguments.field.load(&mut data)?;
+    let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
+    let snapshots = &arguments.snapshots;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
     let mut progress = Progress::new(arguments.common.verbosity());
     let raw = asked.raw(&data, &mut run)?;
     let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), &mut run)?;
     let searched = asked.searched(&raw, (&data, map.as_ref()), &mut progress);
+    let searched = searched.inspect_err(|_| progress.finish())?;
+    let units = outcome::units(&data);
+    let forecast = match &coming {
+        Some(coming) => coming.forecast(&asked, (&data, &units), &searched, &mut run, &mut progress),
+        None => Ok(None),
+    };
     progress.finish();
-    let Searched { material: Material { prepared, tracks }, search, discovery } = searched?;
+    let (forecast, Searched { material: Material { prepared, tracks }, search, discovery }) =
+        (forecast?, searched);
     prepared.caution(&mut run);
     let predictors = raw.past.and_then(|past| past.predictors);
     let last = &discovery.after.inference;
@@ -104,7 +116,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
     let tracks = tracks.as_ref().zip(discovery.after.tracked.as_ref());
     let tracks = tracks.map(|(tracks, tracked)| tracks.report(&prepared, last, tracked));
-    let found = Found { data: &data, prepared: &prepared, tracks, search: &search, predictors, predictions };
+    let found = Found {
+        data: &data,
+        prepared: &prepared,
+        tracks,
+        search: &search,
+        predictors,
+        predictions,
+        forecast,
+    };
     let report = report::report(&run, &found, &discovery);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;

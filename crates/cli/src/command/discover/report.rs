@@ -12,8 +12,8 @@ use voronudge_infer::discover::{
 use voronudge_infer::{Inference, NoiseSource};
 use voronudge_io::DataSet;
 use voronudge_report::discover_report::{
-    Calibration, DescriptionFit, Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Prediction,
-    Predictors, StructureTest, Unexplained, Verdict,
+    Calibration, DescriptionFit, ForecastReport, Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget,
+    NullSets, Prediction, Predictors, StructureTest, Unexplained, Verdict,
 };
 use voronudge_report::infer_report::{Measurement, Quantity, TracksReport};
 use voronudge_report::{BeforeAfter, DiscoverReport, Units};
@@ -26,10 +26,11 @@ pub(super) struct Found<'a> {
     pub search: &'a Search,
     pub predictors: Option<Predictors>,
     pub predictions: Vec<Prediction>,
+    pub forecast: Option<ForecastReport>,
 }
 
 pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> DiscoverReport {
-    let Found { data, prepared, tracks, search, predictors, predictions } = found;
+    let Found { data, prepared, tracks, search, predictors, predictions, forecast } = found;
     let units = outcome::units(data);
     let measurement = Measurement { tracks: tracks.clone(), ..outcome::measurement(data, prepared) };
     let findings = Findings::new(prepared, &measurement);
@@ -60,6 +61,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         },
         predictors: predictors.clone(),
         predictions: predictions.clone(),
+        forecast: forecast.clone(),
         likelihood_gain: discovery.likelihood_gain.map(Gain::from),
         null_sets: NullSets {
             refitted: discovery.null_sets.smallest_p.len(),

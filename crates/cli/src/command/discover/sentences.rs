@@ -140,6 +140,9 @@ fn reservation(discovery: &Discovery) -> String {
 /// there is the fall of the error on motions held out.
 fn explained(discovery: &Discovery) -> String {
     match discovery.after.tracked {
+        Some(_) if discovery.after.budget.effects <= 0.0 => {
+            "nothing of the squared velocities, held out".into()
+        }
         Some(_) => format!("{} of the squared velocities, held out", percent(discovery.after.budget.effects)),
         None => {
             // Something is left, where this is not all.

@@ -4,7 +4,7 @@ use super::sentences::probability;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::DiscoverReport;
-use voronudge_report::discover_report::{HeldOutError, ModelFit};
+use voronudge_report::discover_report::{Gain, HeldOutError, ModelFit};
 use voronudge_report::numbers::{interval_text, significant};
 use voronudge_report::units::unit_text;
 
@@ -15,12 +15,14 @@ const SHOWN: usize = 5;
 pub(super) fn summary(report: &DiscoverReport, folder: &Path) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}: {}\n", report.verdict.name(), report.sentence);
-    for sentence in [&report.caveat, &report.measure_next] {
+    let forecast = report.forecast.as_ref().map_or("", |forecast| forecast.words.as_str());
+    for sentence in [forecast, &report.caveat, &report.measure_next] {
         if !sentence.is_empty() {
             let _ = writeln!(text, "{sentence}\n");
         }
     }
     text.push_str(&errors(report));
+    text.push_str(&forecasts(report));
     text.push_str(&predictions(report));
     text.push_str(&selected(report));
     text.push_str(&ranking(report));
@@ -53,6 +55,25 @@ fn errors(report: &DiscoverReport) -> String {
     row("base", &report.models.before);
     if report.is_extended() {
         row("with effects", &report.models.after);
+    }
+    text
+}
+
+fn forecasts(report: &DiscoverReport) -> String {
+    let Some(forecast) = &report.forecast else { return String::new() };
+    let mut text = String::new();
+    let mut row = |name: &str, cells: &[String]| {
+        let cells: Vec<String> = cells.iter().take(SHOWN).map(|cell| format!("{cell:>15}")).collect();
+        let _ = writeln!(text, "{name:<20}{}", cells.concat());
+    };
+    let ahead: Vec<String> = forecast.horizons.iter().map(|h| format!("{h} ahead")).collect();
+    row("\nforecast skill", &ahead);
+    for (name, skills) in forecast.skill.named() {
+        let cell = |own: &Gain| match own.value.is_finite() {
+            true => format!("{} ± {}", significant(own.value, 3), significant(own.standard_error, 1)),
+            false => "–".into(),
+        };
+        row(name, &skills.iter().map(cell).collect::<Vec<_>>());
     }
     text
 }

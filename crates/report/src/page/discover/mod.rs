@@ -3,6 +3,7 @@
 mod before_after;
 mod candidates;
 mod effects;
+mod forecast;
 mod remainder;
 
 use serde::Serialize;
@@ -10,6 +11,7 @@ use serde::Serialize;
 use self::before_after::{Comparison, NoiseRow, ParameterComparison, PredictionRow};
 use self::candidates::{CandidateRow, ranking_figure};
 use self::effects::{EffectView, coefficient_figure};
+use self::forecast::ForecastView;
 use self::remainder::Remainder;
 use super::directions::{Directions, directions};
 use super::spreads::SpreadView;
@@ -68,6 +70,7 @@ struct Context<'a> {
     is_extended: bool,
     added: String,
     comparison: Comparison,
+    forecast: Option<ForecastView>,
     panels: Vec<Panel>,
     effects: Vec<EffectView>,
     spreads: Vec<Figure>,
@@ -115,6 +118,7 @@ impl DiscoverPage<'_> {
             is_extended: report.is_extended(),
             added: self.added(),
             comparison: Comparison::new(report),
+            forecast: report.forecast.as_ref().map(ForecastView::new),
             panels: self.panels(),
             effects: effects::views(report, &self.figures.regressions),
             spreads: self.figures.spreads.iter().map(SpreadView::histogram).collect(),

@@ -1,0 +1,134 @@
+//! A tissue that goes on by a model, in a box or in an open field of view.
+
+use super::Forecaster;
+use super::crawl::Crawl;
+use super::start::{Begun, Start};
+use crate::Error;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
+use voronudge_geometry::{Tessellation, Vector};
+use voronudge_model::{Model, jacobian, velocities};
+
+/// Rounds in which cells at the rim learn from their neighbours how they move.
+const ROUNDS: usize = 2;
+
+/// Velocities of the cells of which they can be told.
+type Known = Vec<Option<Vector<f64>>>;
+
+/// Cells and the model that moves them.
+pub(super) struct Tissue<'a> {
+    start: &'a Start<'a>,
+    model: Model<f64>,
+    scatter: f64,
+}
+
+impl<'a> Tissue<'a> {
+    pub fn new(start: &'a Start<'a>, by: &Forecaster<'_>) -> Self {
+        let model = by.structure.model(by.coefficients, &start.history());
+        let scatter = by.tracked.map_or(0.0, |tracked| tracked.dynamics.scatter());
+        Self { start, model, scatter }
+    }
+
+    /// Standard deviation, per component, of the mean velocity of a cell over an interval that nothing predicts.
+    pub fn scatter(&self) -> f64 {
+        self.scatter
+    }
+
+    /// Velocities by the forces alone; `None` of cells that do not have all their neighbours in view.
+    pub fn forces(&self, positions: &[Vector<f64>]) -> Result<(Tessellation, Known), Error> {
+        let Start { frame, movie, in_view, .. } = self.start;
+        let tessellation = Tessellation::new(positions, movie.domain)
+            .map_err(|source| Error::Geometry { frame: *frame, source })?;
+        let v = velocities(&tessellation, positions, &self.model);
+        let known =
+            |(v, in_view): (Vector<f64>, &bool)| (*in_view && v.norm_squared().is_finite()).then_some(v);
+        let v = v.into_iter().zip(in_view).map(known).collect();
+        Ok((tessellation, v))
+    }
+
+    /// Root mean square, over the cells in view, of the derivative of a component of the velocity by all positions.
+    pub fn sensitivity(&self) -> f64 {
+        let Start { cells, in_view, .. } = self.start;
+        let jacobian = jacobian(&cells.tessellation, &cells.positions, &self.model);
+        let of_cell = |cell: usize| {
+            jacobian.row(cell).map(|(_, b)| b.iter().map(|d| d * d).sum::<f64>()).sum::<f64>() / 2.0
+        };
+        let all: Vec<f64> = (0..in_view.len()).filter(|cell| in_view[*cell]).map(of_cell).collect();
+        (all.iter().sum::<f64>() / all.len().max(1) as f64).sqrt()
+    }
+
+    /// Velocities with what cells crawl by. Cells at the rim go with their neighbours.
+    fn velocities(
+        &self,
+        positions: &[Vector<f64>],
+        polarities: &[Vector<f64>],
+    ) -> Result<Vec<Vector<f64>>, Error> {
+        let (tessellation, forces) = self.forces(positions)?;
+        let crawl = |(v, p): (Option<Vector<f64>>, &Vector<f64>)| v.map(|v| v + p);
+        let mut known: Known = forces.into_iter().zip(polarities).map(crawl).collect();
+        for _ in 0..ROUNDS {
+            let next = known.iter().enumerate().map(|(cell, own)| {
+                own.or_else(|| {
+                    let neighbours = tessellation.neighbours(cell).iter();
+                    let (sum, count) = neighbours
+                        .filter_map(|other| known[*other as usize])
+                        .fold((Vector::zeros(), 0.0), |(sum, count), v| (sum + v, count + 1.0));
+                    (count > 0.0).then(|| sum / count)
+                })
+            });
+            known = next.collect();
+        }
+        Ok(known.into_iter().map(|v| v.unwrap_or_else(Vector::zeros)).collect())
+    }
+
+    /// Displacements of the cells since the start after each of so many frames, in so many steps of the classical Runge–Kutta method from one to the next;
+    /// if a seed is given, with noise, and with so much error of a coordinate at the start.
+    pub fn run(
+        &self,
+        (begun, crawl): (&Begun, Option<&Crawl>),
+        (horizon, steps): (usize, usize),
+        drawn: Option<(u64, f64)>,
+    ) -> Result<Vec<Vec<Vector<f64>>>, Error> {
+        let from = &self.start.cells.positions;
+        let mut rng = drawn.map(|(seed, _)| Pcg64::seed_from_u64(seed));
+        let mut normal = || rng.as_mut().map_or(0.0, |rng| StandardNormal.sample(rng));
+        let astray = drawn.map_or(0.0, |(_, astray)| astray);
+        let mut positions = begun.positions.clone();
+        for r in &mut positions {
+            *r += Vector::new(normal(), normal()) * astray;
+        }
+        let mut polarities = match crawl {
+            Some(crawl) => crawl.begin(|| Vector::new(normal(), normal())),
+            None => vec![Vector::zeros(); from.len()],
+        };
+        let mut all = Vec::with_capacity(horizon);
+        for ahead in 0..horizon {
+            let interval = self.start.interval(ahead);
+            let h = interval / steps as f64;
+            for _ in 0..steps {
+                let moved = |v: &[Vector<f64>], by: f64| -> Vec<Vector<f64>> {
+                    positions.iter().zip(v).map(|(r, v)| r + v * by).collect()
+                };
+                let first = self.velocities(&positions, &polarities)?;
+                if let Some(crawl) = crawl {
+                    crawl.go_on(&mut polarities, 0.5 * h, || Vector::new(normal(), normal()));
+                }
+                let second = self.velocities(&moved(&first, 0.5 * h), &polarities)?;
+                let third = self.velocities(&moved(&second, 0.5 * h), &polarities)?;
+                if let Some(crawl) = crawl {
+                    crawl.go_on(&mut polarities, 0.5 * h, || Vector::new(normal(), normal()));
+                }
+                let fourth = self.velocities(&moved(&third, h), &polarities)?;
+                for (cell, r) in positions.iter_mut().enumerate() {
+                    *r += (first[cell] + (second[cell] + third[cell]) * 2.0 + fourth[cell]) * (h / 6.0);
+                }
+            }
+            for r in &mut positions {
+                *r += Vector::new(normal(), normal()) * (self.scatter * interval);
+            }
+            all.push(positions.iter().zip(from).map(|(to, from)| to - from).collect());
+        }
+        Ok(all)
+    }
+}

@@ -1,0 +1,104 @@
+use super::*;
+use crate::tracks::sample::{Filmed, TRUTH};
+use crate::{Activity, Constraints, CrossValidation, KnownNoise, Quantity, Request, infer_tracks};
+use voronudge_simulate::Driving;
+
+const NOISE: NoiseLevels = NoiseLevels { position: 1e-3, velocity: 1e-3 };
+
+const SILENT: fn(Progress<'_>) -> ControlFlow<()> = |_| ControlFlow::Continue(());
+
+/// The coefficients with which a tissue was simulated, for the rate of a time unit.
+fn truth(unit: f64) -> [f64; 4] {
+    [0.0, TRUTH[0] * unit, unit, TRUTH[1] * unit]
+}
+
+fn skills(forecasts: &Forecasts, of: Forecast) -> &Skill {
+    forecasts.skills.iter().find(|skill| skill.of == of).unwrap()
+}
+
+/// Without noise the model that moved the cells says where they go.
+#[test]
+fn the_truth_forecasts_what_happens() {
+    let filmed = Filmed { size: [64, 8], step: 0.1, error: 0.0, seed: 5 };
+    let (movie, [twist, ..]) = filmed.movie_of_driven(Driving::default());
+    let (structure, coefficients) = (Structure::base(1.0), truth(twist / TRUTH[1]));
+    let model = Forecaster { structure: &structure, coefficients: &coefficients, tracked: None };
+    let ahead = Ahead { movie: &movie, first: 4, horizon: 3, noise: NOISE, draws: 0, seed: 1 };
+    let found = forecast(&ahead, &[model], &mut SILENT.clone()).unwrap();
+    assert_eq!(found.starts, [4, 5, 6]);
+    assert_eq!(found.scored, [192, 128, 64]);
+    let own = skills(&found, Forecast::Model(0));
+    assert!(own.position.iter().all(|own| own[0] > 0.998), "{:?}", own.position);
+    assert!(own.velocity.iter().all(|own| own[0] > 0.99), "{:?}", own.velocity);
+    let still = skills(&found, Forecast::NoMotion);
+    assert!(still.position.iter().all(|own| own[0].abs() < 1e-12));
+    for other in [Forecast::ConstantVelocity, Forecast::Regression] {
+        let theirs = skills(&found, other).position.iter();
+        assert!(theirs.filter(|skill| skill[0].is_finite()).all(|skill| skill[0] < 0.9), "{other:?}");
+    }
+}
+
+/// Of cells that crawl, who knows that they do says more, and about how wrong that will be.
+#[test]
+fn a_polarity_that_was_seen_before_helps() {
+    let filmed = Filmed { size: [100, 11], step: 0.1, error: 0.01, seed: 6 };
+    let fitted = 5;
+    let driving = Driving { speed: 2.5, rotational_diffusion: 0.3, ..Driving::default() };
+    let (movie, [twist, speed, rate]) = filmed.movie_of_driven(driving);
+    let request = Request {
+        noise: KnownNoise::default(),
+        cross_validation: CrossValidation::Skipped,
+        structure: Structure::base(1.0),
+        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
+    };
+    let beginning = movie.beginning(fitted);
+    let fit = |activity| {
+        infer_tracks(&beginning, &Request { activity, ..request.clone() }, &mut SILENT.clone()).unwrap()
+    };
+    let fits = [fit(Activity::None), fit(Activity::Polarity)];
+    // With the true forces and the true polarity, but the noise levels and the memory of the fit.
+    let coefficients = truth(twist / TRUTH[1]);
+    let mut true_tracked = fits[1].1.clone();
+    let fitted_polarity = true_tracked.polarity.take().unwrap();
+    true_tracked.polarity = Some(Polarity { speed, rate, ..fitted_polarity });
+    let mut models: Vec<Forecaster<'_>> = fits
+        .iter()
+        .map(|(inference, tracked)| Forecaster {
+            structure: &request.structure,
+            coefficients: inference.coefficients.as_slice(),
+            tracked: Some(tracked),
+        })
+        .collect();
+    models.push(Forecaster {
+        structure: &request.structure,
+        coefficients: &coefficients,
+        tracked: Some(&true_tracked),
+    });
+    let ahead = Ahead { movie: &movie, first: fitted, horizon: 4, noise: fits[1].0.noise, draws: 8, seed: 1 };
+    let found = forecast(&ahead, &models, &mut SILENT.clone()).unwrap();
+    assert_eq!(found.starts, [5, 6, 7, 8, 9]);
+    let [crawling, truth] = [1, 2].map(|k| skills(&found, Forecast::Model(k)));
+    let as_good = |(own, truth): (&WithError, &WithError)| own[0] > truth[0] - 2.0 * truth[1];
+    assert!(crawling.position.iter().zip(&truth.position).all(as_good), "{crawling:?} {truth:?}");
+    for (h, gain) in found.gain.iter().enumerate().take(2) {
+        assert!(gain[0] > 2.0 * gain[1], "{h} {gain:?}");
+        assert!(crawling.position[h][0] > 0.9 && crawling.position[h][0] < found.best_possible[h]);
+        let of_errors = |own: &Skill| own.error[h] / own.expected_error[h];
+        assert!((0.6..1.8).contains(&of_errors(crawling)), "{h} {}", of_errors(crawling));
+        assert!(skills(&found, Forecast::Regression).position[h][0] < 0.8);
+    }
+}
+
+#[test]
+fn what_is_not_known_of_a_polarity_is_that_of_linear_prediction() {
+    let noise = past::Noise { scatter: 0.0, position: 0.0, sensitivity: 0.0 };
+    // Seen over one short interval without error, the end of it is known but for what was forgotten within it.
+    let (variance, rate, interval) = (0.4, 0.5, 1e-3);
+    let left = past::left_of_polarity((variance, rate), &[interval], noise).unwrap();
+    assert!((left / (2.0 / 3.0 * variance * rate * interval) - 1.0).abs() < 1e-3, "{left}");
+    let far = past::Noise { position: 1000.0, ..noise };
+    let unknown = past::left_of_polarity((variance, rate), &[0.1; 4], far).unwrap();
+    assert!((unknown / variance - 1.0).abs() < 1e-4);
+    // Seen five times at rest.
+    assert!((past::left_of_position(&[0.1; 4], 0.0, 0.02) - 0.02_f64.powi(2) / 5.0).abs() < 1e-12);
+}
