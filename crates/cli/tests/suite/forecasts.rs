@@ -76,6 +76,6 @@ fn nothing_is_forecast_that_the_fit_has_seen() {
         "discover",
         data.path(),
         &["--frames", "0..4", "--forecast", "1"],
-        &["--forecast", "none but the last is left"],
+        &["--forecast", "0 of the frames come after those of the fit"],
     );
 }

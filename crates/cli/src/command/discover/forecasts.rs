@@ -72,9 +72,9 @@ impl ForecastArguments {
         let first = last + if difference == Some(Difference::Central) { 2 } else { 1 };
         if first + 1 >= data.frames() {
             let hint = "give fewer frames to the fit with --frames, or a longer movie";
+            let left = data.frames().saturating_sub(first);
             let found = format!(
-                "there are {} frames, and none but the last is left after those of the fit",
-                data.frames()
+                "{left} of the frames come after those of the fit, but a forecast takes two: one to start from, and one to be told"
             );
             return Err(refused(found, hint));
         }
@@ -96,8 +96,8 @@ impl Coming {
         let prepared = &searched.material.prepared;
         if self.horizon < self.asked {
             run.warn(format!(
-                "forecasts reach {} frames ahead, because there are no more after those of the fit",
-                self.horizon
+                "of {} frames ahead {} can be told: the movie ends there",
+                self.asked, self.horizon
             ));
         }
         let (movie, frames) = self.movie(asked, data, prepared, run)?;

@@ -91,10 +91,11 @@ impl ForecastView {
             series.push(PointSeries {
                 label: "best possible",
                 colour: INK,
-                marker: Marker::Cross,
+                marker: Marker::Circle,
                 points: best.map(|(h, own)| [*h as f64, *own].into()).collect(),
             });
         }
+        series.retain(|own| !own.points.is_empty());
         let x = format!(
             "frames ahead (one is {} {})",
             significant(report.interval.value, 3),
