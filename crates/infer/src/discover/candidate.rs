@@ -9,7 +9,7 @@ use voronudge_model::{CellParameter, Column, Effect};
 const FEWEST_FRAMES: usize = 3;
 
 /// Cells of all frames above which it is not looked for what single ones have of their own.
-const MOST_CELLS: usize = 2000;
+const MOST_CELLS: usize = 1200;
 
 /// Why an effect of the measurement is no candidate.
 const OF_MEASUREMENT: &str = "it belongs to the measurement, and was determined with it before the search";
@@ -80,7 +80,7 @@ fn of_cells(frames: &[Observation]) -> Result<(), &'static str> {
             Err("velocities on a grid are not those of single cells")
         }
         0..=MOST_CELLS => Ok(()),
-        _ => Err("it is looked for among 2000 cells of all frames at most; infer --vary takes more"),
+        _ => Err("it is looked for among 1200 cells of all frames at most; infer --vary takes more"),
     }
 }
 

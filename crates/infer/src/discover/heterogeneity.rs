@@ -15,6 +15,9 @@ use crate::{Error, Estimate, Inference, Observation, Quantity};
 use voronudge_geometry::Vector;
 use voronudge_model::CellParameter;
 
+/// What a smooth flow must explain more: it has one more variance, and the best of some lengths.
+const PRICE_OF_FIELD: f64 = 4.0;
+
 /// Why an effect is taken back beside cells that differ.
 const BESIDE: &str = "where cells differ, it is no more than chance";
 
@@ -113,7 +116,7 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
         }
         if beside.is_empty() {
             let against = match evidence_of_field(&objective, &at, known) {
-                Ok(smooth) => (smooth > most).then_some(SMOOTH),
+                Ok(smooth) => (smooth > most + PRICE_OF_FIELD).then_some(SMOOTH),
                 Err(_) => Some(UNTOLD),
             };
             if let Some(reason) = against {
