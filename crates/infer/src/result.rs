@@ -1,10 +1,10 @@
 //! What a fit answers.
 
+use crate::spread::surroundings;
 use crate::{Doubt, Error, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
 use nalgebra::DVector;
-use std::sync::Arc;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::{CellFactors, CellParameter, Environment, Parameters};
+use voronudge_model::{CellParameter, Parameters};
 
 /// How a fit ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -193,16 +193,12 @@ impl Inference {
         frames: &[Observation],
         parameters: &[CellParameter],
     ) -> Result<Vec<Observation>, Error> {
-        let refused = |_| Error::Spread("parameters of cells are not finite");
         let of_frame = |(index, frame): (usize, &Observation)| {
-            let mut factors = CellFactors::default();
-            for spread in self.spreads.iter().filter(|own| parameters.contains(&own.parameter)) {
-                let own = spread.deviations[index].iter().map(|own| 1.0 + own[0]).collect();
-                factors = factors.with(spread.parameter, own).map_err(refused)?;
-            }
-            let around =
-                Environment::clone(frame.environment()).with_cell_factors(factors).map_err(refused)?;
-            Ok(frame.clone().within(Arc::new(around)))
+            let spreads = self.spreads.iter().filter(|own| parameters.contains(&own.parameter));
+            let of = |spread: &Spread| {
+                (spread.parameter, spread.deviations[index].iter().map(|own| own[0]).collect())
+            };
+            Ok(frame.clone().within(surroundings(frame.environment(), spreads.map(of))?))
         };
         frames.iter().enumerate().map(of_frame).collect()
     }

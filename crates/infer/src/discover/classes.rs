@@ -41,6 +41,16 @@ pub(super) struct Tested {
     pub(super) others: Vec<(usize, f64, Vec<f64>)>,
 }
 
+impl Tested {
+    /// Why it is taken back at a level, if it is.
+    pub fn reason_against(&self, level: f64) -> Option<&'static str> {
+        match self.adjusted_p >= level {
+            true => Some("with all else in the model it is no more than chance"),
+            false => self.weakness,
+        }
+    }
+}
+
 /// Tests each effect added, with all others in the model.
 pub(super) fn without_each(
     setting: &Setting<'_>,

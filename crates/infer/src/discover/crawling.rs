@@ -2,7 +2,8 @@
 
 use super::classes::Tested;
 use super::lineup::{critical_chi_squared, upper_chi_squared};
-use super::result::{Fate, Ranked};
+use super::ranking::{self, by_evidence};
+use super::result::Ranked;
 use super::steps::{Model, Setting};
 use crate::Estimate;
 use crate::tracks::{Alignment, Polarity};
@@ -15,18 +16,7 @@ fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
 /// In the ranking, by its evidence alone, as before one is fitted.
 pub(super) fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
     let dimension = coefficients(setting, candidate);
-    let adjusted_p = adjusted_p(setting, candidate, evidence);
-    Ranked {
-        effect: setting.candidates[candidate].effect,
-        dimension,
-        statistic: evidence,
-        p: p(evidence, dimension),
-        adjusted_p,
-        detection_limit: f64::NAN,
-        size: f64::NAN,
-        interval: None,
-        fate: if adjusted_p >= setting.search.level { Fate::BelowThreshold } else { Fate::Explained },
-    }
+    by_evidence(setting, candidate, (evidence, dimension, p(evidence, dimension)))
 }
 
 /// Probability of so much evidence if there is none. Its speed, or the rate at which it aligns, is then at its bound, and the rate at which
@@ -43,7 +33,7 @@ pub(super) fn least_evidence(setting: &Setting<'_>, candidate: usize, others: us
 
 /// The same for any of all candidates.
 fn adjusted_p(setting: &Setting<'_>, candidate: usize, evidence: f64) -> f64 {
-    (p(evidence, coefficients(setting, candidate)) * setting.named(&[]).len() as f64).min(1.0)
+    ranking::adjusted_p(setting, p(evidence, coefficients(setting, candidate)))
 }
 
 /// The polarity in a fitted model, or how it aligns.

@@ -14,9 +14,6 @@ use crate::search::Watch;
 /// Effects refused because of velocities held out before the search ends.
 const MOST_REFUSED: usize = 3;
 
-/// Why an effect is taken back.
-const CHANCE: &str = "with all else in the model it is no more than chance";
-
 /// A search under way.
 pub(super) struct Growth<'a> {
     pub setting: Setting<'a>,
@@ -141,10 +138,7 @@ impl<'a> Growth<'a> {
         let Some(model) = models.pop() else { return Ok(None) };
         let grown = self.tested(model, watch)?;
         let setting = self.setting;
-        self.prune(grown, models, watch, |own, others| match own.adjusted_p >= setting.level(others) {
-            true => Some(CHANCE),
-            false => own.weakness,
-        })
+        self.prune(grown, models, watch, |own, others| own.reason_against(setting.level(others)))
     }
 
     /// Takes back effects as improbable as which synthetic data without an effect have them too.
@@ -173,8 +167,7 @@ impl<'a> Growth<'a> {
         let setting = self.setting;
         self.prune(grown, Vec::new(), watch, |own, others| match own.candidate == candidate {
             true => Some(reason),
-            false if own.adjusted_p >= setting.level(others) => Some(CHANCE),
-            false => own.weakness,
+            false => own.reason_against(setting.level(others)),
         })
     }
 

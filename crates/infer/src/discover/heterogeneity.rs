@@ -7,6 +7,7 @@
 use super::classes::LEAD;
 use super::growth::{Grown, Growth};
 use super::lineup::{added_places, upper_chi_squared};
+use super::ranking::{self, by_evidence, untested};
 use super::result::{Fate, Ranked, Selected};
 use super::steps::{Model, Setting};
 use crate::search::Watch;
@@ -89,8 +90,9 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
         .filter_map(|k| Some((k, setting.candidates[k].differing()?)))
         .collect();
     let mut sought = Sought { ranked: Vec::new(), found: Vec::new() };
+    let without = |k: usize, reason| untested(setting.candidates[k].effect, Fate::NotTestable(reason));
     if !model.request.structure.responses.is_empty() {
-        sought.ranked = offered.iter().map(|own| untested(setting, own.0, TURNED)).collect();
+        sought.ranked = offered.iter().map(|own| without(own.0, TURNED)).collect();
         return Ok(sought);
     }
     let (objective, at) = (model.objective(setting.frames), model.point(setting.frames));
@@ -105,8 +107,8 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
         let told: Vec<(usize, f64)> = all.clone().filter_map(|(k, fall)| Some((k, fall?))).collect();
         if beside.is_empty() {
             let row = |(k, fall): (usize, Option<f64>)| match fall {
-                Some(fall) => ranked(setting, k, fall),
-                None => untested(setting, k, DEGENERATE),
+                Some(fall) => by_evidence(setting, k, (fall.max(0.0), 1, probability(fall))),
+                None => without(k, DEGENERATE),
             };
             sought.ranked = all.map(row).collect();
         }
@@ -136,32 +138,7 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
 
 /// The probability of so much evidence for any of all candidates if there is nothing.
 fn adjusted_p(setting: &Setting<'_>, evidence: f64) -> f64 {
-    (probability(evidence) * setting.named(&[]).len() as f64).min(1.0)
-}
-
-fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
-    let adjusted_p = adjusted_p(setting, evidence);
-    Ranked {
-        effect: setting.candidates[candidate].effect,
-        dimension: 1,
-        statistic: evidence.max(0.0),
-        p: probability(evidence),
-        adjusted_p,
-        detection_limit: f64::NAN,
-        size: f64::NAN,
-        interval: None,
-        fate: if adjusted_p >= setting.search.level { Fate::BelowThreshold } else { Fate::Explained },
-    }
-}
-
-fn untested(setting: &Setting<'_>, candidate: usize, reason: &'static str) -> Ranked {
-    Ranked {
-        dimension: 0,
-        p: 1.0,
-        adjusted_p: 1.0,
-        fate: Fate::NotTestable(reason),
-        ..ranked(setting, candidate, 0.0)
-    }
+    ranking::adjusted_p(setting, probability(evidence))
 }
 
 impl Heterogeneity {

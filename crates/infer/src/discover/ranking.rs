@@ -116,7 +116,33 @@ impl Ranking {
     }
 }
 
-fn untested(effect: &'static Effect, fate: Fate) -> Ranked {
+/// The adjusted p of a test other than the score, of so many candidates.
+pub(super) fn adjusted_p(setting: &Setting<'_>, p: f64) -> f64 {
+    (p * setting.named(&[]).len() as f64).min(1.0)
+}
+
+/// A candidate that is tested by the fall of −2 log L, with the probability of so large a one.
+pub(super) fn by_evidence(
+    setting: &Setting<'_>,
+    candidate: usize,
+    (evidence, dimension, p): (f64, usize, f64),
+) -> Ranked {
+    let adjusted_p = adjusted_p(setting, p);
+    Ranked {
+        effect: setting.candidates[candidate].effect,
+        dimension,
+        statistic: evidence,
+        p,
+        adjusted_p,
+        detection_limit: f64::NAN,
+        size: f64::NAN,
+        interval: None,
+        fate: if adjusted_p >= setting.search.level { Fate::BelowThreshold } else { Fate::Explained },
+    }
+}
+
+/// A candidate without numbers.
+pub(super) fn untested(effect: &'static Effect, fate: Fate) -> Ranked {
     Ranked {
         effect,
         dimension: 0,

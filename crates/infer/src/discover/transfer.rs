@@ -27,25 +27,40 @@ pub struct Absent {
 }
 
 impl Discovery {
+    /// The columns of the effects added, in their order; some have none.
+    pub fn columns(&self) -> impl Iterator<Item = Column> + '_ {
+        self.selected.iter().flat_map(|own| own.columns.iter().copied())
+    }
+
+    /// The same where effects have the columns `there`.
+    ///
+    /// # Errors
+    /// [`Absent`] if one of them needs what is not there.
+    pub fn columns_there(
+        &self,
+        there: impl Fn(&Effect) -> Result<Vec<Column>, &'static str>,
+    ) -> Result<Vec<Column>, Absent> {
+        for own in self.selected.iter().filter(|own| !own.columns.is_empty()) {
+            let absent = |reason| Absent { effect: own.effect, reason };
+            if there(own.effect).map_err(absent)? != own.columns {
+                return Err(absent("these data have it in another form"));
+            }
+        }
+        Ok(self.columns().collect())
+    }
+
     /// Predicts the velocities of other frames, in the same units, at their measured positions, with what all cells share. `search` is what led to the
     /// result.
     ///
     /// # Errors
     /// [`Absent`] if an effect that was added needs what the other data do not have.
     pub fn predict(&self, search: &Search, frames: &[Observation]) -> Result<Transfer, Absent> {
-        let mut columns: Vec<Column> = Vec::new();
-        for own in self.shared() {
-            let absent = |reason| Absent { effect: own.effect, reason };
-            for frame in frames {
-                let there = own.effect.columns(frame.environment(), frame.tessellation.domain());
-                if there.map_err(absent)? != own.columns {
-                    return Err(absent("these data have it in another form"));
-                }
-            }
-            columns.extend(&own.columns);
+        for frame in frames {
+            let there = |effect: &Effect| effect.columns(frame.environment(), frame.tessellation.domain());
+            self.columns_there(there)?;
         }
         let base = &search.fit.structure;
-        let with = base.with(&columns);
+        let with = base.with(&self.columns().collect::<Vec<_>>());
         let before = Folds::predicted(frames, base, self.before.inference.coefficients.as_slice());
         let after = Folds::predicted(frames, &with, self.after.inference.coefficients.as_slice());
         Ok(Transfer { before: HeldOut::of(&before), after: HeldOut::of(&after), gain: before.gain(&after) })

@@ -2,7 +2,7 @@
 
 use super::Forecaster;
 use super::crawl::Crawl;
-use super::start::{Begun, Start};
+use super::start::{Begun, Start, of_neighbours};
 use crate::Error;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
@@ -68,16 +68,10 @@ impl<'a> Tissue<'a> {
         let crawl = |(v, p): (Option<Vector<f64>>, &Vector<f64>)| v.map(|v| v + p);
         let mut known: Known = forces.into_iter().zip(polarities).map(crawl).collect();
         for _ in 0..ROUNDS {
-            let next = known.iter().enumerate().map(|(cell, own)| {
-                own.or_else(|| {
-                    let neighbours = tessellation.neighbours(cell).iter();
-                    let (sum, count) = neighbours
-                        .filter_map(|other| known[*other as usize])
-                        .fold((Vector::zeros(), 0.0), |(sum, count), v| (sum + v, count + 1.0));
-                    (count > 0.0).then(|| sum / count)
-                })
-            });
-            known = next.collect();
+            let of_cell = |(cell, own): (usize, &Option<Vector<f64>>)| {
+                own.or_else(|| of_neighbours(&tessellation, cell, &known))
+            };
+            known = known.iter().enumerate().map(of_cell).collect();
         }
         Ok(known.into_iter().map(|v| v.unwrap_or_else(Vector::zeros)).collect())
     }

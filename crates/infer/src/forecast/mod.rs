@@ -155,16 +155,18 @@ pub fn forecast(
         Ok(row)
     })?;
     let tally = Tally::new(&rows, ahead, models.len());
-    tally.scored().iter().any(|count| *count > 0).then_some(()).ok_or(Error::NoForecast(
-        "no cell with all its neighbours in view is followed from one frame to the next",
-    ))?;
+    let scored = tally.scored();
+    if scored.iter().all(|count| *count == 0) {
+        let nobody = "no cell with all its neighbours in view is followed from one frame to the next";
+        return Err(Error::NoForecast(nobody));
+    }
     let baselines = [Forecast::NoMotion, Forecast::ConstantVelocity, Forecast::Regression];
     let of = (0..models.len()).map(Forecast::Model).chain(baselines);
     Ok(Forecasts {
         skills: of.enumerate().map(|(k, of)| tally.skill(k, of)).collect(),
         gain: if models.len() > 1 { tally.gain(0, 1) } else { Vec::new() },
         best_possible: tally.best_possible(),
-        scored: tally.scored(),
+        scored,
         starts,
     })
 }

@@ -4,7 +4,7 @@ use super::Said;
 use crate::tracks::Present;
 use crate::{Error, Movie, Observation};
 use std::sync::Arc;
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Environment;
 
 /// Where cells are when a forecast begins.
@@ -24,6 +24,17 @@ pub(super) struct Start<'a> {
 pub(super) struct Begun {
     pub positions: Vec<Vector<f64>>,
     pub polarities: Vec<Vector<f64>>,
+}
+
+/// The mean over those neighbours of a cell of which something is known.
+pub(super) fn of_neighbours(
+    tessellation: &Tessellation,
+    cell: usize,
+    known: &[Option<Vector<f64>>],
+) -> Option<Vector<f64>> {
+    let all = tessellation.neighbours(cell).iter().filter_map(|other| known[*other as usize]);
+    let (sum, count) = all.fold((Vector::zeros(), 0.0), |(sum, count), own| (sum + own, count + 1.0));
+    (count > 0.0).then(|| sum / count)
 }
 
 impl<'a> Start<'a> {
@@ -87,11 +98,8 @@ impl<'a> Start<'a> {
 
     /// Mean velocity of the neighbours in the interval before.
     pub fn before_around(&self, cell: usize) -> Option<Vector<f64>> {
-        let neighbours = self.cells.tessellation.neighbours(cell).iter();
-        let (sum, count) = neighbours
-            .filter_map(|other| self.before[*other as usize])
-            .fold((Vector::zeros(), 0.0), |(sum, count), own| (sum + own, count + 1.0));
-        (count > 0.0).then(|| sum / (count * self.time(self.frame - 1, self.frame)))
+        let moved = of_neighbours(&self.cells.tessellation, cell, &self.before)?;
+        Some(moved / self.time(self.frame - 1, self.frame))
     }
 
     /// Velocity in the interval before.

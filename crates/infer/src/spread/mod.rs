@@ -33,8 +33,8 @@ use gram::Gram;
 pub(crate) use interval::probability;
 use levels::{Held, Likelihood, SMALLEST, Variances};
 use nalgebra::{DMatrix, DVector, Matrix4};
-pub(crate) use own::OwnParts;
 use own::coefficient;
+pub(crate) use own::{OwnParts, surroundings};
 use rayon::prelude::*;
 use voronudge_model::CellParameter;
 

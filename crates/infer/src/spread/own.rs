@@ -24,6 +24,23 @@ pub(crate) struct OwnParts<'a> {
     pub(super) reference: &'a DVector<f64>,
 }
 
+/// Surroundings of cells that differ from the mean by these shares of it.
+///
+/// # Errors
+/// [`Error::Spread`] if one is not finite.
+pub(crate) fn surroundings(
+    around: &Environment,
+    deviations: impl Iterator<Item = (CellParameter, Vec<f64>)>,
+) -> Result<Arc<Environment>, Error> {
+    let refused = |_| Error::Spread("parameters of cells are not finite");
+    let mut factors = CellFactors::default();
+    for (parameter, own) in deviations {
+        let own = own.into_iter().map(|own| 1.0 + own).collect();
+        factors = factors.with(parameter, own).map_err(refused)?;
+    }
+    Ok(Arc::new(around.clone().with_cell_factors(factors).map_err(refused)?))
+}
+
 impl OwnParts<'_> {
     /// The surroundings of the cells of a frame with their multiples of given coefficients.
     ///
@@ -35,17 +52,14 @@ impl OwnParts<'_> {
         around: &Environment,
         coefficients: &[f64],
     ) -> Result<Arc<Environment>, Error> {
-        let refused = |_| Error::Spread("parameters of cells are not finite");
-        let mut factors = CellFactors::default();
-        for (block, parameter) in self.layout.parameters.iter().enumerate() {
+        let of_block = |(block, parameter): (usize, &CellParameter)| {
             let first = self.layout.block(block).start;
             let which = coefficient(*parameter);
             let ratio = self.reference[which] / coefficients[which];
             let own = self.layout.of_frames[frame].iter();
-            let own = own.map(|cell| 1.0 + ratio * self.deviations[first + cell]).collect();
-            factors = factors.with(*parameter, own).map_err(refused)?;
-        }
-        Ok(Arc::new(around.clone().with_cell_factors(factors).map_err(refused)?))
+            (*parameter, own.map(|cell| ratio * self.deviations[first + cell]).collect())
+        };
+        surroundings(around, self.layout.parameters.iter().enumerate().map(of_block))
     }
 
     /// The frames with multiples 1 + u.

@@ -286,7 +286,7 @@ impl Movie {
     /// What moves all cells alike in an interval, as far as the increments tell before any fit: their median, which a few fast
     /// cells do not decide.
     pub fn first_drift(&self, frame: usize) -> Vector<f64> {
-        self.stage[frame + 1] - self.stage[frame]
+        self.drifted(frame, frame + 1)
     }
 
     /// The same from one frame to another.

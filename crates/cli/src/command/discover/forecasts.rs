@@ -10,7 +10,6 @@ use clap::Args;
 use voronudge_infer::forecast::{Ahead, Forecast, Forecaster, Forecasts, Skill, WithError, forecast};
 use voronudge_infer::{Error, Movie};
 use voronudge_io::{DataSet, Difference, FrameSelection, derive_velocities};
-use voronudge_model::Column;
 use voronudge_report::Units;
 use voronudge_report::discover_report::{ForecastReport, Forecasters, Gain};
 use voronudge_report::infer_report::Quantity;
@@ -104,31 +103,22 @@ impl Coming {
         let Some(first) = frames.iter().position(|frame| *frame >= self.first) else { return Ok(None) };
         let discovery = &searched.discovery;
         let base = &searched.search.fit.structure;
-        let mut columns: Vec<Column> = Vec::new();
-        let mut absent = None;
-        for own in discovery.shared() {
-            match movie.columns(own.effect) {
-                Ok(found) if found == own.columns || own.columns.is_empty() => columns.extend(found),
-                Ok(_) => absent = Some((own.effect.id, "it is in another form there")),
-                Err(_) if own.columns.is_empty() => {}
-                Err(reason) => absent = Some((own.effect.id, reason)),
-            }
-        }
-        let extended = base.with(&columns);
+        let columns = discovery.columns_there(|effect| movie.columns(effect));
+        let extended = columns.as_ref().map(|columns| base.with(columns));
         let (before, after) = (&discovery.before, &discovery.after);
         let mut models = vec![Forecaster {
             structure: base,
             coefficients: before.inference.coefficients.as_slice(),
             tracked: before.tracked.as_ref(),
         }];
-        if let Some((effect, reason)) = absent {
-            run.warn(format!("the model with effects is not forecast: {effect}: {reason}"));
-        } else if discovery.shared().next().is_some() {
-            models.push(Forecaster {
-                structure: &extended,
+        match &extended {
+            Err(absent) => run.warn(format!("the model with effects is not forecast: {absent}")),
+            Ok(structure) if discovery.shared().next().is_some() => models.push(Forecaster {
+                structure,
                 coefficients: after.inference.coefficients.as_slice(),
                 tracked: after.tracked.as_ref(),
-            });
+            }),
+            Ok(_) => {}
         }
         let ahead = Ahead {
             movie: &movie,

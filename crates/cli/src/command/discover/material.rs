@@ -13,7 +13,7 @@ use std::sync::Arc;
 use voronudge_infer::discover::{Discovery, Search, discover, discover_in_tracks};
 use voronudge_infer::{Completion, Error, Observation};
 use voronudge_io::DataSet;
-use voronudge_model::{Column, Environment, Structure};
+use voronudge_model::{Environment, Structure};
 use voronudge_report::discover_report::Predictors;
 
 /// Relative change of a width, and change of a share, that is none.
@@ -138,11 +138,9 @@ fn extended(raw: &Raw, discovery: &Discovery) -> Option<Structure> {
     }
     let domain = prepared.observations.first()?.tessellation.domain();
     let anywhere = Environment::default().about(surroundings::origin(prepared));
-    let can_act = discovery
-        .shared()
-        .all(|own| own.effect.columns(&anywhere, domain).is_ok_and(|columns| columns == own.columns));
-    let columns: Vec<Column> = discovery.shared().flat_map(|own| own.columns.clone()).collect();
-    can_act.then(|| prepared.request.structure.with(&columns))
+    let columns = discovery.columns_there(|effect| effect.columns(&anywhere, domain)).ok()?;
+    // What has no columns shows no measurement in another light.
+    (!columns.is_empty()).then(|| prepared.request.structure.with(&columns))
 }
 
 impl Searched {

@@ -12,9 +12,6 @@ use crate::markers::Marker;
 use crate::numbers::significant;
 use crate::units::unit_text;
 
-/// Title of the first figure.
-const DISPLACEMENT: &str = "Displacement since the start";
-
 /// Least skill that is drawn: far below nought all are useless.
 const LEAST: f64 = -0.5;
 
@@ -50,8 +47,13 @@ impl ForecastView {
         };
         Self {
             figures: vec![
-                Self::chart(report, DISPLACEMENT, report.skill.named()),
-                Self::chart(report, "Velocity over the last interval", report.velocity_skill.named()),
+                Self::chart(
+                    report,
+                    "Displacement since the start",
+                    report.skill.named(),
+                    &report.best_possible,
+                ),
+                Self::chart(report, "Velocity over the last interval", report.velocity_skill.named(), &[]),
             ],
             columns: report.horizons.iter().map(ToString::to_string).collect(),
             rows,
@@ -63,6 +65,7 @@ impl ForecastView {
         report: &ForecastReport,
         title: &str,
         of: impl Iterator<Item = (&'static str, &'a [Gain])>,
+        best: &[f64],
     ) -> Figure {
         let mut series: Vec<PointSeries<'_>> = of
             .filter(|(name, _)| *name != "no motion")
@@ -86,15 +89,12 @@ impl ForecastView {
                 }
             })
             .collect();
-        if title == DISPLACEMENT {
-            let best = report.horizons.iter().zip(&report.best_possible);
-            series.push(PointSeries {
-                label: "best possible",
-                colour: INK,
-                marker: Marker::Circle,
-                points: best.map(|(h, own)| [*h as f64, *own].into()).collect(),
-            });
-        }
+        series.push(PointSeries {
+            label: "best possible",
+            colour: INK,
+            marker: Marker::Circle,
+            points: report.horizons.iter().zip(best).map(|(h, own)| [*h as f64, *own].into()).collect(),
+        });
         series.retain(|own| !own.points.is_empty());
         let x = format!(
             "frames ahead (one is {} {})",
