@@ -114,6 +114,13 @@ impl From<voronudge_simulate::Error> for Failure {
     }
 }
 
+impl From<voronudge_observables::Error> for Failure {
+    fn from(error: voronudge_observables::Error) -> Self {
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
 impl From<voronudge_spectrum::Error> for Failure {
     fn from(error: voronudge_spectrum::Error) -> Self {
         let hint = error.hint();

@@ -35,6 +35,7 @@ pub mod map;
 pub mod markers;
 pub mod moduli_report;
 pub mod numbers;
+pub mod observe_report;
 pub mod page;
 pub mod phase_diffusion_report;
 pub mod phase_report;

@@ -10,10 +10,10 @@ use std::f64::consts::PI;
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
-use voronudge_simulate::measure::{
-    LyapunovSchedule, TransitionCounter, hexatic, largest_lyapunov_exponent, mean_square_displacement,
-    shape_indices, structure_factor,
+use voronudge_observables::{
+    TransitionCounter, hexatic, mean_square_displacement, shape_indices, structure_factor,
 };
+use voronudge_simulate::measure::{LyapunovSchedule, largest_lyapunov_exponent};
 use voronudge_simulate::{RandomPlacement, Simulation, generator, sort_in_space};
 
 fn main() {

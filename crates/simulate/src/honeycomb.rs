@@ -13,7 +13,8 @@ use voronudge_geometry::{PeriodicBox, Vector};
 ///
 /// ```
 /// use voronudge_geometry::{Domain, Tessellation};
-/// use voronudge_simulate::{honeycomb, measure::hexatic};
+/// use voronudge_observables::hexatic;
+/// use voronudge_simulate::honeycomb;
 /// let (positions, cell_box) = honeycomb(120)?;
 /// assert!((cell_box.area() - 120.0).abs() < 1e-10);
 /// let tessellation = Tessellation::new(&positions, Domain::Periodic(cell_box))?;

@@ -1,9 +1,9 @@
 //! Running a simulation for a time and recording frames of it.
 
-use crate::measure::{BlockAverage, TransitionCounter, mean_square_velocity};
 use crate::{Error, Simulation};
 use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
+use voronudge_observables::{BlockAverage, TransitionCounter, mean_square_velocity};
 
 /// How long to run and what to record.
 ///

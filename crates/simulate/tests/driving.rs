@@ -4,7 +4,7 @@
 
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
 use voronudge_model::{Model, Parameters, stress};
-use voronudge_simulate::measure::mean_square_displacement;
+use voronudge_observables::mean_square_displacement;
 use voronudge_simulate::{Driving, Error, Method, RandomPlacement, Shear, Simulation, generator, honeycomb};
 
 fn tissue(cells: usize, seed: u64, parameters: &Parameters<f64>) -> Simulation {

@@ -5,7 +5,8 @@
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
-use voronudge_simulate::measure::{LyapunovExponent, LyapunovSchedule, hexatic, largest_lyapunov_exponent};
+use voronudge_observables::hexatic;
+use voronudge_simulate::measure::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};
 use voronudge_simulate::{Error, RandomPlacement, Schedule, Simulation, generator, run};
 
 fn tissue(cells: usize, preferred_perimeter: f64, chirality: f64) -> Simulation {

@@ -5,8 +5,9 @@
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
+use voronudge_observables::mean_square_velocity;
 use voronudge_simulate::{
-    Completion, Error, Event, RandomPlacement, Schedule, Simulation, Summary, generator, measure, run,
+    Completion, Error, Event, RandomPlacement, Schedule, Simulation, Summary, generator, run,
 };
 
 fn tissue(preferred_perimeter: f64, chirality: f64) -> Simulation {
@@ -36,7 +37,7 @@ fn a_chiral_liquid_keeps_moving() {
 fn a_solid_comes_to_rest() {
     let mut simulation = tissue(3.0, 1.0);
     run_to(&mut simulation, 100.0);
-    let rest = measure::mean_square_velocity(simulation.velocities());
+    let rest = mean_square_velocity(simulation.velocities());
     assert!(rest < 1e-12, "{rest}");
 }
 

@@ -158,7 +158,7 @@ fn without_chirality_the_energy_between_the_walls_decreases() {
         assert!(after <= before + 1e-12 * before.abs(), "{before} {after}");
         before = after;
     }
-    assert!(measure::mean_square_velocity(simulation.velocities()) < 1e-6);
+    assert!(voronudge_observables::mean_square_velocity(simulation.velocities()) < 1e-6);
 }
 
 /// A cell that starts behind a wall is its mirror image.

@@ -6,10 +6,10 @@ use std::error::Error;
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
+use voronudge_observables::structure_factor;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
 use voronudge_report::figure::{ErrorPoint, PhaseMap, phase_map};
-use voronudge_simulate::measure::structure_factor;
 use voronudge_simulate::{RandomPlacement, Schedule, Simulation, generator, run};
 
 pub(super) const FIGURES: &[Figure] = &[

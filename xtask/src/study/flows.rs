@@ -4,7 +4,8 @@ use super::seeds::on_one_core_each;
 use crate::Outcome;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};
-use voronudge_simulate::measure::{BlockAverage, PinchedFlow, Pinching, pinched_flow};
+use voronudge_observables::BlockAverage;
+use voronudge_simulate::measure::{PinchedFlow, Pinching, pinched_flow};
 use voronudge_simulate::{RandomPlacement, Simulation, Walls, generator, honeycomb, recommended_time_step};
 use voronudge_theory::MeanField;
 
@@ -150,7 +151,7 @@ pub(crate) fn pinched_ratios(seeds: u64, [settle, apart]: [f64; 2]) -> Result<Ve
                 }
                 let flow = pinched(&simulation)?;
                 sum = [sum[0] + flow.along, sum[1] + flow.across];
-                squares.push(voronudge_simulate::measure::mean_square_velocity(simulation.velocities()));
+                squares.push(voronudge_observables::mean_square_velocity(simulation.velocities()));
             }
             ratios.push(sum[1] / sum[0]);
         }

@@ -15,9 +15,9 @@ use std::io::Cursor;
 use voronudge_geometry::{Tessellation, Vector, areas, perimeters};
 use voronudge_io::{DataSet, FrameSelection, OutputDirectory, YAxis};
 use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
+use voronudge_observables::mean_square_velocity;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_report::numbers::significant;
-use voronudge_simulate::measure::mean_square_velocity;
 
 /// The model's velocities, areas, perimeters, stress and Jacobian at the positions of a data set.
 ///

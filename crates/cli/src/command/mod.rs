@@ -11,6 +11,7 @@ pub(crate) mod import;
 pub(crate) mod infer;
 pub(crate) mod merge;
 pub(crate) mod moduli;
+pub(crate) mod observe;
 pub(crate) mod phase_diagram;
 pub(crate) mod phase_diffusion;
 pub(crate) mod simulate;

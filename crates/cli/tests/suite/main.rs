@@ -23,6 +23,7 @@ mod layouts;
 mod measured_sets;
 mod measurements;
 mod moduli;
+mod observations;
 mod phase_diagrams;
 mod phase_diffusions;
 mod program;

@@ -9,7 +9,7 @@ use std::path::Path;
 const EARLIER: &str = "{\"command\": \"earlier\"}";
 
 /// Commands that read a data set.
-pub const READERS: [&str; 4] = ["infer", "discover", "evaluate", "spectrum"];
+pub const READERS: [&str; 5] = ["infer", "discover", "evaluate", "spectrum", "observe"];
 
 /// Asserts that every command that reads a data set refuses this one, and says these facts.
 #[track_caller]

@@ -1,6 +1,5 @@
 //! The largest Lyapunov exponent by tangent dynamics.
 
-use crate::measure::BlockAverage;
 use crate::{Error, generator};
 use num_dual::Dual64;
 use rand::Rng;
@@ -8,6 +7,7 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, MovingTessellation, Scalar, Vector};
 use voronudge_model::{HalfEdgeForces, Model};
+use voronudge_observables::BlockAverage;
 
 /// How long a Lyapunov exponent is measured.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -1,39 +1,15 @@
-//! Measurements on a state: numbers of a field or of a tissue.
+//! Measurements that need the model, or a run of it; those of positions alone are in `voronudge_observables`.
 
-mod block_average;
 mod channel;
-mod displacement;
-mod hexatic;
 mod lyapunov;
 mod pinching;
-mod shape;
-mod structure_factor;
-mod transitions;
 
-pub use block_average::BlockAverage;
 pub use channel::{ChannelProfile, ChannelRecorder, Estimate};
-pub use displacement::mean_square_displacement;
-pub use hexatic::{Hexatic, hexatic, hexatic_among};
 pub use lyapunov::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};
 pub use pinching::{PinchedFlow, Pinching, pinched_flow};
-pub use shape::shape_indices;
-pub use structure_factor::{StructureFactor, structure_factor};
-pub use transitions::TransitionCounter;
 
 use voronudge_geometry::{CellPolygon, Tessellation, Vector};
 use voronudge_model::{ForceTerm, Model};
-
-/// `⟨v²⟩ = (1/N) Σ_i |v_i|²` of velocities (N), in the square of their unit; zero for no cells.
-///
-/// ```
-/// use voronudge_geometry::Vector;
-/// use voronudge_simulate::measure::mean_square_velocity;
-/// assert_eq!(mean_square_velocity(&[Vector::new(3.0, 4.0), Vector::new(0.0, 1.0)]), 13.0);
-/// ```
-pub fn mean_square_velocity(velocities: &[Vector<f64>]) -> f64 {
-    let sum: f64 = velocities.iter().map(Vector::norm_squared).sum();
-    sum / velocities.len().max(1) as f64
-}
 
 /// The energy `E = Σ_i Σ_t c_t e_t(A_i, P_i)` of the cells with a closed polygon, for positions (N).
 ///

@@ -1,8 +1,8 @@
 //! The stress of a flowing tissue, averaged over time.
 
 use super::{Flowing, Observer, stress_of};
-use crate::measure::BlockAverage;
 use crate::{Error, Simulation};
+use voronudge_observables::BlockAverage;
 
 /// Steps from one look at the stress to the next: it costs a quarter of a step.
 pub(super) const STRIDE: usize = 10;

@@ -42,11 +42,7 @@ pub(crate) enum MeanToRemove {
 impl SnapshotArguments {
     /// Refuses what needs no data to be seen wrong.
     pub fn check(&self) -> Result<(), Failure> {
-        if self.largest_area.is_finite() && self.largest_area > 0.0 {
-            return Ok(());
-        }
-        let text = format!("--largest-area is {}, but it must be finite and above zero", self.largest_area);
-        Err(Failure::new(text).with_hint("leave it out for 3 times the median area"))
+        check_largest_area(self.largest_area)
     }
 
     /// Where every cell would have been seen, and what is taken for one.
@@ -65,4 +61,13 @@ impl SnapshotArguments {
         let name = named.and_then(|path| path.file_name());
         name.map_or_else(|| "data".into(), |name| name.to_string_lossy().into_owned())
     }
+}
+
+/// Refuses a multiple of the median area that is none.
+pub(crate) fn check_largest_area(factor: f64) -> Result<(), Failure> {
+    if factor.is_finite() && factor > 0.0 {
+        return Ok(());
+    }
+    let text = format!("--largest-area is {factor}, but it must be finite and above zero");
+    Err(Failure::new(text).with_hint("leave it out for 3 times the median area"))
 }

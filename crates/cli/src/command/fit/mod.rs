@@ -26,7 +26,7 @@ mod tracks;
 pub(crate) mod views;
 pub(crate) mod words;
 
-pub(crate) use arguments::SnapshotArguments;
+pub(crate) use arguments::{MeanToRemove, SnapshotArguments, check_largest_area};
 pub(crate) use constraints::{ConstraintArguments, quantity};
 pub(crate) use flow::{OrderedField, scaled as scaled_flow};
 pub(crate) use measured::Measured;

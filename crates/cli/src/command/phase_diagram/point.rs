@@ -8,9 +8,8 @@ use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::Model;
-use voronudge_simulate::measure::{
-    BlockAverage, LyapunovSchedule, hexatic, largest_lyapunov_exponent, shape_indices,
-};
+use voronudge_observables::{BlockAverage, hexatic, shape_indices};
+use voronudge_simulate::measure::{LyapunovSchedule, largest_lyapunov_exponent};
 use voronudge_simulate::moduli::{Elastic, Moduli, Settings, elastic_until};
 use voronudge_simulate::{
     Completion, Event, RandomPlacement, Schedule, Simulation, generator, run, sort_in_space,

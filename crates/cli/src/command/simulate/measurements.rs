@@ -6,10 +6,11 @@ use crate::failure::Failure;
 use ndarray::{Array2, ArrayView2};
 use voronudge_geometry::PeriodicBox;
 use voronudge_io::OutputDirectory;
-use voronudge_simulate::Schedule;
-use voronudge_simulate::measure::{
-    LyapunovExponent, StructureFactor, mean_square_displacement, mean_square_velocity, structure_factor,
+use voronudge_observables::{
+    StructureFactor, mean_square_displacement, mean_square_velocity, structure_factor,
 };
+use voronudge_simulate::Schedule;
+use voronudge_simulate::measure::LyapunovExponent;
 
 /// Frames between which displacements are taken, at most.
 const MOST_FRAMES: usize = 200;

@@ -11,8 +11,8 @@ use ndarray::Array3;
 use voronudge_geometry::{PeriodicBox, areas};
 use voronudge_io::{Boundary, DataSet};
 use voronudge_model::stress;
+use voronudge_observables::{hexatic_among, shape_indices};
 use voronudge_report::Units;
-use voronudge_simulate::measure::{hexatic_among, shape_indices};
 use voronudge_simulate::{Schedule, Simulation, Summary};
 
 /// A run at its end.

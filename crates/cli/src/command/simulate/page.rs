@@ -5,6 +5,7 @@ use super::report::{Report, Request};
 use crate::command::drawing::cell_view;
 use crate::failure::Failure;
 use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, areas};
+use voronudge_observables::{StructureFactor, shape_indices};
 use voronudge_report::arrows::ArrowScale;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::{BLUE, GREY, VERMILLION};
@@ -18,7 +19,6 @@ use voronudge_report::page::{Card, Figure};
 use voronudge_report::units::label_with_unit;
 use voronudge_report::{ChangedEdges, FrameView, SimulatePage, Units};
 use voronudge_simulate::Simulation;
-use voronudge_simulate::measure::{StructureFactor, shape_indices};
 use voronudge_theory::hexagon_perimeter;
 
 /// Cells up to which all are drawn; of more, those in a corner of the box.

@@ -1,6 +1,6 @@
 //! A mean with its standard error.
 
-use crate::measure::BlockAverage;
+use voronudge_observables::BlockAverage;
 
 /// An average over time.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -24,7 +24,7 @@ impl Hexatic {
 ///
 /// ```
 /// use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-/// use voronudge_simulate::measure::hexatic;
+/// use voronudge_observables::hexatic;
 /// let height = 3f64.sqrt() / 2.0;
 /// let positions: Vec<_> = (0..16)
 ///     .map(|i| Vector::new((i % 4) as f64 + 0.5 * (i / 4 % 2) as f64, (i / 4) as f64 * height))
@@ -48,18 +48,24 @@ pub fn hexatic_among(
     let (mut sum, mut moduli, mut cells) = (Vector::zeros(), 0.0, 0usize);
     for cell in (0..tessellation.len()).filter(|&cell| counts(cell)) {
         cells += 1;
-        let ring = tessellation.ring(cell);
-        let sides = ring.len().max(1) as f64;
-        let own: Vector<f64> = ring
-            .map(|h| {
-                let d = tessellation.displacement(positions, cell, h);
-                let angle = 6.0 * d.y.atan2(d.x);
-                Vector::new(angle.cos(), angle.sin())
-            })
-            .sum();
-        sum += own / sides;
-        moduli += own.norm() / sides;
+        let own = of_cell(tessellation, positions, cell);
+        sum += own;
+        moduli += own.norm();
     }
     let cells = cells.max(1) as f64;
     Hexatic { average: sum / cells, mean_modulus: moduli / cells }
+}
+
+/// `ψ_i` of one cell, as (real, imaginary).
+pub(crate) fn of_cell(tessellation: &Tessellation, positions: &[Vector<f64>], cell: usize) -> Vector<f64> {
+    let ring = tessellation.ring(cell);
+    let sides = ring.len().max(1) as f64;
+    let sum: Vector<f64> = ring
+        .map(|h| {
+            let d = tessellation.displacement(positions, cell, h);
+            let angle = 6.0 * d.y.atan2(d.x);
+            Vector::new(angle.cos(), angle.sin())
+        })
+        .sum();
+    sum / sides
 }

@@ -12,19 +12,19 @@ use voronudge_geometry::Vector;
 /// so entries at large lags rest on few independent ones. Costs `N F²/2` displacements.
 ///
 /// # Errors
-/// [`Error::State`] if frames have different numbers of cells.
+/// [`Error::Cells`] if frames have different numbers of cells.
 ///
 /// ```
 /// use voronudge_geometry::Vector;
-/// use voronudge_simulate::measure::mean_square_displacement;
+/// use voronudge_observables::mean_square_displacement;
 /// let frames: Vec<Vec<_>> = (0..4).map(|t| vec![Vector::new(0.5 * t as f64, 0.0); 3]).collect();
 /// assert_eq!(mean_square_displacement(&frames)?, [0.0, 0.25, 1.0, 2.25]);
-/// # Ok::<(), voronudge_simulate::Error>(())
+/// # Ok::<(), voronudge_observables::Error>(())
 /// ```
 pub fn mean_square_displacement(frames: &[Vec<Vector<f64>>]) -> Result<Vec<f64>, Error> {
     let cells = frames.first().map_or(0, Vec::len);
-    if let Some(other) = frames.iter().find(|frame| frame.len() != cells) {
-        return Err(Error::State { cells, positions: other.len(), headings: 0 });
+    if let Some(frame) = frames.iter().position(|frame| frame.len() != cells) {
+        return Err(Error::Cells { frame, cells, found: frames[frame].len() });
     }
     let at_lag = |lag: usize| {
         let pairs = frames.iter().zip(&frames[lag..]);

@@ -9,7 +9,7 @@ use voronudge_geometry::Tessellation;
 ///
 /// ```
 /// use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-/// use voronudge_simulate::measure::TransitionCounter;
+/// use voronudge_observables::TransitionCounter;
 /// let tissue = |shift: f64| {
 ///     let positions: Vec<_> =
 ///         (0..16).map(|i| Vector::new((i % 4) as f64 + shift * (i / 4 % 2) as f64, (i / 4) as f64)).collect();

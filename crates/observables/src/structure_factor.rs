@@ -24,14 +24,16 @@ pub struct StructureFactor {
 /// Every wave vector of the box up to `largest` is summed exactly, at a cost of N sines and cosines each.
 ///
 /// ```
-/// use voronudge_simulate::{honeycomb, measure::structure_factor};
-/// let (positions, cell_box) = honeycomb(144)?;
+/// use voronudge_geometry::{PeriodicBox, honeycomb};
+/// use voronudge_observables::structure_factor;
+/// let (positions, lengths) = honeycomb(12, 12);
+/// let cell_box = PeriodicBox::new(lengths)?;
 /// // A perfect crystal does not scatter below its first Bragg peak, 4π/(a√3) for a spacing a.
 /// let spacing = (2.0 / 3f64.sqrt()).sqrt();
 /// let peak = 4.0 * std::f64::consts::PI / (spacing * 3f64.sqrt());
 /// let shells = structure_factor(&positions, &[], &cell_box, 0.9 * peak);
 /// assert!(shells.iter().all(|shell| shell.density < 1e-20));
-/// # Ok::<(), voronudge_simulate::Error>(())
+/// # Ok::<(), voronudge_geometry::Error>(())
 /// ```
 pub fn structure_factor(
     positions: &[Vector<f64>],
@@ -42,8 +44,18 @@ pub fn structure_factor(
     let [width, height] = cell_box.lengths();
     let shell_width = std::f64::consts::TAU / width.max(height);
     let vectors = wave_vectors(cell_box, largest);
-    let amplitudes: Vec<[f64; 4]> =
-        vectors.par_iter().map(|q| amplitudes(positions, velocities, *q)).collect();
+    let cells: Vec<Scatterer<1>> = positions
+        .iter()
+        .enumerate()
+        .map(|(i, r)| Scatterer { place: *r, velocity: velocities.get(i).copied(), weights: [1.0] })
+        .collect();
+    let count = positions.len().max(1) as f64;
+    let of_wave = |q: &Vector<f64>| {
+        let [sums] = amplitudes(&cells, *q);
+        let [density, longitudinal, transverse] = sums.map(|sum| sum.norm_squared() / count);
+        [q.norm(), density, longitudinal, transverse]
+    };
+    let amplitudes: Vec<[f64; 4]> = vectors.par_iter().map(of_wave).collect();
     let mut shells = vec![(0, [0.0; 4]); (largest / shell_width) as usize + 1];
     for amplitudes in amplitudes {
         let shell = &mut shells[(amplitudes[0] / shell_width - 0.5).max(0.0) as usize];
@@ -61,7 +73,7 @@ pub fn structure_factor(
 }
 
 /// One of each pair `±q` of wave vectors of the box: `q · (lattice vector)` is a multiple of 2π.
-fn wave_vectors(cell_box: &PeriodicBox, largest: f64) -> Vec<Vector<f64>> {
+pub(crate) fn wave_vectors(cell_box: &PeriodicBox, largest: f64) -> Vec<Vector<f64>> {
     let [width, height] = cell_box.lengths();
     let tau = std::f64::consts::TAU;
     let most = |length: f64| (largest * length / tau).ceil() as i32;
@@ -79,33 +91,42 @@ fn wave_vectors(cell_box: &PeriodicBox, largest: f64) -> Vec<Vector<f64>> {
         .collect()
 }
 
-/// `|q|` and the three structure factors at one wave vector.
-fn amplitudes(positions: &[Vector<f64>], velocities: &[Vector<f64>], q: Vector<f64>) -> [f64; 4] {
+/// A cell that waves are scattered by, with its weight in each of some tapers.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Scatterer<const T: usize> {
+    pub place: Vector<f64>,
+    pub velocity: Option<Vector<f64>>,
+    pub weights: [f64; T],
+}
+
+/// For each taper, `Σ_i w_i exp(−i q·r_i)` of the density and of the velocities along and across the wave vector, as (real, imaginary).
+pub(crate) fn amplitudes<const T: usize>(cells: &[Scatterer<T>], q: Vector<f64>) -> [[Vector<f64>; 3]; T] {
     let direction = q / q.norm();
-    let mut sums = [Vector::zeros(); 3];
-    for (i, r) in positions.iter().enumerate() {
-        let (sin, cos) = q.dot(r).sin_cos();
+    let mut sums = [[Vector::zeros(); 3]; T];
+    for cell in cells {
+        let (sin, cos) = q.dot(&cell.place).sin_cos();
         let wave = Vector::new(cos, -sin);
-        let v = velocities.get(i).copied().unwrap_or_default();
-        sums[0] += wave;
-        sums[1] += wave * direction.dot(&v);
-        sums[2] += wave * (direction.x * v.y - direction.y * v.x);
+        let v = cell.velocity.unwrap_or_default();
+        let (along, across) = (direction.dot(&v), direction.x * v.y - direction.y * v.x);
+        for (sums, weight) in sums.iter_mut().zip(cell.weights) {
+            sums[0] += wave * weight;
+            sums[1] += wave * (along * weight);
+            sums[2] += wave * (across * weight);
+        }
     }
-    let cells = positions.len().max(1) as f64;
-    let [density, longitudinal, transverse] = sums.map(|sum| sum.norm_squared() / cells);
-    [q.norm(), density, longitudinal, transverse]
+    sums
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::generator;
-    use rand::Rng;
+    use rand::{Rng, SeedableRng};
+    use rand_pcg::Pcg64;
 
     #[test]
     fn random_positions_and_velocities_are_white() {
         let cell_box = PeriodicBox::sheared([20.0, 15.0], 4.0).unwrap();
-        let mut rng = generator(3);
+        let mut rng = Pcg64::seed_from_u64(3);
         let mut pair = |a: f64, b: f64| Vector::new(rng.random_range(0.0..a), rng.random_range(0.0..b));
         let positions: Vec<_> = (0..1200).map(|_| pair(20.0, 15.0)).collect();
         let velocities: Vec<_> = (0..1200).map(|_| pair(2.0, 2.0) - Vector::new(1.0, 1.0)).collect();

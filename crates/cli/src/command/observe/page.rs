@@ -1,0 +1,307 @@
+//! The result as a page and as a summary.
+
+use crate::command::drawing::{borders, cells_view};
+use crate::failure::Failure;
+use std::fmt::Write as _;
+use std::path::Path;
+use voronudge_geometry::Vector;
+use voronudge_observables::{Curve, Frame, Quantity, Recording};
+use voronudge_report::arrows::ArrowScale;
+use voronudge_report::chart::AxisScale;
+use voronudge_report::colour::{BLUE, GREY};
+use voronudge_report::figure::{
+    CellScalar, CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, configuration_map,
+    points_and_curves,
+};
+use voronudge_report::markers::Marker;
+use voronudge_report::numbers::significant;
+use voronudge_report::observe_report::{ObserveReport, ObservedNumber};
+use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
+use voronudge_report::units::label_with_unit;
+use voronudge_report::{FrameView, Units};
+
+const GUIDE: &[[&str; 2]] = &[
+    [
+        "Cells that count",
+        "In an open field of view a cell counts if its polygon and those of all its neighbours would be the same had cells beyond the border been seen. Only \
+         these are measured; structure factors are of the cells in the largest upright rectangle in which every cell would have been seen.",
+    ],
+    [
+        "Errors",
+        "Bars are one standard error, by leaving out one sixteenth of the cells at a time, so cells that move together are taken together; of structure factors by \
+         the scatter among wave vectors. Points next to each other are not independent.",
+    ],
+    [
+        "Errors of localisation",
+        "Positions are taken as they are. Errors of σ_r in each coordinate add 4σ_r² to every mean square displacement, make contacts flicker and make velocities \
+         between frames forget each other.",
+    ],
+    [
+        "Hexatic order",
+        "ψ = (1/z) Σ exp(6iθ) over the directions to the z neighbours of a cell; Ψ_6 is the modulus of its mean.",
+    ],
+];
+
+pub(super) fn page(
+    title: &str,
+    report: &ObserveReport,
+    recording: &Recording,
+    curves: &[Curve],
+    units: &Units,
+) -> Result<String, Failure> {
+    let figures = |all: &[Quantity]| -> Vec<Figure> {
+        let found = all.iter().filter_map(|of| curves.iter().find(|curve| curve.of == *of));
+        found.filter_map(|curve| figure(curve, units)).collect()
+    };
+    let motion = [
+        Quantity::MeanSquareDisplacement,
+        Quantity::VelocityAutocorrelation,
+        Quantity::VelocityCorrelation,
+        Quantity::Vortices,
+        Quantity::Compression,
+    ];
+    let contacts = [Quantity::ContactSurvival, Quantity::Neighbours];
+    let shapes = [Quantity::ShapeIndex, Quantity::Area];
+    let order = [Quantity::PairCorrelation, Quantity::HexaticCorrelation, Quantity::Density];
+    let section = |heading: &str, all: &[Quantity]| Section {
+        heading: heading.into(),
+        figures: figures(all),
+        ..Section::default()
+    };
+    let mut sections = vec![Section {
+        heading: "The cells".into(),
+        figures: recording.frames().first().map(|frame| cells(frame, report, units)).into_iter().collect(),
+        ..Section::default()
+    }];
+    sections.extend(
+        [
+            section("Motion", &motion),
+            section("Neighbours", &contacts),
+            section("Shapes", &shapes),
+            section("Order", &order),
+        ]
+        .into_iter()
+        .filter(|section| !section.figures.is_empty()),
+    );
+    sections.push(Section {
+        heading: "Numbers".into(),
+        table: Some(Table {
+            header: ["", "value", "standard error", "unit"].map(str::to_owned).to_vec(),
+            rows: numbers(report)
+                .map(|(of, number)| {
+                    let error = told(number.standard_error, 1);
+                    vec![capital(of.words()), significant(number.value, 3), error, number.unit.clone()]
+                })
+                .collect(),
+        }),
+        ..Section::default()
+    });
+    let page = SectionPage {
+        title,
+        headline: &headline(report),
+        summary: &[said(report)],
+        cards: &cards(report),
+        guide: GUIDE,
+        sections: &sections,
+        run: &report.run,
+    };
+    Ok(page.render()?)
+}
+
+fn numbers(report: &ObserveReport) -> impl Iterator<Item = (Quantity, &ObservedNumber)> {
+    Quantity::ALL.into_iter().filter_map(|of| Some((of, report.numbers.get(of.name())?)))
+}
+
+fn told(value: f64, digits: usize) -> String {
+    if value.is_finite() { significant(value, digits) } else { "–".into() }
+}
+
+fn capital(text: &str) -> String {
+    let mut letters = text.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+fn headline(report: &ObserveReport) -> String {
+    let value = |of: Quantity| report.numbers.get(of.name()).map(|number| number.value);
+    let shape = value(Quantity::MeanShapeIndex)
+        .map_or_else(String::new, |value| format!("Cells have a shape index of {}", significant(value, 4)));
+    match (value(Quantity::MeanSquareVelocity), value(Quantity::TransitionRate)) {
+        (Some(square), Some(rate)) => format!(
+            "{shape}, move at {} (root mean square) and exchange {} contacts per cell and {}.",
+            format_args!("{} {}", significant(square.sqrt(), 3), report.units.velocity_text()),
+            significant(rate, 2),
+            if report.units.time.is_empty() { "unit of time".into() } else { report.units.time_text() }
+        ),
+        (Some(square), None) => format!(
+            "{shape} and move at {} {} (root mean square).",
+            significant(square.sqrt(), 3),
+            report.units.velocity_text()
+        ),
+        _ => format!("{shape}."),
+    }
+}
+
+fn said(report: &ObserveReport) -> String {
+    let range = |all: &[usize]| match (all.iter().min(), all.iter().max()) {
+        (Some(low), Some(high)) if low != high => format!("{low} to {high}"),
+        (Some(one), _) => one.to_string(),
+        _ => "no".into(),
+    };
+    let frames = match report.frames.len() {
+        1 => "one frame".to_owned(),
+        more => format!("{more} frames"),
+    };
+    let velocities = match report.velocities {
+        "given" => " Velocities are those given.",
+        "from_positions" => " Velocities are displacements until the next frame.",
+        _ => "",
+    };
+    let stage = if report.common_motion_removed {
+        " The median motion of the cells is taken for one of the stage."
+    } else {
+        ""
+    };
+    format!(
+        "{} cells in {frames}, of which {} count.{velocities}{stage}",
+        range(&report.seen),
+        range(&report.counted)
+    )
+}
+
+fn cards(report: &ObserveReport) -> Vec<Card> {
+    let of = [
+        (Quantity::MeanSquareVelocity, "⟨v²⟩"),
+        (Quantity::TransitionRate, "T1 transitions"),
+        (Quantity::MeanShapeIndex, "shape index"),
+        (Quantity::HexaticOrder, "hexatic order Ψ_6"),
+    ];
+    let card = |(of, label): (Quantity, &str)| {
+        let number = report.numbers.get(of.name())?;
+        let note = if number.standard_error.is_finite() {
+            format!("± {}", significant(number.standard_error, 1))
+        } else {
+            "mean over frames".into()
+        };
+        let value = format!("{} {}", significant(number.value, 3), number.unit);
+        Some(Card { label: label.into(), value: value.trim_end().into(), note })
+    };
+    of.into_iter().filter_map(card).collect()
+}
+
+/// The cells of a frame, with their velocities.
+fn cells(frame: &Frame, report: &ObserveReport, units: &Units) -> Figure {
+    let label = format!("frame {}", report.frames.first().copied().unwrap_or(0));
+    let mut view: FrameView =
+        cells_view(label, &frame.tessellation, &frame.positions, |cell| frame.counted[cell]);
+    for (cell, v) in view.cells.iter_mut().zip(&frame.velocities) {
+        cell.measured = v.map(|v: Vector<f64>| [v.x, v.y]);
+    }
+    view.region = borders(frame.region.as_ref(), 1.0);
+    let arrows = ArrowScale::velocities(std::slice::from_ref(&view));
+    let shape = CellScalar::shape_index(&view);
+    let caption =
+        "The cells of the first frame, those that count coloured by shape index, with their velocities.";
+    Figure::new(configuration_map(&view, &shape, arrows.as_ref(), units), caption)
+}
+
+/// A function with bars of one standard error.
+fn figure(curve: &Curve, units: &Units) -> Option<Figure> {
+    let (axis, of_axis) = curve.of.axis()?;
+    let label = label_with_unit(axis, &units.powers(of_axis.length, of_axis.time));
+    let dimensions = curve.of.dimensions();
+    let value = label_with_unit(symbol(curve.of), &units.powers(dimensions.length, dimensions.time));
+    let scale = match curve.of {
+        Quantity::MeanSquareDisplacement => [AxisScale::Logarithmic; 2],
+        Quantity::Vortices | Quantity::Compression => [AxisScale::Linear, AxisScale::Logarithmic],
+        _ => [AxisScale::Linear; 2],
+    };
+    let finite = |error: &f64| Some(*error).filter(|error| error.is_finite());
+    let points: Vec<ErrorPoint> = (0..curve.at.len())
+        .filter(|k| curve.value[*k].is_finite())
+        .map(|k| ErrorPoint {
+            at: [curve.at[k], curve.value[k]],
+            error: [None, finite(&curve.standard_error[k])],
+        })
+        .collect();
+    let line: Vec<[f64; 2]> = points.iter().map(|point| point.at).collect();
+    let mut lines = Vec::new();
+    if curve.of == Quantity::MeanSquareDisplacement
+        && let (Some(first), Some(last)) = (line.first(), line.last())
+    {
+        let points = vec![[first[0], last[1] * first[0] / last[0]], *last];
+        lines.push(CurveSeries {
+            label: "in proportion to time",
+            colour: GREY,
+            stroke: Stroke::Dashed,
+            points,
+        });
+    }
+    lines.push(CurveSeries { label: "", colour: BLUE, stroke: Stroke::Solid, points: line });
+    let series = [PointSeries { label: "", colour: BLUE, marker: Marker::Circle, points }];
+    let svg = points_and_curves(&PointsAndCurves {
+        title: curve.of.words(),
+        labels: [&label, &value],
+        scales: scale,
+        series: &series,
+        curves: &lines,
+    });
+    Some(Figure::new(svg, caption(curve.of)))
+}
+
+fn symbol(of: Quantity) -> &'static str {
+    match of {
+        Quantity::MeanSquareDisplacement => "MSD",
+        Quantity::VelocityAutocorrelation => "⟨v(t)·v(t + τ)⟩/⟨v²⟩",
+        Quantity::VelocityCorrelation => "⟨v_i·v_j⟩/⟨v²⟩",
+        Quantity::ContactSurvival => "share that are contacts",
+        Quantity::ShapeIndex | Quantity::Area => "density of the distribution",
+        Quantity::Neighbours => "share of cells",
+        Quantity::HexaticCorrelation => "⟨ψ_i* ψ_j⟩",
+        Quantity::PairCorrelation => "g(r)",
+        Quantity::Density => "S(q) of density",
+        Quantity::Compression | Quantity::Vortices => "S(q) of velocity",
+        _ => "",
+    }
+}
+
+fn caption(of: Quantity) -> &'static str {
+    match of {
+        Quantity::MeanSquareDisplacement => {
+            "Mean square displacement against the time between two frames. Large lags rest on few pairs of frames."
+        }
+        Quantity::VelocityAutocorrelation => "How long cells remember their velocity.",
+        Quantity::VelocityCorrelation => "How alike the velocities of two cells are, by their distance.",
+        Quantity::ContactSurvival => "Share of the contacts of a frame that are contacts in a later one.",
+        Quantity::ShapeIndex => {
+            "Distribution of the shape index P/√A: 3.72 for a regular hexagon, more for longer cells."
+        }
+        Quantity::Area => "Distribution of the areas.",
+        Quantity::Neighbours => "How many neighbours cells have.",
+        Quantity::HexaticCorrelation => {
+            "How alike the orientations of the neighbourhoods of two cells are, by their distance."
+        }
+        Quantity::PairCorrelation => "Density of cells at a distance from a cell, over the mean density.",
+        Quantity::Density => "Structure factor of the density. Random places have 1.",
+        Quantity::Compression => "Structure factor of the velocity along the wave vector: compression.",
+        Quantity::Vortices => "Structure factor of the velocity across the wave vector: vortices.",
+        _ => "",
+    }
+}
+
+/// What is printed.
+pub(super) fn summary(report: &ObserveReport, out: &Path) -> String {
+    let mut text = format!("{}\n\n", said(report));
+    for (of, number) in numbers(report) {
+        let error = if number.standard_error.is_finite() {
+            format!("± {}", significant(number.standard_error, 1))
+        } else {
+            String::new()
+        };
+        let line =
+            format!("  {:34}{:>10} {error:10} {}", of.words(), significant(number.value, 3), number.unit);
+        let _ = writeln!(text, "{}", line.trim_end());
+    }
+    let _ = writeln!(text, "\n{}", headline(report));
+    let _ = writeln!(text, "figures in {}", out.join("report.html").display());
+    text
+}

@@ -1,0 +1,109 @@
+//! `observe`: the same measurements on simulated and on measured cells.
+
+use crate::program::{fixture, succeed};
+use crate::refusal::assert_refused;
+use crate::scratch::{Folder, number, read, report};
+use crate::shape_imports::assert_described;
+use ndarray::{Array2, Array3, Axis, Slice};
+
+/// A run is measured while it goes, by `simulate`, and afterwards from its files: displacements and ⟨v²⟩ are the same to rounding, T1 transitions but for those that
+/// come and go between frames.
+#[test]
+fn what_is_measured_on_a_run_is_measured_on_its_files() {
+    let (run, out) = (Folder::new(), Folder::new());
+    let line = "simulate --cells 64 --P_0 4 --alpha 1 --time 8 --frames 400 --seed 3";
+    succeed(line, &[("--out", run.path())]);
+    succeed("observe", &[("", run.path()), ("--out", out.path())]);
+    let (during, after) = (report(run.path()), report(out.path()));
+    assert_described(&after, "observe.schema.json");
+    let told: Array2<f64> = read(&run.file("mean_square_displacement.npy"));
+    let found: Array2<f64> = read(&out.file("mean_square_displacement.npy"));
+    let mut compared = 0;
+    for row in found.rows() {
+        if let Some(same) = told.rows().into_iter().find(|other| (other[0] - row[0]).abs() < 1e-9) {
+            // `simulate` takes every other frame.
+            assert!((same[1] / row[1] - 1.0).abs() < 0.05, "{row} and {same}");
+            compared += 1;
+        }
+    }
+    assert!(compared > 5, "{compared} lags in both");
+    let squares: Array2<f64> = read(&run.file("mean_square_velocity.npy"));
+    let mean = squares.column(1).mean().unwrap();
+    assert!((number(&after, "/numbers/mean_square_velocity/value") / mean - 1.0).abs() < 1e-9);
+    succeed("observe --frames 200..400", &[("", run.path()), ("--out", out.path())]);
+    let (steps, frames) =
+        (number(&during, "/t1_rate"), number(&report(out.path()), "/numbers/t1_rate/value"));
+    assert!((0.8..1.02).contains(&(frames / steps)), "{frames} of {steps}");
+}
+
+/// Seen through a window, a part of the cells missing for a frame, what is measured is that of the whole within its errors.
+#[test]
+fn a_field_of_view_shows_what_the_whole_is_like() {
+    let (run, whole, part, seen) = (Folder::new(), Folder::new(), Folder::new(), Folder::new());
+    let line = "simulate --cells 576 --P_0 3.9 --alpha 0.5 --time 12 --frames 24 --seed 5";
+    succeed(line, &[("--out", run.path())]);
+    succeed("observe", &[("", run.path()), ("--out", whole.path())]);
+    let mut positions: Array3<f64> = read(&run.file("positions.npy"));
+    // Cells in the middle of the box, in their own frame, each missing in one frame of twenty.
+    for ((frame, cell, _), value) in positions.indexed_iter_mut() {
+        if (frame * 7 + cell * 13) % 20 == 0 {
+            *value = f64::NAN;
+        }
+    }
+    for mut frame in positions.outer_iter_mut() {
+        for mut r in frame.outer_iter_mut() {
+            if !r.iter().all(|x| (1.0..23.0).contains(x)) {
+                r.fill(f64::NAN);
+            }
+        }
+    }
+    let velocities: Array3<f64> = read(&run.file("velocities.npy"));
+    part.write_array("positions.npy", &positions);
+    part.write_array("velocities.npy", &velocities);
+    part.write("dataset.toml", "boundary = \"open\"\nframe_interval = 0.5\nunwrapped = true\n");
+    succeed("observe", &[("", part.path()), ("--out", seen.path())]);
+    let (all, some) = (report(whole.path()), report(seen.path()));
+    assert_described(&some, "observe.schema.json");
+    assert!(number(&some, "/counted/0") < 0.8 * number(&some, "/seen/0"));
+    for name in ["mean_square_velocity", "mean_shape_index", "hexatic_mean_modulus"] {
+        let [truth, found, error] = [
+            number(&all, &format!("/numbers/{name}/value")),
+            number(&some, &format!("/numbers/{name}/value")),
+            number(&some, &format!("/numbers/{name}/standard_error")),
+        ];
+        // Missing cells make their neighbours larger and longer: a bias beside the error.
+        assert!((found - truth).abs() < 4.0 * error + 0.02 * truth, "{name}: {found} ± {error}, {truth}");
+    }
+    for name in ["velocity_correlation", "velocity_autocorrelation"] {
+        let [truth, found]: [Array2<f64>; 2] =
+            [&whole, &seen].map(|folder| read(&folder.file(&format!("{name}.npy"))));
+        for (found, truth) in found.rows().into_iter().zip(truth.rows()).take(6) {
+            if found[3] > 300.0 {
+                assert!((found[1] - truth[1]).abs() < 5.0 * found[2] + 0.05, "{name}: {found}, {truth}");
+            }
+        }
+    }
+}
+
+#[test]
+fn one_frame_without_velocities_has_no_motion_and_says_so() {
+    let (data, cells, out) = (fixture("open-field"), Folder::new(), Folder::new());
+    let positions: Array3<f64> = read(&data.join("positions.npy"));
+    cells.write_array("positions.npy", &positions.slice_axis(Axis(0), Slice::from(..1)).to_owned());
+    cells.write("dataset.toml", "boundary = \"open\"\n");
+    let outcome = succeed("observe", &[("", cells.path()), ("--out", out.path())]);
+    assert!(outcome.stderr.contains("nothing is said of motion"), "{}", outcome.stderr);
+    let found = report(out.path());
+    assert_described(&found, "observe.schema.json");
+    assert_eq!(found["velocities"], "none");
+    assert!(found["numbers"].get("mean_square_velocity").is_none());
+    assert!(found["curves"].get("mean_square_displacement").is_none());
+    assert!(out.names().contains(&"shape_index.npy".to_owned()));
+}
+
+#[test]
+fn too_few_cells_are_refused_with_a_hint() {
+    let few = Array3::from_shape_fn((1, 5, 2), |(_, cell, axis)| ((cell * 7 + axis * 3) % 5) as f64);
+    let cells = Folder::data_set(&few, "boundary = \"open\"\n");
+    assert_refused("observe", cells.path(), &[], &["positions.npy: no cell has all its neighbours in view"]);
+}

@@ -1,0 +1,40 @@
+//! What is measured on tissues, simulated or seen under a microscope.
+//!
+//! Measurements of one state are functions of positions and tessellation. A [`Recording`] is cells followed over frames, in a periodic box or an open field of
+//! view, with gaps in their tracks, and [`observe`] measures all that can be measured on one, with standard errors. A simulated movie in
+//! which the same cells are seen as in a measured one is measured by the same [`Plan`], so that the two can be compared point by point.
+
+mod block_average;
+mod contacts;
+mod curve;
+mod displacement;
+mod error;
+mod hexatic;
+mod motion;
+mod observe;
+mod pairs;
+mod plan;
+mod quantity;
+mod recording;
+mod shape;
+mod spectra;
+mod structure_factor;
+#[cfg(test)]
+mod tests;
+mod transitions;
+mod velocity;
+mod window;
+
+pub use block_average::BlockAverage;
+pub use curve::Curve;
+pub use displacement::mean_square_displacement;
+pub use error::Error;
+pub use hexatic::{Hexatic, hexatic, hexatic_among};
+pub use observe::observe;
+pub use plan::Plan;
+pub use quantity::{Dimensions, Quantity};
+pub use recording::{Frame, Images, Recording};
+pub use shape::shape_indices;
+pub use structure_factor::{StructureFactor, structure_factor};
+pub use transitions::TransitionCounter;
+pub use velocity::mean_square_velocity;

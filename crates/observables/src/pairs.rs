@@ -1,0 +1,99 @@
+//! What cells at a distance have in common.
+
+use crate::curve::Sums;
+use crate::hexatic::of_cell;
+use crate::{Curve, Frame, Plan, Quantity, Recording};
+use rayon::prelude::*;
+use rstar::RTree;
+use rstar::primitives::GeomWithData;
+use voronudge_geometry::{Domain, Vector, areas};
+
+/// Cells by where they are, with those images that come near the box.
+type Places = RTree<GeomWithData<[f64; 2], usize>>;
+
+/// Correlations of velocities, of hexatic order and of places.
+pub(crate) fn correlations(recording: &Recording, plan: &Plan) -> [Curve; 3] {
+    let of_frame = |frame: &usize| of_frame(&recording.frames()[*frame], plan);
+    let all: Vec<[Sums; 3]> = plan.stills.par_iter().map(of_frame).collect();
+    let total = |k: usize| all.iter().fold(Sums::new(plan.bins), |sums, own| sums.merge(&own[k]));
+    [
+        total(0).curve(Quantity::VelocityCorrelation, plan.distances()),
+        total(1).curve(Quantity::HexaticCorrelation, plan.distances()),
+        total(2).curve(Quantity::PairCorrelation, plan.distances()),
+    ]
+}
+
+fn of_frame(frame: &Frame, plan: &Plan) -> [Sums; 3] {
+    let [mut flow, mut order, mut density] = [(); 3].map(|()| Sums::new(plan.bins));
+    let (bin, reach) = (plan.bin(), plan.bins as f64 * plan.bin());
+    let places = places(frame, reach);
+    let hexatic: Vec<Option<Vector<f64>>> = (0..frame.tracks.len())
+        .map(|cell| frame.counted[cell].then(|| of_cell(&frame.tessellation, &frame.positions, cell)))
+        .collect();
+    let per_area = density_of(frame);
+    for cell in frame.in_view() {
+        let r = wrapped(frame, cell);
+        let part = plan.parts[frame.tracks[cell]];
+        let free = frame.region.as_ref().map_or(f64::INFINITY, |region| region.distance_from_border(r));
+        // Rings around the cell in which every other would have been seen.
+        for ring in (0..plan.bins).take_while(|ring| (ring + 1) as f64 * bin <= free) {
+            let area = std::f64::consts::PI * bin * bin * (2 * ring + 1) as f64;
+            density.add(ring, part, 0.0, area * per_area);
+        }
+        for found in places.locate_within_distance([r.x, r.y], reach * reach) {
+            let [x, y] = *found.geom();
+            let distance = (Vector::new(x, y) - r).norm();
+            let ring = (distance / bin) as usize;
+            if distance <= 0.0 || ring >= plan.bins {
+                continue;
+            }
+            let other = found.data;
+            // A cell that never counts goes with the one that does.
+            let its_part = if frame.counted[other] { plan.parts[frame.tracks[other]] } else { part };
+            let parts = [part, its_part];
+            if (ring + 1) as f64 * bin <= free {
+                density.add_pair(ring, parts, 1.0, 0.0);
+            }
+            if let (Some(own), Some(its)) = (hexatic[cell], hexatic[other]) {
+                order.add_pair(ring, parts, own.dot(&its), 1.0);
+            }
+            if let (Some(own), Some(its)) = (frame.velocities[cell], frame.velocities[other])
+                && frame.counted[other]
+            {
+                let squares = 0.5 * (own.norm_squared() + its.norm_squared());
+                flow.add_pair(ring, parts, own.dot(&its), squares);
+            }
+        }
+    }
+    [flow, order, density]
+}
+
+/// Cells per area: one over the mean area of those that count.
+fn density_of(frame: &Frame) -> f64 {
+    let areas = areas(&frame.tessellation, &frame.positions);
+    let (sum, count) =
+        frame.in_view().fold((0.0, 0.0), |(sum, count), cell| (sum + areas[cell], count + 1.0));
+    count / sum
+}
+
+fn wrapped(frame: &Frame, cell: usize) -> Vector<f64> {
+    frame.tessellation.domain().wrap(frame.positions[cell])
+}
+
+fn places(frame: &Frame, reach: f64) -> Places {
+    let mut all = Vec::with_capacity(frame.tracks.len());
+    for cell in 0..frame.tracks.len() {
+        let r = wrapped(frame, cell);
+        all.push(GeomWithData::new([r.x, r.y], cell));
+        let Domain::Periodic(own) = frame.tessellation.domain() else { continue };
+        let [width, height] = own.lengths();
+        for n in (-2..=2).flat_map(|ny| (-2..=2).map(move |nx| [nx, ny])).filter(|n| *n != [0, 0]) {
+            let image = r + own.translation(n);
+            let near = |value: f64, length: f64| (-reach..length + reach).contains(&value);
+            if near(image.x, width) && near(image.y, height) {
+                all.push(GeomWithData::new([image.x, image.y], cell));
+            }
+        }
+    }
+    RTree::bulk_load(all)
+}

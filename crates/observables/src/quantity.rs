@@ -1,0 +1,169 @@
+//! What is measured.
+
+/// Powers of a length and of a time.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Dimensions {
+    /// Power of the length.
+    pub length: i32,
+    /// Power of the time.
+    pub time: i32,
+}
+
+impl Dimensions {
+    const NONE: Self = Self { length: 0, time: 0 };
+    const LENGTH: Self = Self { length: 1, time: 0 };
+    const TIME: Self = Self { length: 0, time: 1 };
+
+    /// What a value in units of `length` and `time` is to be multiplied with.
+    pub fn factor(self, length: f64, time: f64) -> f64 {
+        length.powi(self.length) * time.powi(self.time)
+    }
+}
+
+/// What is measured: a number, or a function of a lag, a distance, a wave number or a value.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Quantity {
+    /// `⟨|v|²⟩`
+    MeanSquareVelocity,
+    /// `⟨|r_i(t + τ) − r_i(t)|²⟩`
+    MeanSquareDisplacement,
+    /// `⟨v_i(t + τ)·v_i(t)⟩` over the mean square of both.
+    VelocityAutocorrelation,
+    /// `⟨v_i·v_j⟩` of cells at a distance, over the mean square of both.
+    VelocityCorrelation,
+    /// T1 transitions per cell and time: contacts of a frame that its predecessor did not have.
+    TransitionRate,
+    /// Share of the contacts that are contacts still, or again, a lag later.
+    ContactSurvival,
+    /// Mean of `P/√A`.
+    MeanShapeIndex,
+    /// Density of the distribution of `P/√A`.
+    ShapeIndex,
+    /// Density of the distribution of the area, in units of its mean.
+    Area,
+    /// Share of cells with so many neighbours.
+    Neighbours,
+    /// `Ψ₆ = |⟨ψ_i⟩|`, mean over frames.
+    HexaticOrder,
+    /// `⟨|ψ_i|⟩`
+    HexaticModulus,
+    /// `Re ⟨ψ_i* ψ_j⟩` of cells at a distance.
+    HexaticCorrelation,
+    /// Density of cells at a distance from a cell, over the mean density.
+    PairCorrelation,
+    /// `S(q)` of the density.
+    Density,
+    /// Structure factor of the velocity along the wave vector: compression.
+    Compression,
+    /// Structure factor of the velocity across the wave vector: vortices.
+    Vortices,
+}
+
+impl Quantity {
+    /// All of them, in the order of reports.
+    pub const ALL: [Self; 17] = [
+        Self::MeanSquareVelocity,
+        Self::MeanSquareDisplacement,
+        Self::VelocityAutocorrelation,
+        Self::VelocityCorrelation,
+        Self::TransitionRate,
+        Self::ContactSurvival,
+        Self::MeanShapeIndex,
+        Self::ShapeIndex,
+        Self::Area,
+        Self::Neighbours,
+        Self::HexaticOrder,
+        Self::HexaticModulus,
+        Self::HexaticCorrelation,
+        Self::PairCorrelation,
+        Self::Density,
+        Self::Compression,
+        Self::Vortices,
+    ];
+
+    /// Its name in reports and files.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::MeanSquareVelocity => "mean_square_velocity",
+            Self::MeanSquareDisplacement => "mean_square_displacement",
+            Self::VelocityAutocorrelation => "velocity_autocorrelation",
+            Self::VelocityCorrelation => "velocity_correlation",
+            Self::TransitionRate => "t1_rate",
+            Self::ContactSurvival => "contact_survival",
+            Self::MeanShapeIndex => "mean_shape_index",
+            Self::ShapeIndex => "shape_index",
+            Self::Area => "area",
+            Self::Neighbours => "neighbours",
+            Self::HexaticOrder => "hexatic_order",
+            Self::HexaticModulus => "hexatic_mean_modulus",
+            Self::HexaticCorrelation => "hexatic_correlation",
+            Self::PairCorrelation => "pair_correlation",
+            Self::Density => "density_structure_factor",
+            Self::Compression => "longitudinal_structure_factor",
+            Self::Vortices => "transverse_structure_factor",
+        }
+    }
+
+    /// The same in words.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::MeanSquareVelocity => "mean square velocity",
+            Self::MeanSquareDisplacement => "mean square displacement",
+            Self::VelocityAutocorrelation => "autocorrelation of velocities",
+            Self::VelocityCorrelation => "correlation of velocities",
+            Self::TransitionRate => "T1 transitions per cell and time",
+            Self::ContactSurvival => "contacts that last",
+            Self::MeanShapeIndex => "mean shape index",
+            Self::ShapeIndex => "distribution of the shape index",
+            Self::Area => "distribution of the area",
+            Self::Neighbours => "numbers of neighbours",
+            Self::HexaticOrder => "hexatic order",
+            Self::HexaticModulus => "hexatic order of single cells",
+            Self::HexaticCorrelation => "correlation of hexatic order",
+            Self::PairCorrelation => "pair correlation",
+            Self::Density => "structure factor of the density",
+            Self::Compression => "structure factor of compressing flow",
+            Self::Vortices => "structure factor of swirling flow",
+        }
+    }
+
+    /// Whether it is a single number.
+    pub fn is_number(self) -> bool {
+        self.axis().is_none()
+    }
+
+    /// What it is a function of, in words, and in which powers of units; `None` for a number.
+    pub fn axis(self) -> Option<(&'static str, Dimensions)> {
+        Some(match self {
+            Self::MeanSquareVelocity
+            | Self::TransitionRate
+            | Self::MeanShapeIndex
+            | Self::HexaticOrder
+            | Self::HexaticModulus => return None,
+            Self::MeanSquareDisplacement | Self::VelocityAutocorrelation | Self::ContactSurvival => {
+                ("lag", Dimensions::TIME)
+            }
+            Self::VelocityCorrelation | Self::HexaticCorrelation | Self::PairCorrelation => {
+                ("distance", Dimensions::LENGTH)
+            }
+            Self::ShapeIndex => ("shape index P/√A", Dimensions::NONE),
+            Self::Area => ("area / mean area", Dimensions::NONE),
+            Self::Neighbours => ("neighbours", Dimensions::NONE),
+            Self::Density | Self::Compression | Self::Vortices => {
+                ("wave number", Dimensions { length: -1, time: 0 })
+            }
+        })
+    }
+
+    /// Powers of the units of its value.
+    pub fn dimensions(self) -> Dimensions {
+        match self {
+            Self::MeanSquareVelocity | Self::Compression | Self::Vortices => {
+                Dimensions { length: 2, time: -2 }
+            }
+            Self::MeanSquareDisplacement => Dimensions { length: 2, time: 0 },
+            Self::TransitionRate => Dimensions { length: 0, time: -1 },
+            _ => Dimensions::NONE,
+        }
+    }
+}

@@ -1,0 +1,67 @@
+//! `report.json` of `voronudge observe`.
+
+use crate::infer_report::{Quantity, RunRecord};
+use crate::units::Units;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The JSON Schema of [`ObserveReport`].
+pub const OBSERVE_SCHEMA: &str = include_str!("../schema/observe.schema.json");
+
+/// Everything `observe` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObserveReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// Frames measured, zero-based.
+    pub frames: Vec<usize>,
+    /// Cells seen in each.
+    pub seen: Vec<usize>,
+    /// Those of them that count: whose polygon and those of whose neighbours are certain.
+    pub counted: Vec<usize>,
+    /// The cell size: root of the mean area of the cells that count.
+    pub length_scale: Quantity,
+    /// `given`, `from_positions`, or `none`.
+    pub velocities: &'static str,
+    /// Whether the median motion of the cells is taken for one of the stage.
+    pub common_motion_removed: bool,
+    /// Single numbers, by name.
+    pub numbers: BTreeMap<&'static str, ObservedNumber>,
+    /// Functions, by name.
+    pub curves: BTreeMap<&'static str, ObservedCurve>,
+}
+
+/// A measured number.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservedNumber {
+    /// Value.
+    pub value: f64,
+    /// Standard error, where it can be told.
+    pub standard_error: f64,
+    /// Unit.
+    pub unit: String,
+    /// What it rests on: cells, pairs of cells, transitions or frames.
+    pub count: usize,
+}
+
+/// A measured function.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservedCurve {
+    /// What it is a function of.
+    pub axis: &'static str,
+    /// Unit of that.
+    pub axis_unit: String,
+    /// Unit of the values.
+    pub unit: String,
+    /// Lags, distances, wave numbers or values.
+    pub at: Vec<f64>,
+    /// Values.
+    pub value: Vec<f64>,
+    /// Standard errors, where they can be told.
+    pub standard_error: Vec<f64>,
+    /// Cells, pairs, displacements or wave vectors that each rests on.
+    pub count: Vec<usize>,
+}
