@@ -30,7 +30,7 @@ pub use curve::Curve;
 pub use displacement::mean_square_displacement;
 pub use error::Error;
 pub use hexatic::{Hexatic, hexatic, hexatic_among};
-pub use observe::observe;
+pub use observe::{correlations, observe};
 pub use plan::Plan;
 pub use quantity::{Dimensions, Quantity};
 pub use recording::{Frame, Images, Recording};

@@ -30,3 +30,11 @@ pub fn observe(recording: &Recording, plan: &Plan) -> Vec<Curve> {
     all.sort_by_key(|curve| curve.of);
     all
 }
+
+/// The autocorrelation and the correlation of the velocities alone.
+pub fn correlations(recording: &Recording, plan: &Plan) -> Vec<Curve> {
+    let [flow, ..] = pairs::correlations(recording, plan);
+    let mut all = vec![flow, motion::memory(recording, plan)];
+    all.retain(|curve| curve.value.iter().any(|value| value.is_finite()));
+    all
+}

@@ -31,6 +31,10 @@ pub enum Quantity {
     VelocityAutocorrelation,
     /// `⟨v_i·v_j⟩` of cells at a distance, over the mean square of both.
     VelocityCorrelation,
+    /// The same of what a model leaves of the velocities, in time.
+    ResidualAutocorrelation,
+    /// The same in space.
+    ResidualCorrelation,
     /// T1 transitions per cell and time: contacts of a frame that its predecessor did not have.
     TransitionRate,
     /// Share of the contacts that are contacts still, or again, a lag later.
@@ -61,11 +65,13 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 17] = [
+    pub const ALL: [Self; 19] = [
         Self::MeanSquareVelocity,
         Self::MeanSquareDisplacement,
         Self::VelocityAutocorrelation,
         Self::VelocityCorrelation,
+        Self::ResidualAutocorrelation,
+        Self::ResidualCorrelation,
         Self::TransitionRate,
         Self::ContactSurvival,
         Self::MeanShapeIndex,
@@ -88,6 +94,8 @@ impl Quantity {
             Self::MeanSquareDisplacement => "mean_square_displacement",
             Self::VelocityAutocorrelation => "velocity_autocorrelation",
             Self::VelocityCorrelation => "velocity_correlation",
+            Self::ResidualAutocorrelation => "residual_autocorrelation",
+            Self::ResidualCorrelation => "residual_correlation",
             Self::TransitionRate => "t1_rate",
             Self::ContactSurvival => "contact_survival",
             Self::MeanShapeIndex => "mean_shape_index",
@@ -111,6 +119,8 @@ impl Quantity {
             Self::MeanSquareDisplacement => "mean square displacement",
             Self::VelocityAutocorrelation => "autocorrelation of velocities",
             Self::VelocityCorrelation => "correlation of velocities",
+            Self::ResidualAutocorrelation => "autocorrelation of residuals",
+            Self::ResidualCorrelation => "correlation of residuals",
             Self::TransitionRate => "T1 transitions per cell and time",
             Self::ContactSurvival => "contacts that last",
             Self::MeanShapeIndex => "mean shape index",
@@ -140,12 +150,14 @@ impl Quantity {
             | Self::MeanShapeIndex
             | Self::HexaticOrder
             | Self::HexaticModulus => return None,
-            Self::MeanSquareDisplacement | Self::VelocityAutocorrelation | Self::ContactSurvival => {
-                ("lag", Dimensions::TIME)
-            }
-            Self::VelocityCorrelation | Self::HexaticCorrelation | Self::PairCorrelation => {
-                ("distance", Dimensions::LENGTH)
-            }
+            Self::MeanSquareDisplacement
+            | Self::VelocityAutocorrelation
+            | Self::ResidualAutocorrelation
+            | Self::ContactSurvival => ("lag", Dimensions::TIME),
+            Self::VelocityCorrelation
+            | Self::ResidualCorrelation
+            | Self::HexaticCorrelation
+            | Self::PairCorrelation => ("distance", Dimensions::LENGTH),
             Self::ShapeIndex => ("shape index P/√A", Dimensions::NONE),
             Self::Area => ("area / mean area", Dimensions::NONE),
             Self::Neighbours => ("neighbours", Dimensions::NONE),

@@ -6,6 +6,8 @@
 mod discover_sample;
 #[path = "../tests/report/figure_sample.rs"]
 mod figure_sample;
+#[path = "../tests/report/onward_sample.rs"]
+mod onward_sample;
 #[path = "../tests/report/sample.rs"]
 mod sample;
 

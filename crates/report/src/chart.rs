@@ -50,6 +50,25 @@ impl Axis {
         Self { label: label.to_owned(), range, scale: AxisScale::Logarithmic, ticks: 6 }
     }
 
+    /// An axis that holds some values with a little room; distances begin at nought. What cannot be shown is of no concern; `None` if nothing can.
+    #[must_use]
+    pub fn holding(label: &str, scale: AxisScale, values: impl Iterator<Item = f64>) -> Option<Self> {
+        let logarithmic = scale == AxisScale::Logarithmic;
+        let values = values.map(|x| if logarithmic { x.log10() } else { x }).filter(|x| x.is_finite());
+        let ends =
+            values.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], x| [low.min(x), high.max(x)]);
+        if !ends[0].is_finite() {
+            return None;
+        }
+        let room = 0.04 * (ends[1] - ends[0]).max(1e-9 * ends[1].abs()).max(1e-12);
+        let at_zero = !logarithmic && ends[0] >= 0.0 && ends[0] < 0.2 * ends[1];
+        let range = [if at_zero { 0.0 } else { ends[0] - room }, ends[1] + room];
+        Some(match logarithmic {
+            true => Self::logarithmic(label, range.map(|x| 10f64.powf(x))),
+            false => Self::linear(label, range),
+        })
+    }
+
     /// The axis without tick labels, for categories that are labelled otherwise.
     #[must_use]
     pub fn without_ticks(self) -> Self {

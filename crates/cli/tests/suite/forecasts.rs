@@ -1,4 +1,4 @@
-//! `discover --forecast`: what the cells do next, said before.
+//! `discover --forecast` and `--check`: what the models make of cells.
 
 use crate::discoveries::assert_valid;
 use crate::program::succeed;
@@ -27,7 +27,7 @@ fn cells_that_crawl_are_forecast() {
         tissue("--time 0.55 --frames 12 --self-propulsion 0.6 --rotational-diffusion 0.3 --start random");
     fs::remove_file(data.file("velocities.npy")).unwrap();
     let out = Folder::new();
-    let line = "discover --frames 2..7 --fix K_A=0 --effects polarity,drift --forecast 3 --seed 4";
+    let line = "discover --frames 2..7 --fix K_A=0 --effects polarity,drift --forecast 3 --check 99 --seed 4";
     succeed(line, &[("", data.path()), ("--out", out.path())]);
     let told = report(out.path());
     assert_valid(&told);
@@ -48,7 +48,13 @@ fn cells_that_crawl_are_forecast() {
             .zip(&extended)
             .all(|((gain, base), own)| { (gain - (own - base)).abs() < 1e-9 })
     );
+    let check = &told["check"];
+    assert_eq!((&check["frames"], &check["draws"]), (&json!([4, 5, 6, 7, 8, 9, 10, 11]), &json!(99)));
+    let [base, extended] = ["base", "extended"].map(|own| check["p"][own].as_f64().unwrap());
+    assert!((base - 0.01).abs() < 1e-12 && extended > 0.02, "{base} {extended}");
+    assert!(check["quantities"].as_array().unwrap().len() > 10);
     let page = fs::read_to_string(out.file("report.html")).unwrap();
+    assert!(page.contains("What the models make of the cells"));
     assert!(page.contains("What the cells do next") && page.contains("best possible"));
 }
 

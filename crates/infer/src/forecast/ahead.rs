@@ -1,7 +1,7 @@
 //! A tissue that goes on by a model, in a box or in an open field of view.
 
 use super::Forecaster;
-use super::crawl::Crawl;
+use super::crawl::{Crawl, Turning};
 use super::start::{Begun, Start, of_neighbours};
 use crate::Error;
 use rand::SeedableRng;
@@ -14,7 +14,7 @@ use voronudge_model::{Model, jacobian, velocities};
 const ROUNDS: usize = 2;
 
 /// Velocities of the cells of which they can be told.
-type Known = Vec<Option<Vector<f64>>>;
+pub(super) type Known = Vec<Option<Vector<f64>>>;
 
 /// Cells and the model that moves them.
 pub(super) struct Tissue<'a> {
@@ -25,7 +25,13 @@ pub(super) struct Tissue<'a> {
 
 impl<'a> Tissue<'a> {
     pub fn new(start: &'a Start<'a>, by: &Forecaster<'_>) -> Self {
-        let model = by.structure.model(by.coefficients, &start.history());
+        let earlier = (0..start.tracks.len()).map(|cell| start.velocity_before(cell)).collect();
+        Self::after(start, by, earlier)
+    }
+
+    /// Of cells that had other velocities in the interval before.
+    pub fn after(start: &'a Start<'a>, by: &Forecaster<'_>, earlier: Known) -> Self {
+        let model = by.structure.model(by.coefficients, &start.history(earlier));
         let scatter = by.tracked.map_or(0.0, |tracked| tracked.dynamics.scatter());
         Self { start, model, scatter }
     }
@@ -58,15 +64,19 @@ impl<'a> Tissue<'a> {
         (all.iter().sum::<f64>() / all.len().max(1) as f64).sqrt()
     }
 
-    /// Velocities with what cells crawl by. Cells at the rim go with their neighbours.
+    /// Velocities with what cells crawl by. Cells at the rim are led, or go with their neighbours.
     fn velocities(
         &self,
         positions: &[Vector<f64>],
         polarities: &[Vector<f64>],
+        led: &[Option<Vector<f64>>],
     ) -> Result<Vec<Vector<f64>>, Error> {
         let (tessellation, forces) = self.forces(positions)?;
-        let crawl = |(v, p): (Option<Vector<f64>>, &Vector<f64>)| v.map(|v| v + p);
-        let mut known: Known = forces.into_iter().zip(polarities).map(crawl).collect();
+        let crawl = |(cell, v): (usize, Option<Vector<f64>>)| match v {
+            Some(v) => Some(v + polarities[cell]),
+            None => led.get(cell).copied().flatten(),
+        };
+        let mut known: Known = forces.into_iter().enumerate().map(crawl).collect();
         for _ in 0..ROUNDS {
             let of_cell = |(cell, own): (usize, &Option<Vector<f64>>)| {
                 own.or_else(|| of_neighbours(&tessellation, cell, &known))
@@ -76,8 +86,43 @@ impl<'a> Tissue<'a> {
         Ok(known.into_iter().map(|v| v.unwrap_or_else(Vector::zeros)).collect())
     }
 
-    /// Displacements of the cells since the start after each of so many frames, in so many steps of the classical Runge–Kutta method from one to the next;
-    /// if a seed is given, with noise, and with so much error of a coordinate at the start.
+    /// Goes on for a time, in so many steps of the classical Runge–Kutta method; cells at the rim at the velocities at which they are led.
+    pub fn go_on(
+        &self,
+        moving: &mut Moving,
+        turning: Option<&Turning>,
+        (time, steps): (f64, usize),
+        led: &[Option<Vector<f64>>],
+        mut normal: impl FnMut() -> f64,
+    ) -> Result<(), Error> {
+        let h = time / steps as f64;
+        let Moving { positions, polarities } = moving;
+        for _ in 0..steps {
+            let moved = |v: &[Vector<f64>], by: f64| -> Vec<Vector<f64>> {
+                positions.iter().zip(v).map(|(r, v)| r + v * by).collect()
+            };
+            let first = self.velocities(positions, polarities, led)?;
+            if let Some(turning) = turning {
+                turning.go_on(polarities, 0.5 * h, || Vector::new(normal(), normal()));
+            }
+            let second = self.velocities(&moved(&first, 0.5 * h), polarities, led)?;
+            let third = self.velocities(&moved(&second, 0.5 * h), polarities, led)?;
+            if let Some(turning) = turning {
+                turning.go_on(polarities, 0.5 * h, || Vector::new(normal(), normal()));
+            }
+            let fourth = self.velocities(&moved(&third, h), polarities, led)?;
+            for (cell, r) in positions.iter_mut().enumerate() {
+                *r += (first[cell] + (second[cell] + third[cell]) * 2.0 + fourth[cell]) * (h / 6.0);
+            }
+        }
+        for r in positions {
+            *r += Vector::new(normal(), normal()) * (self.scatter * time);
+        }
+        Ok(())
+    }
+
+    /// Displacements of the cells since the start after each of so many frames, in so many steps from one to the next; if a seed is given, with noise, and with
+    /// so much error of a coordinate at the start.
     pub fn run(
         &self,
         (begun, crawl): (&Begun, Option<&Crawl>),
@@ -88,41 +133,39 @@ impl<'a> Tissue<'a> {
         let mut rng = drawn.map(|(seed, _)| Pcg64::seed_from_u64(seed));
         let mut normal = || rng.as_mut().map_or(0.0, |rng| StandardNormal.sample(rng));
         let astray = drawn.map_or(0.0, |(_, astray)| astray);
+        let mut moving = Moving::begin((begun, crawl), astray, &mut normal);
+        let mut all = Vec::with_capacity(horizon);
+        for ahead in 0..horizon {
+            let interval = self.start.interval(ahead);
+            let turning = crawl.map(|crawl| &crawl.turning);
+            self.go_on(&mut moving, turning, (interval, steps), &[], &mut normal)?;
+            all.push(moving.positions.iter().zip(from).map(|(to, from)| to - from).collect());
+        }
+        Ok(all)
+    }
+}
+
+/// Cells on their way.
+pub(super) struct Moving {
+    pub positions: Vec<Vector<f64>>,
+    pub polarities: Vec<Vector<f64>>,
+}
+
+impl Moving {
+    /// From where they are thought to be, with so much error of a coordinate.
+    pub fn begin(
+        (begun, crawl): (&Begun, Option<&Crawl>),
+        astray: f64,
+        mut normal: impl FnMut() -> f64,
+    ) -> Self {
         let mut positions = begun.positions.clone();
         for r in &mut positions {
             *r += Vector::new(normal(), normal()) * astray;
         }
-        let mut polarities = match crawl {
+        let polarities = match crawl {
             Some(crawl) => crawl.begin(|| Vector::new(normal(), normal())),
-            None => vec![Vector::zeros(); from.len()],
+            None => vec![Vector::zeros(); positions.len()],
         };
-        let mut all = Vec::with_capacity(horizon);
-        for ahead in 0..horizon {
-            let interval = self.start.interval(ahead);
-            let h = interval / steps as f64;
-            for _ in 0..steps {
-                let moved = |v: &[Vector<f64>], by: f64| -> Vec<Vector<f64>> {
-                    positions.iter().zip(v).map(|(r, v)| r + v * by).collect()
-                };
-                let first = self.velocities(&positions, &polarities)?;
-                if let Some(crawl) = crawl {
-                    crawl.go_on(&mut polarities, 0.5 * h, || Vector::new(normal(), normal()));
-                }
-                let second = self.velocities(&moved(&first, 0.5 * h), &polarities)?;
-                let third = self.velocities(&moved(&second, 0.5 * h), &polarities)?;
-                if let Some(crawl) = crawl {
-                    crawl.go_on(&mut polarities, 0.5 * h, || Vector::new(normal(), normal()));
-                }
-                let fourth = self.velocities(&moved(&third, h), &polarities)?;
-                for (cell, r) in positions.iter_mut().enumerate() {
-                    *r += (first[cell] + (second[cell] + third[cell]) * 2.0 + fourth[cell]) * (h / 6.0);
-                }
-            }
-            for r in &mut positions {
-                *r += Vector::new(normal(), normal()) * (self.scatter * interval);
-            }
-            all.push(positions.iter().zip(from).map(|(to, from)| to - from).collect());
-        }
-        Ok(all)
+        Self { positions, polarities }
     }
 }

@@ -5,7 +5,8 @@ use super::ahead::Tissue;
 use super::past::{Noise, left_of_polarity};
 use super::start::{Begun, Start};
 use crate::Error;
-use voronudge_geometry::Vector;
+use crate::tracks::Polarity;
+use voronudge_geometry::{Tessellation, Vector};
 
 /// Share of the polarities around that a cell takes on in a step at most.
 const TURN: f64 = 0.2;
@@ -14,8 +15,15 @@ const TURN: f64 = 0.2;
 pub(super) struct Crawl {
     /// What is expected of each cell.
     expected: Vec<Vector<f64>>,
-    /// Variance of a component about that, and of those of cells that do not align.
+    /// Variance of a component about that.
     unknown: f64,
+    /// How they go on.
+    pub turning: Turning,
+}
+
+/// How polarities go on.
+pub(super) struct Turning {
+    /// Variance of a component of those of cells that do not align.
     variance: f64,
     /// D_r
     forgotten: f64,
@@ -36,26 +44,38 @@ impl Crawl {
         let variance = 0.5 * polarity.speed.powi(2);
         let noise =
             Noise { scatter: tissue.scatter(), position: position_noise, sensitivity: tissue.sensitivity() };
-        let unknown = left_of_polarity((variance, polarity.rate), intervals, noise)?;
-        let alignment = polarity.alignment.as_ref().map(|own| {
-            let ties = (0..start.tracks.len()).map(|cell| {
-                let both = |other: &&u32| start.in_view[cell] && start.in_view[**other as usize];
-                start.cells.tessellation.neighbours(cell).iter().filter(both).copied().collect()
-            });
-            (own.rate / 6.0, ties.collect())
-        });
-        Ok(Some(Self {
-            expected: begun.polarities.clone(),
-            unknown,
-            variance,
-            forgotten: polarity.rate,
-            alignment,
-        }))
+        let left = left_of_polarity((variance, polarity.rate), intervals, noise)?;
+        let expected = begun.polarities.clone();
+        // What is expected and what is not known of it make up the whole; of cells that align the whole is another.
+        let told =
+            expected.iter().map(Vector::norm_squared).sum::<f64>() / (2 * expected.len().max(1)) as f64;
+        let unknown = if polarity.alignment.is_none() { left.max(variance - told) } else { left };
+        let turning = Turning::new(polarity, &start.cells.tessellation, &start.in_view);
+        Ok(Some(Self { expected, unknown, turning }))
     }
 
     /// Polarities at the start, with what is not known of them drawn.
     pub fn begin(&self, mut normal: impl FnMut() -> Vector<f64>) -> Vec<Vector<f64>> {
         self.expected.iter().map(|mean| mean + normal() * self.unknown.sqrt()).collect()
+    }
+}
+
+impl Turning {
+    /// Among cells that are neighbours now.
+    pub fn new(polarity: &Polarity, tessellation: &Tessellation, in_view: &[bool]) -> Self {
+        let alignment = polarity.alignment.as_ref().map(|own| {
+            let ties = (0..in_view.len()).map(|cell| {
+                let both = |other: &&u32| in_view[cell] && in_view[**other as usize];
+                tessellation.neighbours(cell).iter().filter(both).copied().collect()
+            });
+            (own.rate / 6.0, ties.collect())
+        });
+        Self { variance: 0.5 * polarity.speed.powi(2), forgotten: polarity.rate, alignment }
+    }
+
+    /// A polarity of which nothing is known.
+    pub fn unknown(&self, normal: Vector<f64>) -> Vector<f64> {
+        normal * self.variance.sqrt()
     }
 
     /// Goes on for a short time.

@@ -12,8 +12,11 @@
 
 mod ahead;
 mod baselines;
+mod check;
 mod crawl;
 mod past;
+mod ranks;
+mod replica;
 mod score;
 mod start;
 #[cfg(test)]
@@ -24,11 +27,12 @@ use crate::tracks::{Dynamics, Movie, Polarity, Tracked};
 use crate::{Error, NoiseLevels, Progress};
 use ahead::Tissue;
 use baselines::Regression;
+pub use check::{Check, Checked, Expected, check};
 use crawl::Crawl;
 use past::left_of_position;
 use rayon::prelude::*;
 use score::{Row, Tally};
-use start::Start;
+use start::{Begun, Start};
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 use voronudge_model::Structure;
@@ -187,6 +191,33 @@ impl Forecaster<'_> {
     }
 }
 
+/// What is known when cells go on by a model: where they are, how they crawl, and how far astray a coordinate may be.
+struct Outset {
+    begun: Begun,
+    crawl: Option<Crawl>,
+    astray: f64,
+}
+
+impl Forecaster<'_> {
+    fn outset(
+        &self,
+        ahead: &Ahead<'_>,
+        (start, tissue): (&Start<'_>, &Tissue<'_>),
+        steps: usize,
+    ) -> Result<Outset, Error> {
+        let dynamics = self.dynamics(ahead, steps);
+        let from = start.frame.saturating_sub(PAST);
+        let present =
+            dynamics.present(ahead.movie, (from, start.frame), self.structure, self.coefficients)?;
+        let begun = start.begun(&present);
+        let intervals: Vec<f64> = (from..start.frame).map(|frame| start.time(frame, frame + 1)).collect();
+        let noise = ahead.noise.position;
+        let crawl = Crawl::new(start, (self, tissue), &intervals, noise, &begun)?;
+        let astray = left_of_position(&intervals, dynamics.scatter(), noise).sqrt();
+        Ok(Outset { begun, crawl, astray })
+    }
+}
+
 /// What a model says: the run without noise, and how runs with noise scatter.
 fn by_model(
     ahead: &Ahead<'_>,
@@ -195,14 +226,7 @@ fn by_model(
     steps: usize,
 ) -> Result<Said, Error> {
     let tissue = Tissue::new(start, model);
-    let dynamics = model.dynamics(ahead, steps);
-    let from = start.frame.saturating_sub(PAST);
-    let present = dynamics.present(ahead.movie, (from, start.frame), model.structure, model.coefficients)?;
-    let begun = start.begun(&present);
-    let intervals: Vec<f64> = (from..start.frame).map(|frame| start.time(frame, frame + 1)).collect();
-    let noise = ahead.noise.position;
-    let crawl = Crawl::new(start, (model, &tissue), &intervals, noise, &begun)?;
-    let astray = left_of_position(&intervals, dynamics.scatter(), noise).sqrt();
+    let Outset { begun, crawl, astray } = model.outset(ahead, (start, &tissue), steps)?;
     let run = |draw: Option<u64>| {
         tissue.run((&begun, crawl.as_ref()), (ahead.horizon, steps), draw.zip(Some(astray)))
     };

@@ -59,8 +59,7 @@ impl<'a> Start<'a> {
     }
 
     /// What surrounds the cells, and how they moved before.
-    pub fn history(&self) -> Arc<Environment> {
-        let earlier = (0..self.tracks.len()).map(|cell| self.velocity_before(cell)).collect();
+    pub fn history(&self, earlier: Vec<Option<Vector<f64>>>) -> Arc<Environment> {
         let around = self.cells.environment();
         Environment::clone(around).with_earlier(earlier).map_or_else(|_| around.clone(), Arc::new)
     }

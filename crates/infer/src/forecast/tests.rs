@@ -1,6 +1,7 @@
 use super::*;
 use crate::tracks::sample::{Filmed, TRUTH};
-use crate::{Activity, Constraints, CrossValidation, KnownNoise, Quantity, Request, infer_tracks};
+use crate::{Activity, Constraints, CrossValidation, Inference, KnownNoise, Quantity, Request, infer_tracks};
+use voronudge_observables::Quantity as Observed;
 use voronudge_simulate::Driving;
 
 const NOISE: NoiseLevels = NoiseLevels { position: 1e-3, velocity: 1e-3 };
@@ -38,44 +39,64 @@ fn the_truth_forecasts_what_happens() {
     }
 }
 
+/// Cells that crawl, filmed, and models of them: fitted to the beginning without and with polarity, and the one that moved them.
+struct Crawling {
+    movie: Movie,
+    fits: [(Inference, Tracked); 2],
+    /// With the true polarity, but the noise levels and the memory of the fit.
+    truth: Tracked,
+    coefficients: [f64; 4],
+    structure: Structure,
+}
+
+const FITTED: usize = 5;
+
+impl Crawling {
+    fn filmed(frames: usize, seed: u64) -> Self {
+        let filmed = Filmed { size: [100, frames], step: 0.1, error: 0.01, seed };
+        let driving = Driving { speed: 2.5, rotational_diffusion: 0.3, ..Driving::default() };
+        let (movie, [twist, speed, rate]) = filmed.movie_of_driven(driving);
+        let request = Request {
+            noise: KnownNoise::default(),
+            cross_validation: CrossValidation::Skipped,
+            structure: Structure::base(1.0),
+            ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
+        };
+        let beginning = movie.beginning(FITTED);
+        let fit = |activity| {
+            infer_tracks(&beginning, &Request { activity, ..request.clone() }, &mut SILENT.clone()).unwrap()
+        };
+        let fits = [fit(Activity::None), fit(Activity::Polarity)];
+        let mut truth_of = fits[1].1.clone();
+        let fitted_polarity = truth_of.polarity.take().unwrap();
+        truth_of.polarity = Some(Polarity { speed, rate, ..fitted_polarity });
+        let coefficients = truth(twist / TRUTH[1]);
+        Self { movie, fits, truth: truth_of, coefficients, structure: request.structure }
+    }
+
+    /// Without polarity, with polarity, the truth.
+    fn models(&self) -> Vec<Forecaster<'_>> {
+        let structure = &self.structure;
+        let fitted = |(inference, tracked)| {
+            let inference: &Inference = inference;
+            Forecaster { structure, coefficients: inference.coefficients.as_slice(), tracked: Some(tracked) }
+        };
+        let mut models: Vec<Forecaster<'_>> = self.fits.iter().map(|(a, b)| fitted((a, b))).collect();
+        models.push(Forecaster { structure, coefficients: &self.coefficients, tracked: Some(&self.truth) });
+        models
+    }
+
+    fn ahead(&self, draws: usize) -> Ahead<'_> {
+        let noise = self.fits[1].0.noise;
+        Ahead { movie: &self.movie, first: FITTED, horizon: 4, noise, draws, seed: 1 }
+    }
+}
+
 /// Of cells that crawl, who knows that they do says more, and about how wrong that will be.
 #[test]
 fn a_polarity_that_was_seen_before_helps() {
-    let filmed = Filmed { size: [100, 11], step: 0.1, error: 0.01, seed: 6 };
-    let fitted = 5;
-    let driving = Driving { speed: 2.5, rotational_diffusion: 0.3, ..Driving::default() };
-    let (movie, [twist, speed, rate]) = filmed.movie_of_driven(driving);
-    let request = Request {
-        noise: KnownNoise::default(),
-        cross_validation: CrossValidation::Skipped,
-        structure: Structure::base(1.0),
-        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
-    };
-    let beginning = movie.beginning(fitted);
-    let fit = |activity| {
-        infer_tracks(&beginning, &Request { activity, ..request.clone() }, &mut SILENT.clone()).unwrap()
-    };
-    let fits = [fit(Activity::None), fit(Activity::Polarity)];
-    // With the true forces and the true polarity, but the noise levels and the memory of the fit.
-    let coefficients = truth(twist / TRUTH[1]);
-    let mut true_tracked = fits[1].1.clone();
-    let fitted_polarity = true_tracked.polarity.take().unwrap();
-    true_tracked.polarity = Some(Polarity { speed, rate, ..fitted_polarity });
-    let mut models: Vec<Forecaster<'_>> = fits
-        .iter()
-        .map(|(inference, tracked)| Forecaster {
-            structure: &request.structure,
-            coefficients: inference.coefficients.as_slice(),
-            tracked: Some(tracked),
-        })
-        .collect();
-    models.push(Forecaster {
-        structure: &request.structure,
-        coefficients: &coefficients,
-        tracked: Some(&true_tracked),
-    });
-    let ahead = Ahead { movie: &movie, first: fitted, horizon: 4, noise: fits[1].0.noise, draws: 8, seed: 1 };
-    let found = forecast(&ahead, &models, &mut SILENT.clone()).unwrap();
+    let crawling = Crawling::filmed(11, 6);
+    let found = forecast(&crawling.ahead(8), &crawling.models(), &mut SILENT.clone()).unwrap();
     assert_eq!(found.starts, [5, 6, 7, 8, 9]);
     let [crawling, truth] = [1, 2].map(|k| skills(&found, Forecast::Model(k)));
     let as_good = |(own, truth): (&WithError, &WithError)| own[0] > truth[0] - 2.0 * truth[1];
@@ -87,6 +108,24 @@ fn a_polarity_that_was_seen_before_helps() {
         assert!((0.6..1.8).contains(&of_errors(crawling)), "{h} {}", of_errors(crawling));
         assert!(skills(&found, Forecast::Regression).position[h][0] < 0.8);
     }
+}
+
+/// Simulated movies of cells that do not crawl are not like one of cells that do; those of cells that do are.
+#[test]
+fn a_model_without_the_polarity_does_not_make_such_cells() {
+    let crawling = Crawling::filmed(11, 22);
+    let found = check(&crawling.ahead(49), &crawling.models(), &mut SILENT.clone()).unwrap();
+    assert!(found.p[0] < 0.021, "without polarity {}", found.p[0]);
+    assert!(found.p[1] > 0.03 && found.p[2] > 0.03, "{:?}", found.p);
+    // The measured curve lies among those of the truth.
+    let moved =
+        found.quantities.iter().find(|own| own.measured.of == Observed::MeanSquareDisplacement).unwrap();
+    let [low, _, high] = &moved.models[2].quantiles;
+    let within = |k: &usize| (low[*k]..=high[*k]).contains(&moved.measured.value[*k]);
+    assert!((0..low.len()).filter(within).count() * 2 > low.len());
+    // Both kinds of replicas have the cells of the movie.
+    let seen = |places: &[Vec<Option<Vector<f64>>>]| places.iter().flatten().flatten().count();
+    assert!(found.places.iter().all(|places| seen(places) == seen(&found.places[0])));
 }
 
 #[test]

@@ -60,7 +60,7 @@ impl Track {
         self.sighting(frame).map_or(f64::INFINITY, |sighting| sighting.error)
     }
 
-    pub(super) fn sighting(&self, frame: usize) -> Option<Sighting> {
+    pub(crate) fn sighting(&self, frame: usize) -> Option<Sighting> {
         self.seen.get(frame.checked_sub(self.first)?).copied().flatten()
     }
 

@@ -4,6 +4,7 @@
 //! are not finite are written as `null`. What `infer` reports too has the types of
 //! [`crate::infer_report`].
 
+mod check;
 mod evidence;
 mod forecast;
 mod model_fit;
@@ -11,6 +12,7 @@ mod ranking;
 mod selected;
 mod verdict;
 
+pub use check::{ByModel, CheckReport, CheckedQuantity, Simulated};
 pub use evidence::{Calibration, NoiseBudget, NullSets, Prediction, Predictors, StructureTest, Unexplained};
 pub use forecast::{ForecastReport, Forecasters};
 pub use model_fit::{DescriptionFit, HeldOutError, ModelFit, ModelNmse};
@@ -73,6 +75,8 @@ pub struct DiscoverReport {
     pub predictions: Vec<Prediction>,
     /// What the cells do next, said before; `null` if that was not asked for.
     pub forecast: Option<ForecastReport>,
+    /// Whether simulated movies of the models are like the measured one; `null` if that was not asked for.
+    pub check: Option<CheckReport>,
     /// By how much the added effects lower −2 log p of velocities held out, given all others.
     pub likelihood_gain: Option<Gain>,
     /// The synthetic data without an effect to which the search was put.

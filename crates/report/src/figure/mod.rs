@@ -3,6 +3,7 @@
 //! Figures never fail: numbers that are not finite are skipped, and where nothing is left to draw
 //! the figure says "no data".
 
+mod among_simulated;
 mod bootstrap_histogram;
 mod cell_map;
 mod collapse;
@@ -36,8 +37,10 @@ mod predicted_against_measured;
 mod profile;
 mod residual_maps;
 mod shape_scatter;
+mod trails;
 mod velocity_map;
 
+pub use among_simulated::{SimulatedBand, among_simulated};
 pub use bootstrap_histogram::{BootstrapHistogram, bootstrap_histogram};
 pub use cell_map::{CellScalar, cell_map};
 pub use collapse::{CollapseRow, collapse};
@@ -72,6 +75,7 @@ pub use predicted_against_measured::{Prediction, VelocityPair, predicted_against
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
 pub use shape_scatter::{ShapeMeasure, shape_scatter};
+pub use trails::{Trails, trails};
 pub use velocity_map::{VelocityField, polarity_map, velocity_map};
 
 use crate::svg::{Anchor, Svg, TextStyle};

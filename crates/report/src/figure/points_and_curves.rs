@@ -85,35 +85,16 @@ impl PointsAndCurves<'_> {
         let points = || {
             self.series.iter().flat_map(|series| series.points.iter().filter(|point| self.shows(point.at)))
         };
-        let logarithmic = self.scales[which] == AxisScale::Logarithmic;
-        let mut ends = [f64::INFINITY, f64::NEG_INFINITY];
-        let mut hold = |x: f64| {
-            let x = if logarithmic { x.log10() } else { x };
-            if x.is_finite() {
-                ends = [ends[0].min(x), ends[1].max(x)];
-            }
-        };
+        let mut held = Vec::new();
         for point in points() {
             let reach = point.error[which].filter(|error| error.is_finite()).unwrap_or(0.0);
-            hold(point.at[which] - reach);
-            hold(point.at[which] + reach);
+            held.extend([point.at[which] - reach, point.at[which] + reach]);
         }
-        if points().next().is_none() {
+        if held.is_empty() {
             let places = self.curves.iter().flat_map(|curve| &curve.points);
-            places.filter(|at| self.shows(**at)).for_each(|at| hold(at[which]));
+            held.extend(places.filter(|at| self.shows(**at)).map(|at| at[which]));
         }
-        if !ends[0].is_finite() {
-            return None;
-        }
-        let room = 0.04 * (ends[1] - ends[0]).max(1e-9 * ends[1].abs()).max(1e-12);
-        // Distances begin at the edge.
-        let at_zero = !logarithmic && ends[0] >= 0.0 && ends[0] < 0.2 * ends[1];
-        let range = [if at_zero { 0.0 } else { ends[0] - room }, ends[1] + room];
-        Some(if logarithmic {
-            Axis::logarithmic(self.labels[which], range.map(|x| 10f64.powf(x)))
-        } else {
-            Axis::linear(self.labels[which], range)
-        })
+        Axis::holding(self.labels[which], self.scales[which], held.into_iter())
     }
 }
 

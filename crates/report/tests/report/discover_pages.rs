@@ -38,6 +38,9 @@ fn an_attribution_is_told_from_verdict_to_seed() {
         "<h2>What the cells do next, said before",
         "gain by the effects</th><td>0.270 ± 0.010",
         "wrong by 1.12",
+        "<h2>What the models make of the cells",
+        "Mean square displacement: base model p ",
+        "<th>all together</th>",
         "after adding density gradient, arrows on the same scale",
         "mis-tracked (1)",
         "<h2>The effect that was added",
@@ -65,7 +68,7 @@ fn an_attribution_is_told_from_verdict_to_seed() {
         assert!(found.is_some(), "{text}");
         rest = &rest[found.unwrap_or(0)..];
     }
-    assert_eq!(figure_count(&html), 1 + 2 + (3 + 2) + 2 + 2 + 1 + 1 + 3 + 1);
+    assert_eq!(figure_count(&html), 1 + 2 + 2 + (3 + 2) + 2 + 2 + 1 + 1 + 3 + 1);
 }
 
 #[test]

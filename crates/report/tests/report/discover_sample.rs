@@ -3,16 +3,17 @@
 use std::collections::BTreeMap;
 
 use voronudge_report::discover_report::{
-    Calibration, CandidateStatus, DescriptionFit, EffectCoefficient, EffectKind, ForecastReport, Forecasters,
-    Gain, HeldOutError, ModelFit, ModelNmse, NoiseBudget, NullSets, Prediction, Predictors, RankedEffect,
-    SelectedEffect, StructureTest, Unexplained, Verdict,
+    Calibration, CandidateStatus, DescriptionFit, EffectCoefficient, EffectKind, Gain, HeldOutError,
+    ModelFit, ModelNmse, NoiseBudget, NullSets, Prediction, Predictors, RankedEffect, SelectedEffect,
+    StructureTest, Unexplained, Verdict,
 };
 use voronudge_report::figure::{
     Correlation, CorrelationFunction, CorrelationPoint, Outlier, PartialPoint, PartialRegression, Suspicion,
 };
-use voronudge_report::infer_report::{CellCounts, InferReport, MeanRemoved, Quantity};
+use voronudge_report::infer_report::{CellCounts, InferReport, MeanRemoved};
 use voronudge_report::{BeforeAfter, DiscoverFigures, DiscoverReport, FrameView, SpreadView};
 
+use crate::onward_sample;
 use crate::sample::{self, noise};
 
 /// A frame in which the base model misses a flow to the right that grows upwards; the added effect
@@ -68,6 +69,7 @@ pub fn figures() -> DiscoverFigures {
             slope: 0.97,
             slope_ci95: Some([0.83, 1.11]),
         }],
+        trails: Some(onward_sample::ways()),
         outliers: vec![vec![
             Outlier { cell: 45, suspicion: Suspicion::Merged },
             Outlier { cell: 88, suspicion: Suspicion::Split },
@@ -151,7 +153,8 @@ pub fn attributed() -> DiscoverReport {
             after: HeldOutError { value: 0.771, standard_error: 0.012, folds: 6 },
             gain: Gain { value: 0.227, standard_error: 0.011 },
         }],
-        forecast: Some(forecast()),
+        forecast: Some(onward_sample::forecast()),
+        check: Some(onward_sample::check()),
         likelihood_gain: Some(Gain { value: 61.0, standard_error: 9.5 }),
         null_sets: NullSets { refitted: 200, seeds: (1..=200).collect() },
         calibration: Some(Calibration {
@@ -160,44 +163,6 @@ pub fn attributed() -> DiscoverReport {
             unadjusted_false_positives: 0.43,
             words: "With the adjustment, 9 of 200 null sets named an effect.".into(),
         }),
-    }
-}
-
-fn forecast() -> ForecastReport {
-    let skills = |first: f64, fall: f64| -> Vec<Gain> {
-        (0..4)
-            .map(|h| Gain { value: first - fall * f64::from(h), standard_error: 0.01 + 0.004 * f64::from(h) })
-            .collect()
-    };
-    let all = |shift: f64| Forecasters {
-        base: skills(0.31 - shift, 0.02),
-        extended: Some(skills(0.58 - shift, 0.03)),
-        no_motion: skills(0.0, 0.0),
-        constant_velocity: skills(0.4 - shift, 0.12),
-        regression: vec![Gain { value: f64::NAN, standard_error: f64::NAN }; 4],
-    };
-    let lengths = |first: f64| -> Vec<f64> { (1..5).map(|h| first * f64::from(h).sqrt()).collect() };
-    let errors = |model: f64, baseline: f64| Forecasters {
-        base: lengths(model),
-        extended: Some(lengths(0.8 * model)),
-        no_motion: lengths(baseline),
-        constant_velocity: lengths(baseline),
-        regression: lengths(f64::NAN),
-    };
-    ForecastReport {
-        starts: vec![8, 9, 10, 11, 12],
-        horizons: vec![1, 2, 3, 4],
-        interval: Quantity { value: 5.0, unit: "min".into() },
-        scored: vec![1510, 1208, 903, 601],
-        skill: all(0.0),
-        velocity_skill: all(0.1),
-        gain: Some(skills(0.27, 0.01)),
-        best_possible: vec![0.91, 0.95, 0.97, 0.98],
-        error: errors(1.4, 2.1),
-        expected_error: errors(1.3, f64::NAN),
-        unit: "um".into(),
-        words: "One frame ahead the model with density_gradient has a skill of 0.58, the base model of 0.31."
-            .into(),
     }
 }
 
@@ -266,6 +231,7 @@ fn unextended(mut report: DiscoverReport) -> DiscoverReport {
     report.description = None;
     report.likelihood_gain = None;
     report.forecast = None;
+    report.check = None;
     report.selected.clear();
     for candidate in &mut report.ranking {
         if candidate.statistic > 6.0 {

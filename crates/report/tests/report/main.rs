@@ -6,6 +6,7 @@ mod discover_sample;
 mod figure_sample;
 mod figures;
 mod inference_figures;
+mod onward_sample;
 mod pages;
 mod phase_figures;
 mod sample;

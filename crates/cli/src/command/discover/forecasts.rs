@@ -2,14 +2,15 @@
 
 use super::Asked;
 use super::material::Searched;
-use crate::command::fit::{Measured, Prepared, PreparedTracks, SnapshotArguments};
+use super::onward::{self, Rivals};
+use crate::command::fit::{Measured, Prepared, SnapshotArguments};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
-use voronudge_infer::forecast::{Ahead, Forecast, Forecaster, Forecasts, Skill, WithError, forecast};
-use voronudge_infer::{Error, Movie};
-use voronudge_io::{DataSet, Difference, FrameSelection, derive_velocities};
+use voronudge_infer::Error;
+use voronudge_infer::forecast::{Ahead, Forecast, Forecasts, Skill, WithError, forecast};
+use voronudge_io::{DataSet, Difference, FrameSelection};
 use voronudge_report::Units;
 use voronudge_report::discover_report::{ForecastReport, Forecasters, Gain};
 use voronudge_report::infer_report::Quantity;
@@ -99,38 +100,21 @@ impl Coming {
                 self.asked, self.horizon
             ));
         }
-        let (movie, frames) = self.movie(asked, data, prepared, run)?;
+        let frames = self.frames(prepared, data);
         let Some(first) = frames.iter().position(|frame| *frame >= self.first) else { return Ok(None) };
-        let discovery = &searched.discovery;
-        let base = &searched.search.fit.structure;
-        let columns = discovery.columns_there(|effect| movie.columns(effect));
-        let extended = columns.as_ref().map(|columns| base.with(columns));
-        let (before, after) = (&discovery.before, &discovery.after);
-        let mut models = vec![Forecaster {
-            structure: base,
-            coefficients: before.inference.coefficients.as_slice(),
-            tracked: before.tracked.as_ref(),
-        }];
-        match &extended {
-            Err(absent) => run.warn(format!("the model with effects is not forecast: {absent}")),
-            Ok(structure) if discovery.shared().next().is_some() => models.push(Forecaster {
-                structure,
-                coefficients: after.inference.coefficients.as_slice(),
-                tracked: after.tracked.as_ref(),
-            }),
-            Ok(_) => {}
-        }
+        let movie = onward::movie(asked, data, prepared, frames.clone(), run)?;
+        let rivals = Rivals::new(searched, &movie, run);
         let ahead = Ahead {
             movie: &movie,
             first,
             horizon: self.horizon,
-            noise: after.inference.noise,
+            noise: searched.discovery.after.inference.noise,
             draws: DRAWS,
             seed: searched.search.fit.seed,
         };
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
-        match forecast(&ahead, &models, &mut observe) {
-            Ok(found) => Ok(Some(self.report(&found, models.len(), &frames, (data, prepared, units)))),
+        match forecast(&ahead, &rivals.models(), &mut observe) {
+            Ok(found) => Ok(Some(self.report(&found, rivals.count(), &frames, (data, prepared, units)))),
             Err(Error::Interrupted) => Err(prepared.place(Error::Interrupted, &asked.arguments.snapshots)),
             Err(error) => {
                 run.warn(format!("there is no forecast: {error}"));
@@ -139,22 +123,10 @@ impl Coming {
         }
     }
 
-    /// The cells from the first frame of the fit to the last of all, in the scale of the fit.
-    fn movie(
-        &self,
-        asked: &Asked<'_>,
-        data: &DataSet,
-        prepared: &Prepared,
-        run: &mut Run,
-    ) -> Result<(Movie, Vec<usize>), Failure> {
-        let snapshots = &asked.arguments.snapshots;
+    /// From the first frame of the fit to the last of all.
+    pub fn frames(&self, prepared: &Prepared, data: &DataSet) -> Vec<usize> {
         let fitted = prepared.frames.iter().copied().filter(|frame| *frame < self.first);
-        let frames: Vec<usize> = fitted.chain(self.first..data.frames()).collect();
-        let means = derive_velocities(data, Difference::Forward)
-            .map_err(|error| Failure::from(error).at(snapshots.data.positions_file().display()))?;
-        let question = asked.question(snapshots, data, Some(prepared.scale));
-        let (_, tracks) = PreparedTracks::new(question, Measured::Tracks(means), frames.clone(), run)?;
-        Ok((tracks.movie.with_positions_at(prepared.measurement.share.value), frames))
+        fitted.chain(self.first..data.frames()).collect()
     }
 
     fn report(

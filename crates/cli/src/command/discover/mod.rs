@@ -1,11 +1,13 @@
 //! `voronudge discover`: what the base model leaves unexplained, and which effect explains it.
 
 mod candidates;
+mod checks;
 mod effects;
 mod forecasts;
 mod history;
 mod material;
 mod measured;
+mod onward;
 mod page;
 mod predictions;
 mod report;
@@ -23,6 +25,7 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use candidates::SearchOptions;
+use checks::CheckArguments;
 use clap::Args;
 use forecasts::ForecastArguments;
 use history::{GivenDifference, History};
@@ -63,6 +66,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     forecast: ForecastArguments,
     #[command(flatten)]
+    check: CheckArguments,
+    #[command(flatten)]
     latent: latent::LatentArguments,
     #[command(flatten)]
     known: ConstraintArguments,
@@ -80,6 +85,7 @@ pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
     let candidates = arguments.options.candidates()?;
     let mut data = arguments.snapshots.data.load()?;
     let map = arguments.field.load(&mut data)?;
+    arguments.check.possible(&arguments, &data, arguments.difference)?;
     let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
     let snapshots = &arguments.snapshots;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
@@ -94,7 +100,15 @@ pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
         Some(coming) => coming.forecast(&asked, (&data, &units), &searched, &mut run, &mut progress),
         None => Ok(None),
     };
+    let compared = arguments.check.compare(
+        &asked,
+        (&data, &units),
+        (&searched, coming.as_ref()),
+        &mut run,
+        &mut progress,
+    );
     progress.finish();
+    let compared = compared?;
     let (forecast, Searched { material: Material { prepared, tracks }, search, discovery }) =
         (forecast?, searched);
     prepared.caution(&mut run);
@@ -124,6 +138,7 @@ pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
         predictors,
         predictions,
         forecast,
+        compared,
     };
     let report = report::report(&run, &found, &discovery);
     let json = report.to_json()?;

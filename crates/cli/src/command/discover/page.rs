@@ -46,6 +46,7 @@ pub(super) fn page(
             .filter(|selected| !selected.partial.is_empty())
             .map(|selected| regression(selected, prepared))
             .collect(),
+        trails: found.compared.as_ref().map(|compared| compared.trails.clone()),
         spreads: spreads::views(prepared, fits.after, &drawn),
         outliers: drawn
             .iter()

@@ -1,5 +1,6 @@
 //! The result of `discover` as its report.
 
+use super::checks::Compared;
 use super::measured::Findings;
 use super::sentences::probability;
 use super::{effects, sentences};
@@ -27,10 +28,11 @@ pub(super) struct Found<'a> {
     pub predictors: Option<Predictors>,
     pub predictions: Vec<Prediction>,
     pub forecast: Option<ForecastReport>,
+    pub compared: Option<Compared>,
 }
 
 pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> DiscoverReport {
-    let Found { data, prepared, tracks, search, predictors, predictions, forecast } = found;
+    let Found { data, prepared, tracks, search, predictors, predictions, forecast, compared } = found;
     let units = outcome::units(data);
     let measurement = Measurement { tracks: tracks.clone(), ..outcome::measurement(data, prepared) };
     let findings = Findings::new(prepared, &measurement);
@@ -62,6 +64,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         predictors: predictors.clone(),
         predictions: predictions.clone(),
         forecast: forecast.clone(),
+        check: compared.as_ref().map(|compared| compared.report.clone()),
         likelihood_gain: discovery.likelihood_gain.map(Gain::from),
         null_sets: NullSets {
             refitted: discovery.null_sets.smallest_p.len(),

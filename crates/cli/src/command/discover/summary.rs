@@ -16,7 +16,8 @@ pub(super) fn summary(report: &DiscoverReport, folder: &Path) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}: {}\n", report.verdict.name(), report.sentence);
     let forecast = report.forecast.as_ref().map_or("", |forecast| forecast.words.as_str());
-    for sentence in [forecast, &report.caveat, &report.measure_next] {
+    let check = report.check.as_ref().map_or("", |check| check.words.as_str());
+    for sentence in [forecast, check, &report.caveat, &report.measure_next] {
         if !sentence.is_empty() {
             let _ = writeln!(text, "{sentence}\n");
         }

@@ -2,6 +2,7 @@
 
 mod before_after;
 mod candidates;
+mod check;
 mod effects;
 mod forecast;
 mod remainder;
@@ -10,6 +11,7 @@ use serde::Serialize;
 
 use self::before_after::{Comparison, NoiseRow, ParameterComparison, PredictionRow};
 use self::candidates::{CandidateRow, ranking_figure};
+use self::check::CheckView;
 use self::effects::{EffectView, coefficient_figure};
 use self::forecast::ForecastView;
 use self::remainder::Remainder;
@@ -55,6 +57,8 @@ pub struct DiscoverFigures {
     pub regressions: Vec<PartialRegression>,
     /// Deviations of the cells in each parameter in which they differ.
     pub spreads: Vec<SpreadView>,
+    /// Where cells went, measured and in movies of the models, if there are such.
+    pub trails: Option<Figure>,
     /// Suspicious cells, one list for each frame drawn; shorter if the last frames have none.
     pub outliers: Vec<Vec<Outlier>>,
 }
@@ -71,6 +75,7 @@ struct Context<'a> {
     added: String,
     comparison: Comparison,
     forecast: Option<ForecastView>,
+    check: Option<CheckView>,
     panels: Vec<Panel>,
     effects: Vec<EffectView>,
     spreads: Vec<Figure>,
@@ -119,6 +124,7 @@ impl DiscoverPage<'_> {
             added: self.added(),
             comparison: Comparison::new(report),
             forecast: report.forecast.as_ref().map(ForecastView::new),
+            check: report.check.as_ref().map(|check| CheckView::new(check, self.figures.trails.as_ref())),
             panels: self.panels(),
             effects: effects::views(report, &self.figures.regressions),
             spreads: self.figures.spreads.iter().map(SpreadView::histogram).collect(),
