@@ -31,12 +31,14 @@ pub(super) struct Begun<'a, 'w> {
     pub at: Vec<f64>,
     /// The first coefficients.
     pub naive: Vec<f64>,
+    /// The unknowns.
+    pub states: States,
 }
 
 impl<'a, 'w> Begun<'a, 'w> {
     pub fn new(
         movie: &'a Movie,
-        states: &States,
+        mut states: States,
         request: &'a Request,
         space: &'a CoefficientSpace,
         watch: &'a mut Watch<'w>,
@@ -49,25 +51,27 @@ impl<'a, 'w> Begun<'a, 'w> {
         };
         let memory = (states.polarities.count() > 0).then(|| Memory::first(states.polarities.align()));
         let mut course = Course::new(movie, request, space, watch, (Rule::Trapezoid, first, memory));
-        let naive = naive_coefficients(&course.objective(states))?;
+        let naive = naive_coefficients(&course.objective(&states))?;
         let at = match course.memory {
             // Where cells crawl, what moves them beside the model leads them astray until it is known.
             Some(_) => {
                 course.rule = Rule::RungeKutta(FEWEST_STEPS);
-                course.resolve(states, &naive);
-                course.objective(states).start(&naive)
+                course.resolve(&states, &naive);
+                let at = course.objective(&states).start(&naive);
+                states = states.clone().told_apart(&course.objective(&states), &at)?;
+                at
             }
-            None => course.foresee(states, naive.clone())?,
+            None => course.foresee(&states, naive.clone())?,
         };
-        let at = course.approach(states, at)?;
-        let at = course.settle(states, at, ROUGH)?;
-        Ok(Self { course, at, naive })
+        let at = course.approach(&states, at)?;
+        let at = course.settle(&states, at, ROUGH)?;
+        Ok(Self { course, at, naive, states })
     }
 
     /// From where the fit of a similar model of the same movie has come to.
     pub fn further(
         movie: &'a Movie,
-        states: &States,
+        mut states: States,
         request: &'a Request,
         space: &'a CoefficientSpace,
         watch: &'a mut Watch<'w>,
@@ -80,9 +84,10 @@ impl<'a, 'w> Begun<'a, 'w> {
             _ => memory,
         });
         let mut course = Course::new(movie, request, space, watch, (rule, levels, memory));
-        let naive = naive_coefficients(&course.objective(states))?;
-        let at = course.approach(states, at)?;
-        Ok(Self { course, at, naive })
+        let naive = naive_coefficients(&course.objective(&states))?;
+        states = states.clone().told_apart(&course.objective(&states), &at)?;
+        let at = course.approach(&states, at)?;
+        Ok(Self { course, at, naive, states })
     }
 }
 

@@ -105,10 +105,11 @@ impl Followed {
             Some(memory) => (self.fit.states.clone().aligning(), memory),
         };
         let memory = Some(memory);
-        let objective =
-            MovieObjective { states: &states, memory, ..self.objective(movie, &request.structure, space) };
         let mut at = self.fit.parameters.clone();
         at.resize(space.dimension() + 2 * states.blocks(), 0.0);
+        let fitted = self.objective(movie, &request.structure, space);
+        let states = states.clone().told_apart(&MovieObjective { states: &states, memory, ..fitted }, &at)?;
+        let objective = MovieObjective { states: &states, memory, ..fitted };
         let placed = objective.place(&at)?;
         let components = objective.explained_components(&placed, &at);
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;

@@ -84,10 +84,11 @@ pub(super) fn fit(
     from: Option<(&Fit, Vec<f64>)>,
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
-    let Begun { mut course, at, naive } = match from {
-        Some(from) => Begun::further(movie, &states, request, space, watch, from)?,
-        None => Begun::new(movie, &states, request, space, watch)?,
+    let Begun { mut course, at, naive, states } = match from {
+        Some(from) => Begun::further(movie, states, request, space, watch, from)?,
+        None => Begun::new(movie, states, request, space, watch)?,
     };
+    let states = states.clone().told_apart(&course.objective(&states), &at)?;
     let (at, error) = course.finish(&states, at)?;
     let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
     Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })

@@ -244,10 +244,32 @@ impl MovieObjective<'_> {
             if let Some(drift) = states.drift(motion.interval) {
                 rows.add(Place::Own(drift as u32), unit, &tangent.by_translation(motion.between as usize));
             }
+            for number in states.pushing(motion) {
+                rows.add(place[1][between[*number as usize][1] as usize], 0.0, &IDENTITY);
+            }
             rows.end();
             columns.push(tangent.by_coefficients(motion.between as usize) * unit);
         }
-        MotionRows { jacobian: rows.matrix, columns }
+        match &states.own_motion {
+            None => MotionRows { jacobian: rows.matrix, columns },
+            Some(own) => {
+                own.of_rows(motions, &mut rows.matrix, &mut columns);
+                MotionRows { jacobian: self.with_own_ways(motions, &rows.matrix), columns }
+            }
+        }
+    }
+
+    /// Rows of motions that are told apart, with how each depends on the way that its cell crawls.
+    fn with_own_ways(&self, motions: &[Motion], told_apart: &BlockMatrix) -> BlockMatrix {
+        let mut rows = RowBuilder::new(self.states.blocks());
+        for (number, motion) in motions.iter().enumerate() {
+            told_apart
+                .row(number)
+                .for_each(|(column, block)| rows.add(Place::Own(column as u32), 1.0, block));
+            self.add_crawling(&mut rows, motion, 1.0, &IDENTITY);
+            rows.end();
+        }
+        rows.matrix
     }
 }
 

@@ -64,8 +64,8 @@ pub fn measure_tracks(
 /// The share that explains a movie best, from that which it is taken for on.
 fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Estimated, Error> {
     let space = request.space()?;
-    let mut states = States::new(&movie)?;
-    let Begun { mut course, mut at, .. } = Begun::new(&movie, &states, request, &space, watch)?;
+    let Begun { mut course, mut at, mut states, .. } =
+        Begun::new(&movie, States::new(&movie)?, request, &space, watch)?;
     let own = space.dimension();
     let mut found = Estimated { share: [movie.share(), f64::INFINITY], criterion: f64::INFINITY };
     for _ in 0..ROUNDS {

@@ -28,6 +28,7 @@ mod neighbours;
 mod objective;
 mod obstacles;
 mod outset;
+mod own_motion;
 mod part;
 mod passage;
 mod present;

@@ -188,7 +188,7 @@ impl<'a> MovieObjective<'a> {
         }
     }
 
-    /// What the model leaves of each motion, over √(T h).
+    /// What the model leaves of each motion by itself, over √(T h).
     pub fn residuals(&self, placed: &Placed<'_>, parameters: &[f64]) -> Vec<Vector<f64>> {
         let (_, displacements) = self.split(parameters);
         let residual = |motion: &Motion| {
@@ -197,7 +197,16 @@ impl<'a> MovieObjective<'a> {
             let moved = self.mean_velocity(placed, motion, displacements) * self.span(interval);
             (at(1) - at(0) - moved - self.drift(interval, displacements)) * self.unit(interval)
         };
-        self.states.motions.par_iter().map(residual).collect()
+        let motions = &self.states.motions;
+        let mut rests: Vec<Vector<f64>> = motions.par_iter().map(residual).collect();
+        if let Some(own) = self.states.own_motion.as_ref().filter(|_| !placed.passages.is_empty()) {
+            let mut first = 0;
+            for together in motions.chunk_by(|one, next| one.interval == next.interval) {
+                own.of(together, &mut rests[first..first + together.len()]);
+                first += together.len();
+            }
+        }
+        rests
     }
 
     /// What counts of what the model leaves of a motion.

@@ -5,6 +5,8 @@
 
 use super::memory::{NONE, Polarities};
 use super::movie::{Drift, Movie};
+use super::objective::MovieObjective;
+use super::own_motion::OwnMotion;
 use crate::{Error, Observation};
 use rayon::prelude::*;
 use voronudge_geometry::{Vector, Visibility};
@@ -81,6 +83,8 @@ pub(crate) struct States {
     pub drifts: (usize, usize),
     /// Polarities, where cells have them.
     pub polarities: Polarities,
+    /// What tells the motions of cells that crawl apart from what their neighbours do to them.
+    pub own_motion: Option<OwnMotion>,
 }
 
 /// Marks an absent cell.
@@ -147,7 +151,7 @@ impl States {
         };
         let drifts = (start.len(), drifts);
         let polarities = Polarities::default();
-        Ok(Self { drifts, instants, intervals, motions, anchors, start, polarities })
+        Ok(Self { drifts, instants, intervals, motions, anchors, start, polarities, own_motion: None })
     }
 
     /// The same with positions measured at another share of the way to the centroids.
@@ -162,6 +166,15 @@ impl States {
     pub fn crawling(self, movie: &Movie, terms: usize) -> Self {
         let polarities = Polarities::new(movie, &self.instants, &self.motions, self.blocks(), terms);
         Self { polarities, ..self }
+    }
+
+    /// The same with the motions of cells that crawl told apart as they are at a point of a fit.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`].
+    pub fn told_apart(mut self, objective: &MovieObjective<'_>, parameters: &[f64]) -> Result<Self, Error> {
+        self.own_motion = OwnMotion::at(objective, parameters)?;
+        Ok(self)
     }
 
     /// The same with polarities that may align with those of the neighbours.
@@ -193,6 +206,12 @@ impl States {
             ends.iter().map(|block| Self::vector(displacements, *block)).sum::<Vector<f64>>() * 0.5
         };
         self.polarity(motion).map_or(Vector::zeros(), mean)
+    }
+
+    /// The cells of the interval of a motion whose ways count for where it ends, if motions are told apart.
+    pub fn pushing(&self, motion: &Motion) -> &[u32] {
+        let own = self.own_motion.as_ref();
+        own.map_or(&[], |own| own.pushing(motion.interval, motion.between as usize))
     }
 
     /// The two unknowns of one block.

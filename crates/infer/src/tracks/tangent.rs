@@ -26,7 +26,7 @@ const RINGS_OF_POLARITY: usize = 2;
 const FEW_STEPS: usize = 1;
 
 /// A 2 × 2 block, `[xx, xy, yx, yy]`.
-type Block = [f64; 4];
+pub(super) type Block = [f64; 4];
 
 /// A column that is not in a row.
 const NONE: u32 = u32::MAX;
@@ -48,15 +48,27 @@ pub(super) struct Tangent {
 const DRIFT: usize = 2;
 
 impl Tangent {
-    /// Where the passage of an interval ends.
+    /// Where the passage of an interval ends, but for the ways that cells crawl if these are told apart ([`super::own_motion`]).
     pub fn at_end(
         objective: &MovieObjective<'_>,
         interval: usize,
         passage: &Passage<'_>,
         coefficients: &[f64],
     ) -> Self {
-        let rings = if passage.steps.len() > FEW_STEPS { RINGS_IF_LONG } else { RINGS };
-        Self::within(objective, interval, passage, coefficients, rings)
+        let told_apart = objective.states.own_motion.is_some();
+        let rings = if passage.steps.len() > FEW_STEPS && !told_apart { RINGS_IF_LONG } else { RINGS };
+        let ways = objective.memory.is_some() && !told_apart;
+        Self::within(objective, interval, passage, coefficients, (rings, ways))
+    }
+
+    /// The same with the ways that the cells near by crawl.
+    pub fn of_ways(
+        objective: &MovieObjective<'_>,
+        interval: usize,
+        passage: &Passage<'_>,
+        coefficients: &[f64],
+    ) -> Self {
+        Self::within(objective, interval, passage, coefficients, (RINGS_OF_POLARITY, true))
     }
 
     /// The same, for what the coefficients and the translation do to all cells alone.
@@ -66,21 +78,20 @@ impl Tangent {
         passage: &Passage<'_>,
         coefficients: &[f64],
     ) -> Self {
-        Self::within(objective, interval, passage, coefficients, 0)
+        Self::within(objective, interval, passage, coefficients, (0, objective.memory.is_some()))
     }
 
-    /// The same, by the places of cells so many rings away at most.
+    /// The same, by the places of cells so many rings away at most, and perhaps by the ways that they crawl.
     fn within(
         objective: &MovieObjective<'_>,
         interval: usize,
         passage: &Passage<'_>,
         coefficients: &[f64],
-        rings: usize,
+        (rings, crawls): (usize, bool),
     ) -> Self {
         let led = &objective.states.intervals[interval].led;
         let count = passage.steps.len() as f64;
         let span = objective.span(interval);
-        let crawls = objective.memory.is_some();
         let advance = Advance { crawls, led, span, length: span / count, along: objective.along() };
         let basis = objective.space.basis();
         let environment = objective.states.intervals[interval].halfway.environment();
@@ -316,7 +327,7 @@ impl Advance<'_> {
 }
 
 /// Adds the product of two blocks.
-fn accumulate(sum: &mut Block, a: &Block, b: &Block) {
+pub(super) fn accumulate(sum: &mut Block, a: &Block, b: &Block) {
     sum[0] += a[0] * b[0] + a[1] * b[2];
     sum[1] += a[0] * b[1] + a[1] * b[3];
     sum[2] += a[2] * b[0] + a[3] * b[2];

@@ -99,6 +99,7 @@ fn no_polarity_is_made_of_errors() {
     assert!((own.value / chiral - 1.0).abs() < 0.04, "{own:?} {chiral}");
     assert!((found.noise.position / 0.02 - 1.0).abs() < 0.15, "{:?}", found.noise);
     let polarity = tracked.polarity.unwrap();
-    assert!(polarity.speed_interval[0] == 0.0 && polarity.speed_interval[1] < 0.6, "{polarity:?}");
-    assert_eq!(polarity.rate_interval, None);
+    // Without a memory the speed is that of white noise: its upper end is loose.
+    assert!(polarity.speed_interval[0] == 0.0 && polarity.speed_interval[1] < 0.8, "{polarity:?}");
+    assert_eq!((polarity.rate_interval, polarity.evidence), (None, 0.0));
 }

@@ -118,7 +118,7 @@ impl Around<'_> {
 }
 
 /// The errors of the rows of a rule for frames some time apart, in ascending order.
-fn misses(time: f64, rule: Rule, crawling: bool) -> Vec<f64> {
+fn misses(time: f64, rule: Rule, [crawling, told_apart]: [bool; 2]) -> Vec<f64> {
     let movie = open_movie(Vector::zeros(), time);
     let space = CoefficientSpace::new(&Constraints::default()).unwrap();
     let structure = Structure::base(1.0);
@@ -127,6 +127,10 @@ fn misses(time: f64, rule: Rule, crawling: bool) -> Vec<f64> {
     if crawling {
         states = states.crawling(&movie, structure.terms.len());
         assert!(states.polarities.count() > states.motions.len());
+    }
+    if told_apart {
+        let around = Around { objective: objective(&movie, &states, &structure, &space, rule) };
+        states = states.clone().told_apart(&around.objective, &around.at(0.0)).unwrap();
     }
     let mut misses = Around { objective: objective(&movie, &states, &structure, &space, rule) }.misses();
     misses.sort_by(f64::total_cmp);
@@ -138,8 +142,8 @@ fn misses(time: f64, rule: Rule, crawling: bool) -> Vec<f64> {
 #[test]
 fn rows_are_the_derivatives_of_the_residuals() {
     let quantile = |misses: &[f64], share: f64| misses[(share * (misses.len() - 1) as f64) as usize];
-    // The ways that cells crawl count within fewer rings.
-    for (crawling, beyond) in [(false, 1.0), (true, 1.5)] {
+    // The ways that cells crawl count within fewer rings; motions that are told apart depend on the places within two rings.
+    for (crawling, beyond) in [([false; 2], 1.0), ([true, false], 1.5), ([true; 2], 1.5)] {
         let still = misses(0.1, Rule::Trapezoid, crawling);
         assert!(quantile(&still, 1.0) < 1e-6, "{still:?}");
         for steps in [1, 2, 4] {
@@ -154,6 +158,43 @@ fn rows_are_the_derivatives_of_the_residuals() {
             assert!(quantile(&long, 0.5) < beyond * 0.02 && quantile(&long, 0.9) < beyond * 0.15, "{long:?}");
         }
     }
+}
+
+/// What is left of a motion that is told apart does not depend on the ways that other cells crawl, but for those far off.
+#[test]
+fn motions_that_are_told_apart_depend_on_their_own_way_alone() {
+    let movie = open_movie(Vector::zeros(), 0.05);
+    let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+    let structure = Structure::base(1.0);
+    let crawling = States::new(&movie).unwrap().crawling(&movie, structure.terms.len());
+    let rule = Rule::RungeKutta(4);
+    let together = Around { objective: objective(&movie, &crawling, &structure, &space, rule) };
+    let at = together.at(0.0);
+    let apart = crawling.clone().told_apart(&together.objective, &at).unwrap();
+    const STEP: f64 = 1e-6;
+    let spread = |states: &States| -> f64 {
+        let residuals = |at: &[f64]| {
+            let own = objective(&movie, states, &structure, &space, rule);
+            own.residuals(&own.place(at).unwrap(), at)
+        };
+        let before = residuals(&at);
+        let (mut own, mut others) = (0.0, 0.0);
+        for (number, motion) in states.motions.iter().enumerate().step_by(4) {
+            let [way, _] = states.polarity(motion).unwrap();
+            let mut pushed = at.clone();
+            pushed[space.dimension() + 2 * way] += STEP;
+            for (other, (after, before)) in residuals(&pushed).iter().zip(&before).enumerate() {
+                let moved = (after - before).norm_squared() / (STEP * STEP);
+                match states.motions[other].track == motion.track {
+                    true => own += moved * f64::from(u8::from(other == number)),
+                    false => others += moved,
+                }
+            }
+        }
+        others / own
+    };
+    let [together, apart] = [&crawling, &apart].map(spread);
+    assert!(together > 0.02 && apart < 0.1 * together, "{together} {apart}");
 }
 
 /// The same of what is expected of the polarities with which tracks begin.
