@@ -1,11 +1,14 @@
 //! What was found out about the measurement before the search: it stands beside what the tissue may do, and goes first.
 
-use super::sentences::listed;
+use super::sentences::{listed, percent};
 use crate::command::fit::Prepared;
-use voronudge_infer::ChangeKind;
+use voronudge_infer::discover::Fitted;
+use voronudge_infer::{ChangeKind, NoiseSource};
+use voronudge_report::Units;
 use voronudge_report::discover_report::{CandidateStatus, EffectKind, RankedEffect};
 use voronudge_report::infer_report::{FlowWindow, Measurement, MeasurementSource, PositionKind};
 use voronudge_report::numbers::significant;
+use voronudge_report::units::unit_text;
 
 /// A fault or a habit of the measurement that the fits take into account.
 struct Finding {
@@ -61,16 +64,27 @@ impl Findings {
         share.into_iter().chain(width).collect()
     }
 
-    /// The ranking with what was found in front.
-    pub fn ahead_of(&self, ranking: Vec<RankedEffect>) -> Vec<RankedEffect> {
+    /// The ranking with what was found in front, and the errors of positions, which are always there, behind what is named.
+    pub fn ahead_of(&self, ranking: Vec<RankedEffect>, noise: &PositionNoise) -> Vec<RankedEffect> {
         let is_found = |own: &RankedEffect| self.all.iter().any(|found| found.id == own.effect);
         let others = ranking.into_iter().filter(|own| !is_found(own));
-        self.all.iter().map(Finding::ranked).chain(others).collect()
+        let mut all: Vec<RankedEffect> = self.all.iter().map(Finding::ranked).chain(others).collect();
+        let is_named = |own: &RankedEffect| {
+            matches!(own.status, CandidateStatus::Measurement | CandidateStatus::Selected)
+        };
+        let behind = all.iter().position(|own| !is_named(own)).unwrap_or(all.len());
+        all.insert(behind, noise.ranked());
+        all
     }
 }
 
 impl Finding {
     fn ranked(&self) -> RankedEffect {
+        self.ranked_with(f64::NAN)
+    }
+
+    /// With the root mean square velocity that it makes, relative to all.
+    fn ranked_with(&self, size: f64) -> RankedEffect {
         RankedEffect {
             effect: self.id.into(),
             kind: EffectKind::Observation,
@@ -79,12 +93,49 @@ impl Finding {
             p: f64::NAN,
             p_adjusted: f64::NAN,
             detection_limit: f64::NAN,
-            size: f64::NAN,
+            size: 100.0 * size,
             size_ci95: None,
             gain: None,
             status: CandidateStatus::Measurement,
             reason: format!("{}, which all fits take into account", self.statement),
         }
+    }
+}
+
+/// Errors of positions, beside what the tissue does.
+pub(super) struct PositionNoise {
+    /// σ_r in units of the data.
+    level: String,
+    estimated: bool,
+    /// Share of the squared velocities that it makes.
+    share: f64,
+}
+
+impl PositionNoise {
+    /// As it is in the fit of the base model.
+    pub fn new(prepared: &Prepared, before: &Fitted, units: &Units) -> Self {
+        let sigma = before.inference.noise.position * prepared.scale.length;
+        Self {
+            level: format!("{} {}", significant(sigma, 3), unit_text(&units.length)),
+            estimated: before.inference.noise_source == NoiseSource::Estimated,
+            share: before.budget.position_noise,
+        }
+    }
+
+    fn ranked(&self) -> RankedEffect {
+        let source = if self.estimated { "as estimated" } else { "as stated" };
+        let makes = match self.share.is_finite() {
+            true => format!(", which make {} of the squared velocities", percent(self.share)),
+            false => String::new(),
+        };
+        Finding {
+            id: "position_noise",
+            statement: format!("errors of positions of {} {source}{makes}", self.level),
+            advice: "",
+            dimension: 1,
+            evidence: f64::NAN,
+        }
+        .ranked_with(self.share.sqrt())
     }
 }
 

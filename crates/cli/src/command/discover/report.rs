@@ -1,7 +1,7 @@
 //! The result of `discover` as its report.
 
 use super::checks::Compared;
-use super::measured::Findings;
+use super::measured::{Findings, PositionNoise};
 use super::sentences::probability;
 use super::{effects, sentences};
 use crate::command::fit::{OrderedField, Prepared, outcome};
@@ -54,7 +54,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         models: fits,
         description: discovery.description.as_ref().map(|described| description(prepared, described)),
         selected: discovery.selected.iter().map(|one| effects::selected(one, prepared, &units)).collect(),
-        ranking: findings.ahead_of(ranking),
+        ranking: findings.ahead_of(ranking, &PositionNoise::new(prepared, &discovery.before, &units)),
         measurement,
         unexplained: unexplained(prepared, &discovery.after),
         noise_budget: BeforeAfter {

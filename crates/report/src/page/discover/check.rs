@@ -19,6 +19,7 @@ const UNUSUAL: f64 = 0.05;
 /// The section of the page.
 #[derive(Serialize)]
 pub(super) struct CheckView {
+    trails: Option<Figure>,
     figures: Vec<Figure>,
     columns: Vec<&'static str>,
     rows: Vec<(String, Vec<String>)>,
@@ -36,7 +37,8 @@ impl CheckView {
         };
         let curves = report.quantities.iter().filter(|own| !own.axis.is_empty()).filter(unusual);
         Self {
-            figures: trails.cloned().into_iter().chain(curves.map(figure)).collect(),
+            trails: trails.cloned(),
+            figures: curves.map(figure).collect(),
             columns: report.p.named().map(|(name, _)| name).collect(),
             rows,
         }
