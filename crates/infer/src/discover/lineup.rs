@@ -62,6 +62,8 @@ pub(super) struct Score {
     pub interval: Option<[f64; 2]>,
     /// Root mean square velocity, relative to the data, per unit of √noncentrality.
     unit: f64,
+    /// σ_v² in the statistic.
+    variance: f64,
 }
 
 /// What a model leaves of the candidates.
@@ -296,6 +298,16 @@ impl Projected<'_> {
         s.dot(&(self.inverse(candidate).0 * &s)).max(0.0)
     }
 
+    /// The statistic that is expected of a candidate with some coefficients, if its score is this.
+    pub fn expected(&self, candidate: usize, coefficients: &[f64], score: &Score) -> f64 {
+        let group = self.lineup.group(candidate);
+        let pairs = group
+            .iter()
+            .zip(coefficients)
+            .flat_map(|(i, a)| group.iter().zip(coefficients).map(move |(j, b)| a * b * self.gram[(*i, *j)]));
+        pairs.sum::<f64>() / score.variance
+    }
+
     /// The score of a candidate.
     pub fn score(&self, candidate: usize) -> Score {
         self.score_of(candidate, &self.score, self.rest)
@@ -340,7 +352,7 @@ impl Projected<'_> {
             [(size - error).max(0.0), size + error]
         });
         let p = if dimension == 0 { 1.0 } else { p };
-        Score { statistic, dimension, p, coefficients, size, interval, unit }
+        Score { statistic, dimension, p, coefficients, size, interval, unit, variance }
     }
 
     fn inverse(&self, candidate: usize) -> (DMatrix<f64>, usize) {

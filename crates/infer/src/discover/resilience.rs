@@ -1,5 +1,5 @@
-//! Whether an effect stands without the data that could decide for it alone: those that speak most for it, those around one place, and
-//! those near cells that were put in.
+//! Whether an effect stands without the data that could decide for it alone: those that speak most for it, those around one place,
+//! those near cells that were put in, and those at the rim of what is certain.
 
 use super::chance::Chance;
 use super::lineup::{Lineup, Score};
@@ -7,9 +7,9 @@ use super::steps::{Model, Setting};
 use crate::cross_validation::without;
 use crate::least_squares::{invert, residuals};
 use crate::uncertainty::nudges;
-use crate::{Error, Observation, Quantity};
+use crate::{Error, Observation, Quantity, Velocities};
 use nalgebra::{DMatrix, DVector};
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Vector, Visibility};
 
 /// Share of the velocities, those that speak most for an effect, without which it must be better than chance.
 const FEW: f64 = 0.02;
@@ -23,7 +23,7 @@ const NEAR: f64 = 2.0;
 /// Least share of the velocities that must be left for a test without those.
 const ENOUGH: f64 = 0.3;
 
-/// Least statistic of an effect there, as a share of what the share of the velocities lets expect.
+/// Least statistic of an effect there, as a share of what is expected of it.
 const LEAST: f64 = 0.25;
 
 /// Which velocities of each frame are left out.
@@ -38,6 +38,15 @@ pub(super) struct Member<'a> {
     pub others: &'a [usize],
     /// Its statistic with all data.
     pub statistic: f64,
+}
+
+/// What is left of an effect without some of the data.
+struct Rest {
+    score: Score,
+    /// Probability of so much by chance.
+    adjusted_p: f64,
+    /// The statistic that is expected of it there.
+    expected: f64,
 }
 
 impl Member<'_> {
@@ -66,29 +75,33 @@ impl Member<'_> {
             ),
         ];
         for (out, reason) in tests {
-            let (score, adjusted_p) = self.without(setting, base, model, &out)?;
+            let Rest { score, adjusted_p, .. } = self.without(setting, base, model, &out)?;
             if score.dimension == 0 || adjusted_p >= setting.level(self.others.len()) {
                 return Ok(Some(reason));
             }
         }
-        let (near, left) = near_unseen(setting.frames);
-        if left < 1.0 && left > ENOUGH {
-            let (score, _) = self.without(setting, base, model, &near)?;
-            if score.statistic < LEAST * left * self.statistic {
-                return Ok(Some("it is not there away from the cells that were not detected"));
+        let acts_at_edge = setting.candidates[self.candidate].effect.acts_at_edge();
+        let doubtful = [
+            (near_unseen(setting.frames), "it is not there away from the cells that were not detected"),
+            (
+                if acts_at_edge { Mask::new() } else { at_the_rim(setting.frames) },
+                "it is not there away from the rim of what is seen for certain",
+            ),
+        ];
+        for (out, reason) in doubtful {
+            let left = left(setting.frames, &out);
+            if left < 1.0 && left > ENOUGH {
+                let Rest { score, expected, .. } = self.without(setting, base, model, &out)?;
+                if score.statistic < LEAST * expected.min(self.statistic) {
+                    return Ok(Some(reason));
+                }
             }
         }
         Ok(None)
     }
 
-    /// Its score without some of the data, and the probability of so much by chance.
-    fn without(
-        &self,
-        setting: &Setting<'_>,
-        base: &Model,
-        model: &Model,
-        out: &Mask,
-    ) -> Result<(Score, f64), Error> {
+    /// What is left of it without some of the data.
+    fn without(&self, setting: &Setting<'_>, base: &Model, model: &Model, out: &Mask) -> Result<Rest, Error> {
         let alone = self.others.is_empty();
         let about = if alone { base } else { model };
         let frames: Vec<Observation> =
@@ -101,7 +114,8 @@ impl Member<'_> {
         let score = projected.score(self.candidate);
         let chance = Chance::new(&projected, &setting.named(self.others), setting.search.fit.seed);
         let adjusted_p = chance.adjusted(score.p);
-        Ok((score, adjusted_p))
+        let expected = projected.expected(self.candidate, &own, &score);
+        Ok(Rest { score, adjusted_p, expected })
     }
 }
 
@@ -156,8 +170,8 @@ impl<'a> Speaking<'a> {
     }
 }
 
-/// The velocities near cells without a measured position, and the share of all that are not.
-fn near_unseen(frames: &[Observation]) -> (Mask, f64) {
+/// The velocities near cells without a measured position.
+fn near_unseen(frames: &[Observation]) -> Mask {
     let of_frame = |frame: &Observation| -> Vec<bool> {
         let domain = frame.tessellation.domain();
         let unseen: Vec<Vector<f64>> = (0..frame.positions.len())
@@ -167,11 +181,29 @@ fn near_unseen(frames: &[Observation]) -> (Mask, f64) {
         let is_near = |r: Vector<f64>| unseen.iter().any(|own| domain.shortest(r - own).norm() < NEAR);
         (0..frame.velocities.values().len()).map(|datum| is_near(frame.place(datum))).collect()
     };
-    let out: Mask = frames.iter().map(of_frame).collect();
+    frames.iter().map(of_frame).collect()
+}
+
+/// The velocities of cells that would not count if it took one ring more of what is certain.
+fn at_the_rim(frames: &[Observation]) -> Mask {
+    let of_frame = |frame: &Observation| -> Vec<bool> {
+        if matches!(frame.velocities, Velocities::OnGrid(_)) {
+            return vec![false; frame.velocities.values().len()];
+        }
+        let counts = |cell: &u32| frame.visibility[*cell as usize] == Visibility::Counted;
+        (0..frame.positions.len())
+            .map(|cell| !frame.tessellation.neighbours(cell).iter().all(counts))
+            .collect()
+    };
+    frames.iter().map(of_frame).collect()
+}
+
+/// The share of the velocities that a mask leaves.
+fn left(frames: &[Observation], out: &Mask) -> f64 {
     let all: usize = frames.iter().map(|frame| frame.targets().count()).sum();
-    let kept = |(frame, out): (&Observation, &Vec<bool>)| frame.targets().filter(|own| !out[own.0]).count();
-    let left: usize = frames.iter().zip(&out).map(kept).sum();
-    (out, left as f64 / all.max(1) as f64)
+    let lost = |(frame, out): (&Observation, &Vec<bool>)| frame.targets().filter(|own| out[own.0]).count();
+    let lost: usize = frames.iter().zip(out).map(lost).sum();
+    1.0 - lost as f64 / all.max(1) as f64
 }
 
 /// What an effect predicts beyond the terms of the base model, and that with what the whole model leaves, in each target.

@@ -153,6 +153,11 @@ pub struct Effect {
 }
 
 impl Effect {
+    /// Whether it acts on cells at the edge of the tissue alone.
+    pub fn acts_at_edge(&self) -> bool {
+        matches!(self.id, "boundary_tension" | "boundary_torque")
+    }
+
     /// The columns, one for each coefficient.
     ///
     /// # Errors
