@@ -164,3 +164,69 @@ fn tracks_tell_whether_polarities_align() {
     assert_eq!(found.verdict, Verdict::Attributed);
     assert!(alignment.coefficients[0].covers(3.0 * unit), "{alignment:?} {unit}");
 }
+
+/// What turns the polarities of cells is named where it is there, beside the polarity, and not in its place.
+#[test]
+fn tracks_tell_what_drives_polarities() {
+    let filmed = Filmed { size: [100, 7], step: 0.15, error: 0.01, seed: 8 };
+    let mut search = search(&[
+        "polarity",
+        "polarity_alignment",
+        "contact_inhibition",
+        "velocity_alignment",
+        "random_motion",
+    ]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Skipped;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let crawling = Driving { speed: 1.0, rotational_diffusion: 2.0, free_speed: true, ..Driving::default() };
+    for [b, kappa] in [[0.0, 0.0], [30.0, 0.0], [0.0, 0.7]] {
+        let driving = Driving { contact_inhibition: b, velocity_alignment: kappa, ..crawling };
+        let (movie, [_, unit, _]) = filmed.movie_of_driven(driving);
+        let found = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())).unwrap();
+        let ids: Vec<&str> = found.selected.iter().map(|own| own.effect.id).collect();
+        eprintln!(
+            "{b} {kappa} {ids:?} {:?}",
+            found.selected.iter().map(|own| own.coefficients.clone()).collect::<Vec<_>>()
+        );
+        for own in &found.ranking {
+            eprintln!("   {} {} p {} {:?}", own.effect.id, own.statistic, own.p, own.fate);
+        }
+        let (drive, truth) = match (b > 0.0, kappa > 0.0) {
+            (true, _) => ("contact_inhibition", b * unit * unit),
+            (_, true) => ("velocity_alignment", kappa * unit),
+            _ => {
+                assert_eq!(ids, ["polarity"]);
+                continue;
+            }
+        };
+        assert_eq!(ids, ["polarity", drive]);
+        assert!(found.selected[1].coefficients[0].covers(truth), "{:?} {truth}", found.selected[1]);
+    }
+}
+
+/// Cells that are moved at random are, and those that are not are not; a polarity is no random motion.
+#[test]
+fn tracks_tell_whether_cells_move_at_random() {
+    let filmed = Filmed { size: [100, 6], step: 0.1, error: 0.01, seed: 9 };
+    let mut search = search(&["polarity", "alpha_area", "random_motion"]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Skipped;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    for (diffusion, speed) in [(0.0, 0.0), (0.03, 0.0), (0.0, 2.0)] {
+        let driving = Driving { diffusion, speed, rotational_diffusion: speed, ..Driving::default() };
+        let (movie, [chiral, ..]) = filmed.movie_of_driven(driving);
+        let unit = chiral / crate::tracks::sample::TRUTH[1];
+        let found = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())).unwrap();
+        let ids: Vec<&str> = found.selected.iter().map(|own| own.effect.id).collect();
+        eprintln!(
+            "D {diffusion} v {speed} {ids:?} {:?} {:?} unit {unit}",
+            found.verdict,
+            found.selected.iter().map(|own| own.coefficients.clone()).collect::<Vec<_>>()
+        );
+        eprintln!("  noise {:?}", found.after.inference.noise);
+        for own in &found.ranking {
+            eprintln!("   {} {} p {} {:?}", own.effect.id, own.statistic, own.p, own.fate);
+        }
+    }
+}
