@@ -80,6 +80,15 @@ impl<'a> Crawling<'a> {
         })
     }
 
+    /// Why it is none, if it is a polarity that is forgotten within an interval as far as these tracks can tell, beside so many other effects.
+    pub fn reason_against(&self, setting: &Setting<'_>, others: usize) -> Option<&'static str> {
+        let level = setting.level(others) / setting.named(&[]).len() as f64;
+        let lasts = self.polarity.evidence_of_memory >= critical_chi_squared(level, 1.0);
+        (self.turn.is_none() && !lasts).then_some(
+            "it is forgotten within an interval, as far as these tracks can tell: that is random motion",
+        )
+    }
+
     /// By how much −2 log L falls with it.
     fn evidence(&self) -> f64 {
         self.turn.map_or(self.polarity.evidence, |own| own.evidence)
@@ -102,7 +111,7 @@ impl<'a> Crawling<'a> {
             candidate: self.candidate,
             p: p(self.evidence(), dimension),
             adjusted_p: adjusted_p(setting, self.candidate, self.evidence()),
-            weakness: None,
+            weakness: self.reason_against(setting, others.len()),
             statistic: self.evidence(),
             size: self.size(),
             others: rivals.collect(),

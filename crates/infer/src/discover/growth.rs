@@ -118,6 +118,9 @@ impl<'a> Growth<'a> {
                 }
             };
             let crawling = Crawling::of(&self.setting, candidate, &model);
+            let of_memory =
+                crawling.as_ref().and_then(|own| own.reason_against(&self.setting, current.added.len()));
+            let against = against.or(of_memory);
             if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(own.into_iter().next()) {
                 let is_chance = ranked.adjusted_p >= self.setting.level(current.added.len());
                 let is_tried = self.setting.candidates[candidate].is_of_polarity();

@@ -67,6 +67,8 @@ pub struct Polarity {
     pub contact_inhibition: Option<Drive>,
     /// See there.
     pub velocity_alignment: Option<Drive>,
+    /// By how much −2 log L, restricted, falls to this one from what is forgotten within an interval.
+    pub evidence_of_memory: f64,
     /// By how much −2 log L, restricted, falls from none to this one: at most χ² with two degrees of freedom if there is none.
     pub evidence: f64,
 }
@@ -267,6 +269,7 @@ impl MovieObjective<'_> {
             alignment: self.alignment(equations, components, known, covariance[(3, 3)])?,
             contact_inhibition,
             velocity_alignment,
+            evidence_of_memory: self.evidence_of_memory(equations, components, known, memory)?.min(evidence),
             evidence,
         }))
     }

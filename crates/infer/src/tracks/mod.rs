@@ -20,6 +20,7 @@ mod held_out;
 mod hint;
 mod inference;
 mod join;
+mod lasting;
 mod likely;
 mod linearised;
 mod measurement;

@@ -106,7 +106,6 @@ fn drives_of_polarities_are_found() {
         assert!((own.value / chiral - 1.0).abs() < 0.03, "{own:?} {chiral}");
         let polarity = tracked.polarity.unwrap();
         let truth = [b * unit * unit, kappa * unit];
-        eprintln!("{polarity:?} {truth:?}");
         let found = [polarity.contact_inhibition, polarity.velocity_alignment].map(Option::unwrap);
         for (drive, truth) in found.into_iter().zip(truth) {
             let [low, high] = drive.interval;
