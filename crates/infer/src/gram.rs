@@ -33,6 +33,28 @@ impl Chosen<'_> {
 /// Lengths of some columns, their rows, and the values of all matrices there.
 type Part<const N: usize> = (Vec<usize>, Vec<usize>, [Vec<f64>; N]);
 
+/// The same for any number of matrices up to seven.
+pub(crate) fn of_all(
+    chosen: Vec<Chosen<'_>>,
+    links: impl Iterator<Item = (usize, usize)>,
+    columns: usize,
+) -> Result<Vec<SymmetricMatrix>, Error> {
+    fn some<const N: usize>(
+        chosen: Vec<Chosen<'_>>,
+        links: impl Iterator<Item = (usize, usize)>,
+        columns: usize,
+    ) -> Result<Vec<SymmetricMatrix>, Error> {
+        let chosen: [Chosen<'_>; N] = chosen.try_into().map_err(|_| Error::Degenerate)?;
+        Ok(grams(chosen, links, columns)?.into())
+    }
+    match chosen.len() {
+        2 => some::<2>(chosen, links, columns),
+        3 => some::<3>(chosen, links, columns),
+        6 => some::<6>(chosen, links, columns),
+        _ => some::<7>(chosen, links, columns),
+    }
+}
+
 /// `JᵀJ` over the chosen rows of each of some matrices J with so many block columns: lower triangles with the whole
 /// diagonal, all on the pattern of their sum and of some links between columns, the later one first.
 pub(crate) fn grams<const N: usize>(

@@ -72,13 +72,13 @@ pub use measurement::{Determined, KnownMeasurement, Measurement, RivalWindow, me
 pub use noise::{KnownNoise, NoiseLevels, NoiseSource};
 pub use observation::{Observation, Velocities};
 pub use quantity::Quantity;
-pub use request::{Activity, CrossValidation, Examination, Loss, Method, Request};
+pub use request::{Activity, CrossValidation, Drives, Examination, Loss, Method, Request};
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;
 pub use sites::{Outlined, Sites, sites};
 pub use spread::Spread;
 pub use tracks::{
-    Alignment, Drift, Integration, Latent, Movie, Polarity, Sighting, Track, Tracked, complete_tracks,
+    Alignment, Drift, Drive, Integration, Latent, Movie, Polarity, Sighting, Track, Tracked, complete_tracks,
     infer_tracks, measure_tracks,
 };
 pub use uncertainty::{Bootstrap, Landscape, Profile, bootstrap, landscape, profile};

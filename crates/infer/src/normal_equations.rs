@@ -204,6 +204,14 @@ impl NormalEquations {
         Ok(Step { step, promised })
     }
 
+    /// Covariance of the two unknowns of a block where there is one part, all others free, in units of σ_v².
+    pub fn covariance_of(&self, block: usize) -> Result<DMatrix<f64>, Error> {
+        let Some(frame) = self.frames.first() else { return Err(Error::Degenerate) };
+        let (own, by_coefficients) = frame.of_block(self.spring, block)?;
+        let covariance = invert(self.reduced()?.information)?;
+        Ok(own + &by_coefficients * covariance * by_coefficients.transpose())
+    }
+
     /// The problem in β alone, with the nudges eliminated and priors included.
     pub fn reduced(&self) -> Result<Reduced, Error> {
         reduce(&self.frames, self.priors.clone(), self.spring)

@@ -335,7 +335,7 @@ impl<'a> Objective<'a> {
                 Linearisation::new(&Local {
                     velocities: Rows { jacobian: &jacobian, rows: &rows },
                     positions: positions.rows(),
-                    known: None,
+                    known: Vec::new(),
                     nudges,
                     stiffness: match frame.unseen() {
                         0 => Stiffness::default(),

@@ -23,6 +23,8 @@ pub struct Request {
     pub frame_interval: Option<f64>,
     /// Whether cells crawl.
     pub activity: Activity,
+    /// What may drive the polarities of cells that crawl.
+    pub drives: Drives,
     /// Parameters that may differ from cell to cell; for velocities of cells.
     pub varied: Vec<CellParameter>,
     /// Seed of further starts.
@@ -69,6 +71,22 @@ pub enum Activity {
     Alignment,
 }
 
+/// What may drive polarities, beside neighbours and noise: none by default.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub struct Drives {
+    /// They turn away from contacts.
+    pub contact_inhibition: bool,
+    /// They turn towards the velocity that the model gives.
+    pub velocity_alignment: bool,
+}
+
+impl Drives {
+    /// Whether there are any.
+    pub fn any(self) -> bool {
+        self.contact_inhibition || self.velocity_alignment
+    }
+}
+
 /// Whether to predict velocities left out of the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum CrossValidation {
@@ -99,6 +117,7 @@ impl Request {
             examination: Examination::Done,
             frame_interval: None,
             activity: Activity::None,
+            drives: Drives::default(),
             varied: Vec::new(),
             seed: 0,
         }

@@ -1,15 +1,16 @@
 //! What moves cells besides the model: shear of the box, self-propulsion, noise.
 
 use crate::Error;
+use crate::turning::Headings;
 use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use voronudge_geometry::{Tessellation, Vector};
+use voronudge_geometry::Vector;
 
 /// Cells that share a stream of random numbers.
-const CHUNK: usize = 1024;
+pub(crate) const CHUNK: usize = 1024;
 
 /// Simple shear of the periodic box (Lees–Edwards): the image one box above is displaced by `γ(t) L_y` along x.
 ///
@@ -88,8 +89,17 @@ impl Shear {
 ///
 /// ```text
 /// dr_i = (v_i(r) + γ̇ y_i x̂ + v₀ (cos θ_i, sin θ_i)) dt + √(2D) dW_i
-/// dθ_i = (J/6) Σ_j sin(θ_j − θ_i) dt + √(2D_r) dW′_i                         over the neighbours j
+/// dθ_i = (J/6) Σ_j sin(θ_j − θ_i) dt + t_i·(b n_i + κ F_i)/v₀ dt + √(2D_r) dW′_i        over the neighbours j
 /// ```
+///
+/// with t_i = (−sin θ_i, cos θ_i), the velocity F_i that the model gives, and n_i away from the contacts
+/// ([`away_from_contacts`](voronudge_model::effect::away_from_contacts)). Where speeds are free, the polarity p in place of v₀ (cos θ, sin θ) is a process of Ornstein and Uhlenbeck,
+///
+/// ```text
+/// dp_i = [−D_r p_i + (J/6) Σ_j (p_j − p_i) + b n_i + κ F_i] dt + v₀ √D_r dW′_i
+/// ```
+///
+/// with the root mean square v₀ if nothing turns it.
 ///
 /// Noise is additive and is put in at the end of each step: of weak order one in `Δt`, without a step-size bias of its own
 /// (Euler–Maruyama for the noise, the chosen method for the rest). Its numbers come from the seed, the step and the cell,
@@ -105,6 +115,15 @@ pub struct Driving {
     /// Rate `J` at which a cell with six neighbours turns towards the mean direction of these, in 1/time.
     #[serde(default)]
     pub alignment: f64,
+    /// Contact inhibition `b`: how fast a polarity turns away from the contacts, in length/time².
+    #[serde(default)]
+    pub contact_inhibition: f64,
+    /// Rate `κ` at which a polarity turns towards the velocity that the model gives, in 1/time.
+    #[serde(default)]
+    pub velocity_alignment: f64,
+    /// Whether the speed of self-propulsion fluctuates as its direction does, with the root mean square `v₀`.
+    #[serde(default)]
+    pub free_speed: bool,
     /// Translational diffusion `D`, in length²/time.
     pub diffusion: f64,
     /// Seed of noise and of the first directions.
@@ -117,6 +136,8 @@ impl Driving {
             ("speed of self-propulsion", self.speed),
             ("rotational diffusion", self.rotational_diffusion),
             ("alignment", self.alignment),
+            ("contact inhibition", self.contact_inhibition),
+            ("velocity alignment", self.velocity_alignment),
             ("translational diffusion", self.diffusion),
         ];
         for (name, value) in amounts {
@@ -127,21 +148,12 @@ impl Driving {
         Ok(())
     }
 
-    /// Random directions of self-propulsion (N, radians); none if nothing propels itself.
-    pub(crate) fn first_headings(&self, cells: usize) -> Vec<f64> {
-        if self.speed == 0.0 {
-            return Vec::new();
-        }
-        let mut rng = stream(self.seed, u64::MAX, 0);
-        (0..cells).map(|_| rng.random_range(0.0..std::f64::consts::TAU)).collect()
-    }
-
     /// Adds the streaming of the shear and the self-propulsion to velocities.
     pub(crate) fn add_to(
         &self,
         velocities: &mut [Vector<f64>],
         positions: &[Vector<f64>],
-        headings: &[f64],
+        headings: &Headings,
         time: f64,
     ) {
         let rate = self.shear.map_or(0.0, |shear| shear.rate(time));
@@ -150,23 +162,14 @@ impl Driving {
             rows.for_each(|(v, r)| v.x += rate * r.y);
         }
         if self.speed != 0.0 {
-            let rows = velocities.par_iter_mut().zip(headings).with_min_len(CHUNK);
-            rows.for_each(|(v, angle)| *v += Vector::new(angle.cos(), angle.sin()) * self.speed);
+            let rows = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
+            rows.for_each(|(cell, v)| *v += headings.of(cell) * self.speed);
         }
     }
 
-    /// Turns the directions towards those of the neighbours (first order in the step, as is the noise).
-    pub(crate) fn align(&self, headings: &mut [f64], tessellation: &Tessellation, time_step: f64) {
-        if self.alignment == 0.0 || headings.is_empty() {
-            return;
-        }
-        let before = headings.to_vec();
-        let turn = |(cell, angle): (usize, &mut f64)| {
-            let neighbours = tessellation.neighbours(cell).iter();
-            let sum: f64 = neighbours.map(|other| (before[*other as usize] - before[cell]).sin()).sum();
-            *angle += self.alignment / 6.0 * sum * time_step;
-        };
-        headings.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(turn);
+    /// Whether something beside the neighbours and noise turns polarities.
+    pub(crate) fn drives(&self) -> bool {
+        self.speed > 0.0 && (self.contact_inhibition > 0.0 || self.velocity_alignment > 0.0)
     }
 
     /// Whether there is noise.
@@ -174,32 +177,19 @@ impl Driving {
         self.diffusion > 0.0 || self.rotational_diffusion > 0.0
     }
 
-    /// Adds the noise of one step to the positions and turns the directions.
-    pub(crate) fn shake(
-        &self,
-        positions: &mut [Vector<f64>],
-        headings: &mut [f64],
-        step: u64,
-        time_step: f64,
-    ) {
-        let chunk_of = |chunk: usize, salt: u64| stream(self.seed, step, 2 * chunk as u64 + salt);
-        if self.diffusion > 0.0 {
-            let size = (2.0 * self.diffusion * time_step).sqrt();
-            positions.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, positions)| {
-                let mut rng = chunk_of(chunk, 0);
-                for r in positions {
-                    let (x, y): (f64, f64) = (rng.sample(StandardNormal), rng.sample(StandardNormal));
-                    *r += Vector::new(x, y) * size;
-                }
-            });
+    /// Adds the noise of one step to the positions.
+    pub(crate) fn shake(&self, positions: &mut [Vector<f64>], step: u64, time_step: f64) {
+        if self.diffusion == 0.0 {
+            return;
         }
-        if self.rotational_diffusion > 0.0 {
-            let size = (2.0 * self.rotational_diffusion * time_step).sqrt();
-            headings.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, headings)| {
-                let mut rng = chunk_of(chunk, 1);
-                headings.iter_mut().for_each(|angle| *angle += size * rng.sample::<f64, _>(StandardNormal));
-            });
-        }
+        let size = (2.0 * self.diffusion * time_step).sqrt();
+        positions.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, positions)| {
+            let mut rng = stream(self.seed, step, 2 * chunk as u64);
+            for r in positions {
+                let (x, y): (f64, f64) = (rng.sample(StandardNormal), rng.sample(StandardNormal));
+                *r += Vector::new(x, y) * size;
+            }
+        });
     }
 }
 

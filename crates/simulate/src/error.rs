@@ -55,6 +55,9 @@ pub enum Error {
         /// The value given.
         value: f64,
     },
+    /// Cells that come and go have no speed of their own.
+    #[error("cells whose speed of self-propulsion varies cannot be replaced by others")]
+    FreeSpeed,
     /// Walls around cells that cannot have any.
     #[error("there can be no walls: {reason}")]
     Walls {
@@ -190,6 +193,7 @@ impl Error {
             }
             Self::Strain { .. } => Some("1e-5 is usual for a tissue at rest, 0.1 for one that flows"),
             Self::Driving { .. } => Some("give zero or more, or leave it out"),
+            Self::FreeSpeed => Some("let all have one speed"),
             Self::Rate { .. } => Some("leave it out for the default"),
             Self::Interrupted => None,
             Self::Turnover { .. } => Some("give rates per cell and time, and lengths in the unit of the box"),

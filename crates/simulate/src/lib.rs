@@ -46,6 +46,7 @@ mod schedule;
 mod simulation;
 mod spatial_order;
 mod time_step;
+mod turning;
 mod turnover;
 mod walls;
 

@@ -3,6 +3,7 @@
 mod replacement;
 mod step;
 
+use crate::turning::Headings;
 use crate::walls::{self, Mirrored};
 use crate::{Driving, Error, Method, Shear, Walls};
 use serde::{Deserialize, Serialize};
@@ -25,6 +26,8 @@ pub struct Simulation {
     now: State,
     velocities: Vec<Vector<f64>>,
     forces: HalfEdgeForces<f64>,
+    /// What drives the polarities now.
+    drive: Vec<Vector<f64>>,
     stage: Stage,
 }
 
@@ -57,13 +60,27 @@ pub struct State {
     /// Directions of self-propulsion (N, radians), or none.
     #[serde(skip)]
     pub headings: Vec<f64>,
+    /// Speeds of self-propulsion over `v₀` (N), or none if these do not vary.
+    #[serde(skip)]
+    pub speeds: Vec<f64>,
+}
+
+impl State {
+    fn polarities(&self) -> Headings {
+        Headings { angles: self.headings.clone(), speeds: self.speeds.clone() }
+    }
+
+    fn set_polarities(&mut self, headings: &Headings) {
+        self.headings.clone_from(&headings.angles);
+        self.speeds.clone_from(&headings.speeds);
+    }
 }
 
 /// Work space of one step.
 #[derive(Debug, Clone, Default)]
 struct Stage {
     positions: Vec<Vector<f64>>,
-    headings: Vec<f64>,
+    headings: Headings,
     slopes: [Vec<Vector<f64>>; 3],
 }
 
@@ -107,6 +124,7 @@ impl Simulation {
             now: State { positions, ..State::default() },
             velocities: Vec::new(),
             forces: HalfEdgeForces::default(),
+            drive: Vec::new(),
             stage: Stage::default(),
         };
         simulation.settle()?;
@@ -139,7 +157,7 @@ impl Simulation {
         if let Some(Shear::Step { strain }) = driving.shear {
             self.now.positions.iter_mut().for_each(|r| r.x += strain * r.y);
         }
-        self.now.headings = driving.first_headings(self.now.positions.len());
+        self.now.set_polarities(&driving.first_headings(self.now.positions.len()));
         self.driving = driving;
         self.settle()?;
         Ok(self)
@@ -166,7 +184,8 @@ impl Simulation {
     pub fn in_state(mut self, state: State) -> Result<Self, Error> {
         let cells = self.now.positions.len();
         let (positions, headings) = (state.positions.len(), state.headings.len());
-        if positions != cells || headings != self.now.headings.len() {
+        let speeds = state.speeds.len();
+        if positions != cells || headings != self.now.headings.len() || speeds != self.now.speeds.len() {
             return Err(Error::State { cells, positions, headings });
         }
         self.now = state;
@@ -277,7 +296,7 @@ impl Simulation {
     fn evaluate(
         &mut self,
         positions: &[Vector<f64>],
-        headings: &[f64],
+        headings: &Headings,
         time: f64,
         velocities: &mut Vec<Vector<f64>>,
     ) -> Result<(), Error> {
@@ -304,9 +323,21 @@ impl Simulation {
     /// Tessellation and velocities become those of the current positions.
     fn settle(&mut self) -> Result<(), Error> {
         let (now, mut velocities) = (std::mem::take(&mut self.now), std::mem::take(&mut self.velocities));
-        let outcome = self.evaluate(&now.positions, &now.headings, now.time, &mut velocities);
+        let outcome = self.evaluate(&now.positions, &now.polarities(), now.time, &mut velocities);
         (self.now, self.velocities) = (now, velocities);
+        self.settle_drive();
         outcome
+    }
+
+    /// What drives the polarities becomes that of the current positions.
+    fn settle_drive(&mut self) {
+        if !self.driving.drives() || self.mirrored.is_some() {
+            return;
+        }
+        let Self { now, tessellation, velocities, model, driving, .. } = self;
+        let cells = (tessellation.tessellation(), now.positions.as_slice());
+        let state = (&now.polarities(), now.time);
+        self.drive = driving.drive(cells, velocities, state, &model.environment);
     }
 
     fn domain_at(&self, time: f64) -> Result<Domain, voronudge_geometry::Error> {

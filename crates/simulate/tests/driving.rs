@@ -3,7 +3,8 @@
 #![allow(clippy::unwrap_used)]
 
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{Model, Parameters, stress};
+use voronudge_model::effect::away_from_contacts;
+use voronudge_model::{Model, Parameters, stress, velocities};
 use voronudge_observables::mean_square_displacement;
 use voronudge_simulate::{Driving, Error, Method, RandomPlacement, Shear, Simulation, generator, honeycomb};
 
@@ -149,6 +150,70 @@ fn directions_align_with_those_of_the_neighbours() {
     };
     advance(&mut aligned, 4000, 0.02);
     assert!(order(&before) < 0.3 && order(&aligned.state().headings) > 0.8);
+}
+
+/// Polarities turn away from contacts and along the velocities of the model by as much as is said; where the speed is fixed, by what is across.
+#[test]
+fn polarities_are_driven() {
+    let (b, kappa) = (0.7, 0.4);
+    let parameters = Parameters { chirality: 1.0, ..Parameters::default() };
+    for free_speed in [false, true] {
+        let driving = Driving {
+            speed: 0.5,
+            contact_inhibition: b,
+            velocity_alignment: kappa,
+            free_speed,
+            seed: 9,
+            ..Driving::default()
+        };
+        let mut driven = tissue(100, 4, &parameters).with_driving(driving).unwrap();
+        let (column, sign) = away_from_contacts();
+        let environment = driven.model().environment.clone();
+        let away = Model::with_coefficients(&[], &[]).with(column, sign).within(&environment);
+        let of = |model: &Model<f64>| velocities(driven.tessellation(), driven.positions(), model);
+        let (n, f) = (of(&away), of(driven.model()));
+        assert!(n.iter().map(|n| n.norm()).sum::<f64>() > 5.0);
+        let polarity = |simulation: &Simulation, cell: usize| {
+            let state = simulation.state();
+            let angle = state.headings[cell];
+            Vector::new(angle.cos(), angle.sin()) * state.speeds.get(cell).copied().unwrap_or(1.0) * 0.5
+        };
+        let before: Vec<Vector<f64>> = (0..100).map(|cell| polarity(&driven, cell)).collect();
+        let step = 1e-5;
+        advance(&mut driven, 1, step);
+        for cell in 0..100 {
+            let mut expected = n[cell] * b + f[cell] * kappa;
+            if !free_speed {
+                expected -= before[cell] * (before[cell].dot(&expected) / before[cell].norm_squared());
+            }
+            let turned = (polarity(&driven, cell) - before[cell]) / step;
+            assert!((turned - expected).norm() < 1e-3 * (1.0 + expected.norm()), "{turned:?} {expected:?}");
+        }
+    }
+}
+
+/// A polarity whose speed is free keeps its mean square and is forgotten at the rate of rotational diffusion.
+#[test]
+fn speeds_that_are_free_keep_their_mean_square() {
+    let driving =
+        Driving { speed: 1e-3, rotational_diffusion: 2.0, free_speed: true, seed: 9, ..Driving::default() };
+    let mut simulation = tissue(1600, 4, &inert()).with_driving(driving).unwrap();
+    let polarities = |simulation: &Simulation| -> Vec<Vector<f64>> {
+        let state = simulation.state();
+        let all = state.headings.iter().zip(&state.speeds);
+        all.map(|(angle, speed)| Vector::new(angle.cos(), angle.sin()) * *speed).collect()
+    };
+    let product = |one: &[Vector<f64>], other: &[Vector<f64>]| {
+        one.iter().zip(other).map(|(p, q)| p.dot(q)).sum::<f64>() / one.len() as f64
+    };
+    let begin = polarities(&simulation);
+    assert!((product(&begin, &begin) - 1.0).abs() < 0.08);
+    advance(&mut simulation, 50, 0.01);
+    let end = polarities(&simulation);
+    assert!((product(&end, &end) - 1.0).abs() < 0.08);
+    assert!((product(&begin, &end) - (-1.0_f64).exp()).abs() < 0.08);
+    let replaced = simulation.replace_cells(simulation.positions().to_vec(), Vec::new());
+    assert!(replaced.is_err());
 }
 
 #[test]

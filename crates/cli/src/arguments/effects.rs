@@ -53,6 +53,11 @@ impl ChosenEffects {
         self.0.is_empty()
     }
 
+    /// The coefficients of an effect, which is no longer among them.
+    pub fn take(&mut self, id: &str) -> Option<Vec<f64>> {
+        self.0.remove(id)
+    }
+
     /// Ids with coefficients.
     pub fn named(&self) -> BTreeMap<String, Vec<f64>> {
         self.0.iter().map(|(id, values)| ((*id).to_owned(), values.clone())).collect()

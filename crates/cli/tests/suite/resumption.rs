@@ -81,7 +81,7 @@ fn a_killed_run_goes_on_to_the_same_bytes() {
 #[test]
 fn a_killed_run_with_noise_and_adaptive_steps_goes_on_to_the_same_bytes() {
     assert_killed_and_resumed_is_the_same(
-        "simulate --cells 200 --time 10 --dt 0.02 --frames 50 --method adaptive --tolerance 1e-3 --alpha 1 --seed 6 --self-propulsion 0.5 --rotational-diffusion 1 --alignment 1 --diffusion 0.01 --threads 2",
+        "simulate --cells 200 --time 10 --dt 0.02 --frames 50 --method adaptive --tolerance 1e-3 --alpha 1 --seed 6 --self-propulsion 0.5 --rotational-diffusion 1 --free-speed --alignment 1 --contact-inhibition 2 --velocity-alignment 0.2 --diffusion 0.01 --threads 2",
     );
 }
 

@@ -173,3 +173,20 @@ fn cells_have_parameters_of_their_own() {
     assert_eq!(told["cell_parameters"]["P_0"].as_array().unwrap().len(), 60);
     assert!((told["parameters"]["P_0"].as_f64().unwrap() - 4.0).abs() < 1e-12);
 }
+
+/// Effects of the catalogue that are no terms of the model are what the options of their name say.
+#[test]
+fn driving_may_be_given_as_effects() {
+    let options = simulate(
+        "--self-propulsion 0.5 --rotational-diffusion 1 --alignment 0.4 --contact-inhibition 2 --velocity-alignment 0.2 --diffusion 0.01",
+    );
+    let effects = simulate(
+        "--effect polarity=0.5,1 --effect polarity_alignment=0.4 --effect contact_inhibition=2 --effect velocity_alignment=0.2 \
+         --effect random_motion=0.01",
+    );
+    let plain = simulate("");
+    let bytes = |run: &Folder| std::fs::read(run.file("positions.npy")).unwrap();
+    assert!(bytes(&options) == bytes(&effects) && bytes(&options) != bytes(&plain));
+    assert_eq!(report(options.path())["driving"], report(effects.path())["driving"]);
+    assert!(report(effects.path())["effects"].is_null());
+}

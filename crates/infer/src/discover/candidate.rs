@@ -1,7 +1,7 @@
 //! Which effects can be tested on the data.
 
 use super::result::Search;
-use crate::{Observation, Velocities};
+use crate::{Drives, Observation, Velocities};
 use voronudge_model::effect::Kind;
 use voronudge_model::{CellParameter, Column, Effect};
 
@@ -33,6 +33,17 @@ impl Candidate {
         self.effect.is_of_polarity()
     }
 
+    /// Whether it is about what turns polarities.
+    pub fn turns_polarity(&self) -> bool {
+        self.effect.turns_polarity()
+    }
+
+    /// What drives polarities, if it says that something does.
+    pub fn drives(&self) -> Drives {
+        let is = |id: &str| self.effect.id == id;
+        Drives { contact_inhibition: is("contact_inhibition"), velocity_alignment: is("velocity_alignment") }
+    }
+
     /// Whether it is that polarities turn towards those of the neighbours.
     pub fn is_alignment(&self) -> bool {
         self.effect.id == "polarity_alignment"
@@ -40,7 +51,7 @@ impl Candidate {
 
     /// Whether it is the polarity of cells itself.
     pub fn is_polarity(&self) -> bool {
-        self.is_of_polarity() && !self.is_alignment()
+        self.is_of_polarity() && !self.turns_polarity()
     }
 
     /// The parameter in which cells differ, if that is what it says. It has no columns.
@@ -108,12 +119,13 @@ pub(super) fn offered(frames: &[Observation], effects: &[&'static Effect]) -> Ve
 /// question, and what would need the velocities of all cells at once is not followed.
 pub(super) fn candidates_of_tracks(frames: &[Observation], effects: &[&'static Effect]) -> Vec<Candidate> {
     let mut all = offered(frames, effects);
+    let goes_on = |own: &Candidate| own.is_of_polarity() || own.effect.is_random_motion();
     for own in &mut all {
         own.columns = match own.effect.id {
-            _ if own.is_of_polarity() && frames.len() < FEWEST_FRAMES => {
+            _ if goes_on(own) && frames.len() < FEWEST_FRAMES => {
                 Err("it shows in how cells go on, which takes three frames or more")
             }
-            _ if own.is_of_polarity() => Ok(Vec::new()),
+            _ if goes_on(own) => Ok(Vec::new()),
             _ if own.differing().is_some() => Err(
                 "it is told from velocities of cells: --difference central, and infer --vary, ask of these",
             ),

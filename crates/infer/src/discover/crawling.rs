@@ -1,4 +1,4 @@
-//! The polarity of cells as a candidate, and that it aligns: states of the cells instead of columns.
+//! The polarity of cells as a candidate, and what turns it: states of the cells instead of columns.
 
 use super::classes::Tested;
 use super::lineup::{critical_chi_squared, upper_chi_squared};
@@ -6,11 +6,11 @@ use super::ranking::{self, by_evidence};
 use super::result::Ranked;
 use super::steps::{Model, Setting};
 use crate::Estimate;
-use crate::tracks::{Alignment, Polarity};
+use crate::tracks::{Alignment, Drive, Polarity};
 
-/// Coefficients of a polarity: its speed and how fast it is forgotten; of its alignment: the rate.
+/// Coefficients of a polarity: its speed and how fast it is forgotten; of what turns it: one.
 fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
-    if setting.candidates[candidate].is_alignment() { 1 } else { 2 }
+    if setting.candidates[candidate].turns_polarity() { 1 } else { 2 }
 }
 
 /// In the ranking, by its evidence alone, as before one is fitted.
@@ -21,7 +21,7 @@ pub(super) fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> 
 
 /// Probability of so much evidence if there is none. Its speed, or the rate at which it aligns, is then at its bound, and the rate at which
 /// it is forgotten means nothing: there are fewer degrees of freedom than coefficients.
-fn p(evidence: f64, coefficients: usize) -> f64 {
+pub(super) fn p(evidence: f64, coefficients: usize) -> f64 {
     upper_chi_squared(evidence, coefficients as f64)
 }
 
@@ -36,12 +36,20 @@ fn adjusted_p(setting: &Setting<'_>, candidate: usize, evidence: f64) -> f64 {
     ranking::adjusted_p(setting, p(evidence, coefficients(setting, candidate)))
 }
 
-/// The polarity in a fitted model, or how it aligns.
+/// What turns a polarity.
+#[derive(Clone, Copy)]
+struct Turn {
+    value: f64,
+    interval: [f64; 2],
+    evidence: f64,
+}
+
+/// The polarity in a fitted model, or what turns it.
 pub(super) struct Crawling<'a> {
     candidate: usize,
     polarity: &'a Polarity,
-    /// How it aligns, if that is what the candidate is.
-    alignment: Option<&'a Alignment>,
+    /// What turns it, if that is what the candidate is.
+    turn: Option<Turn>,
     /// Root mean square of the velocities.
     usual: f64,
 }
@@ -52,18 +60,38 @@ impl<'a> Crawling<'a> {
         let polarity = model.followed.as_ref()?.tracked.polarity.as_ref()?;
         let inference = &model.inference;
         let own = &setting.candidates[candidate];
-        let alignment = polarity.alignment.as_ref().filter(|_| own.is_alignment());
-        (own.is_polarity() || alignment.is_some()).then(|| Self {
+        let drives = own.drives();
+        let drive = match drives.contact_inhibition {
+            true => polarity.contact_inhibition,
+            false => polarity.velocity_alignment.filter(|_| drives.velocity_alignment),
+        };
+        let driven = drive.map(|Drive { value, interval, evidence }| Turn { value, interval, evidence });
+        let aligned = polarity.alignment.filter(|_| own.is_alignment());
+        let turn = driven.or(aligned.map(|Alignment { rate, interval, evidence }| Turn {
+            value: rate,
+            interval,
+            evidence,
+        }));
+        (own.is_polarity() || turn.is_some()).then(|| Self {
             candidate,
             polarity,
-            alignment,
+            turn,
             usual: (inference.total / inference.used as f64).sqrt(),
         })
     }
 
+    /// Why it is none, if it is a polarity that is forgotten within an interval as far as these tracks can tell, beside so many other effects.
+    pub fn reason_against(&self, setting: &Setting<'_>, others: usize) -> Option<&'static str> {
+        let level = setting.level(others) / setting.named(&[]).len() as f64;
+        let lasts = self.polarity.evidence_of_memory >= critical_chi_squared(level, 1.0);
+        (self.turn.is_none() && !lasts).then_some(
+            "it is forgotten within an interval, as far as these tracks can tell: that is random motion",
+        )
+    }
+
     /// By how much −2 log L falls with it.
     fn evidence(&self) -> f64 {
-        self.alignment.map_or(self.polarity.evidence, |own| own.evidence)
+        self.turn.map_or(self.polarity.evidence, |own| own.evidence)
     }
 
     /// With all else in the model; `others` are the other candidates in it.
@@ -83,33 +111,33 @@ impl<'a> Crawling<'a> {
             candidate: self.candidate,
             p: p(self.evidence(), dimension),
             adjusted_p: adjusted_p(setting, self.candidate, self.evidence()),
-            weakness: None,
+            weakness: self.reason_against(setting, others.len()),
             statistic: self.evidence(),
             size: self.size(),
             others: rivals.collect(),
         }
     }
 
-    /// Relative to the velocities; of alignment not known.
+    /// Relative to the velocities; of what turns a polarity not known.
     fn size(&self) -> f64 {
-        if self.alignment.is_some() { f64::NAN } else { self.polarity.speed / self.usual }
+        if self.turn.is_some() { f64::NAN } else { self.polarity.speed / self.usual }
     }
 
     /// In the ranking.
     pub fn ranked(&self, setting: &Setting<'_>) -> Ranked {
         let plain = ranked(setting, self.candidate, self.evidence());
-        if self.alignment.is_some() {
+        if self.turn.is_some() {
             return plain;
         }
         let [least, most] = self.polarity.speed_interval.map(|end| end / self.usual);
         Ranked { detection_limit: most - least, size: self.size(), interval: Some([least, most]), ..plain }
     }
 
-    /// Speed and rate, or the rate at which it aligns.
+    /// Speed and rate, or the coefficient of what turns it.
     pub fn estimates(&self) -> Vec<Estimate> {
-        if let Some(Alignment { rate, interval, .. }) = self.alignment {
+        if let Some(Turn { value, interval, .. }) = self.turn {
             return vec![Estimate {
-                value: *rate,
+                value,
                 standard_error: 0.5 * (interval[1] - interval[0]) / 1.96,
                 interval: interval.map(Some),
             }];

@@ -103,6 +103,10 @@ impl<'a> Growth<'a> {
                 hinted.into_iter().for_each(|ranked| self.ranking.put(ranked));
                 break;
             };
+            let id = self.setting.candidates[candidate].effect.id;
+            let (own, others): (Vec<Ranked>, Vec<Ranked>) =
+                hinted.into_iter().partition(|ranked| ranked.effect.id == id);
+            others.into_iter().for_each(|ranked| self.ranking.put(ranked));
             let added = current.added.iter().copied().chain([candidate]).collect();
             let model = self.setting.fit(added, Some(current), watch)?;
             let after = Unseen::new(&self.setting, (&model, &model), self.split, watch)?;
@@ -114,7 +118,10 @@ impl<'a> Growth<'a> {
                 }
             };
             let crawling = Crawling::of(&self.setting, candidate, &model);
-            if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(hinted) {
+            let of_memory =
+                crawling.as_ref().and_then(|own| own.reason_against(&self.setting, current.added.len()));
+            let against = against.or(of_memory);
+            if let Some(ranked) = crawling.map(|own| own.ranked(&self.setting)).or(own.into_iter().next()) {
                 let is_chance = ranked.adjusted_p >= self.setting.level(current.added.len());
                 let is_tried = self.setting.candidates[candidate].is_of_polarity();
                 if is_tried && !is_chance && against.is_none() {
@@ -181,25 +188,28 @@ impl<'a> Growth<'a> {
     }
 
     /// What a model lacks most: the polarity of cells, if more speaks for it than for any other candidate, because it makes all other tests
-    /// too sure of themselves; otherwise the best of these. With the polarity as it ranks beside the base model, to first order.
+    /// too sure of themselves, or then what turns it; otherwise the best of these. With the polarity as it ranks beside the base model, to first
+    /// order, and what may turn it.
     fn lacking(
         &self,
         model: &Model,
         refused: &[usize],
         watch: &mut Watch<'_>,
-    ) -> Result<(Option<usize>, Option<Ranked>), Error> {
+    ) -> Result<(Option<usize>, Vec<Ranked>), Error> {
         let setting = self.setting;
         let best = setting.lacking(model, refused, watch)?;
-        let open = |candidate: &usize| !model.added.contains(candidate) && !refused.contains(candidate);
-        let Some(polarity) = setting.of_polarity(model).filter(open) else { return Ok((best, None)) };
-        let hint = setting.hint_of_polarity(model)?;
-        let is_first = setting.candidates[polarity].is_alignment() || model.added.is_empty();
-        let ranked = is_first.then(|| crawling::ranked(&setting, polarity, hint));
+        let hints = setting.of_polarity(model, refused)?;
+        let is_first = |k: usize| setting.candidates[k].turns_polarity() || model.added.is_empty();
+        let first = hints.iter().filter(|(k, _)| is_first(*k));
+        let ranked = first.map(|(k, hint)| crawling::ranked(&setting, *k, *hint)).collect();
         let projected = model.lineup.beyond(&model.added);
         let rival = best.map_or(0.0, |candidate| projected.score(candidate).statistic);
-        // Linearised about a fit without polarities; what is better than chance has more.
-        let least = crawling::least_evidence(&setting, polarity, model.added.len());
-        Ok((if hint >= least && hint > rival { Some(polarity) } else { best }, ranked))
+        // Linearised about a fit without them; what is better than chance has more.
+        let enough = |(k, hint): &&(usize, f64)| {
+            *hint >= crawling::least_evidence(&setting, *k, model.added.len()) && *hint > rival
+        };
+        let polarity = hints.iter().filter(enough).max_by(|a, b| a.1.total_cmp(&b.1));
+        Ok((polarity.map(|(k, _)| *k).or(best), ranked))
     }
 
     /// Takes back the effect with the largest p among those against which a reason speaks, as long as there is one. `fitted` are models

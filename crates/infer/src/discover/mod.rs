@@ -22,6 +22,7 @@ mod null_data;
 mod ranking;
 mod resilience;
 mod result;
+mod scatter;
 mod steps;
 #[cfg(test)]
 mod tests;
@@ -40,6 +41,7 @@ use candidate::{candidates, candidates_of_tracks};
 use classes::{Selection, selection};
 use evidence::Evidence;
 use growth::{Grown, Growth};
+use scatter::RandomMotion;
 use steps::{Model, Setting};
 
 /// Least width of a block of cells that is held out, in units of ℓ₀.
@@ -118,16 +120,24 @@ fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Er
     // Where something goes on in time, what describes it in space alone says little.
     let describes = testable && (setting.movie.is_none() || grown.is_none());
     let description = if describes { describe(&growth, &split, watch)? } else { None };
-    let mut ranking = growth.ranking;
-    ranking.settle(&selected);
     let last = differing.as_ref().map_or(extended, |own| &own.model);
+    let explains = !selected.selected.is_empty();
+    let mut ranking = growth.ranking;
+    if testable && let Some(random) = RandomMotion::of(&setting, last)? {
+        ranking.put(random.ranked.clone());
+        selected.selected.extend(random.selected(&setting, last)?);
+    }
+    ranking.settle(&selected);
+    // What moves cells at random predicts nothing.
+    let only_scatters = !explains && !selected.selected.is_empty();
     let proven = match search.fit.cross_validation {
         _ if differing.is_some() => false,
+        _ if only_scatters => true,
         CrossValidation::Done => gain.is_some_and(verdict::predicts_better),
         CrossValidation::Skipped => true,
     };
     let left = verdict::Left::new(&setting, last, &after);
-    let explained = (!selected.selected.is_empty()).then_some(selected.largest_share);
+    let explained = explains.then_some(selected.largest_share).or(only_scatters.then_some(1.0));
     let verdict = verdict::decide(testable, explained, &left, proven);
     Ok(Discovery {
         verdict,

@@ -8,8 +8,11 @@ use super::result::{Fate, Ranked};
 use super::steps::Setting;
 use voronudge_model::Effect;
 
-/// Why it is no question whether polarities align.
-const NO_POLARITY: &str = "no polarity was found that could align";
+/// Why it is no question what turns polarities.
+const NO_POLARITY: &str = "no polarity was found that could turn";
+
+/// Why random motion is no question.
+const NO_SCATTER: &str = "the motions are too few, or what they scatter by was given";
 
 /// Why it was not asked whether cells differ.
 const NOTHING_TO_TELL: &str = "the velocities are too few to tell";
@@ -33,8 +36,11 @@ impl Ranking {
                 return untested(effect, Fate::NotTestable(reason));
             }
             let score = projected.score(k);
-            if candidate.is_alignment() {
+            if candidate.turns_polarity() {
                 return untested(effect, Fate::NotTestable(NO_POLARITY));
+            }
+            if candidate.effect.is_random_motion() {
+                return untested(effect, Fate::NotTestable(NO_SCATTER));
             }
             if candidate.differing().is_some() {
                 return untested(effect, Fate::NotTestable(NOTHING_TO_TELL));

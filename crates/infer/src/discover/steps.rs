@@ -7,11 +7,11 @@ use super::lineup::{Lineup, Score, added_places};
 use super::result::Search;
 use crate::objective::Objective;
 use crate::search::{Watch, refine};
-use crate::tracks::{Followed, Movie, follow};
+use crate::tracks::{Followed, HintsOfDrives, Movie, Scatter, follow};
 use crate::uncertainty::nudges;
 use crate::{
-    Activity, CoefficientSpace, CrossValidation, Error, Examination, Inference, NoiseLevels, Observation,
-    Request, infer,
+    Activity, CoefficientSpace, CrossValidation, Drives, Error, Examination, Inference, NoiseLevels,
+    Observation, Request, infer,
 };
 use voronudge_model::CellParameter;
 
@@ -92,10 +92,14 @@ impl Setting<'_> {
         let any = |of: fn(&Candidate) -> bool| added.iter().any(|candidate| of(&self.candidates[*candidate]));
         Request {
             structure,
-            activity: match (any(Candidate::is_polarity), any(Candidate::is_alignment)) {
+            activity: match (any(Candidate::is_of_polarity), any(Candidate::is_alignment)) {
                 (true, false) => Activity::Polarity,
                 (_, true) => Activity::Alignment,
                 (false, false) => base.activity,
+            },
+            drives: Drives {
+                contact_inhibition: any(|own| own.drives().contact_inhibition),
+                velocity_alignment: any(|own| own.drives().velocity_alignment),
             },
             // That of tracks is part of their fit.
             cross_validation: match self.movie {
@@ -230,19 +234,37 @@ impl Setting<'_> {
         Ok(scores.get(chosen).map(|(candidate, _)| *candidate))
     }
 
-    /// What may be next of the polarity of cells: that they have one, or, if they have, that it aligns.
-    pub fn of_polarity(&self, model: &Model) -> Option<usize> {
+    /// What may be next of the polarity of cells: that they have one, or, if they have, what turns it; each with by how much −2 log L falls
+    /// at least, to a first approximation. None without tracks.
+    pub fn of_polarity(&self, model: &Model, refused: &[usize]) -> Result<Vec<(usize, f64)>, Error> {
+        let (Some(movie), Some(followed)) = (self.movie, &model.followed) else { return Ok(Vec::new()) };
         let has_one = model.added.iter().any(|candidate| self.candidates[*candidate].is_polarity());
-        let is_next = if has_one { Candidate::is_alignment } else { Candidate::is_polarity };
-        self.candidates.iter().position(|own| is_next(own) && own.columns.is_ok())
+        let is_next = if has_one { Candidate::turns_polarity } else { Candidate::is_polarity };
+        let is_open = |k: &usize| {
+            let own = &self.candidates[*k];
+            is_next(own) && own.columns.is_ok() && !model.added.contains(k) && !refused.contains(k)
+        };
+        let open: Vec<usize> = (0..self.candidates.len()).filter(is_open).collect();
+        let drives = match open.iter().any(|k| self.candidates[*k].drives().any()) {
+            true => followed.hints_of_drives(movie, &model.request, &model.space)?,
+            false => HintsOfDrives::default(),
+        };
+        let hint = |k: &usize| {
+            let own = self.candidates[*k].drives();
+            Ok::<f64, Error>(match (own.contact_inhibition, own.velocity_alignment) {
+                (true, _) => drives.contact_inhibition,
+                (_, true) => drives.velocity_alignment,
+                _ => followed.hint_of_polarity(movie, &model.request, &model.space)?,
+            })
+        };
+        open.iter().map(|k| Ok((*k, hint(k)?))).collect()
     }
 
-    /// By how much −2 log L falls at least if the cells of a model crawl, or, if they do, align: an approximation. Zero if there are no
-    /// tracks.
-    pub fn hint_of_polarity(&self, model: &Model) -> Result<f64, Error> {
+    /// What the dynamics of a model scatter by, beside what it knows; `None` without tracks.
+    pub fn scatter(&self, model: &Model) -> Result<Option<Scatter>, Error> {
         match (self.movie, &model.followed) {
-            (Some(movie), Some(followed)) => followed.hint_of_polarity(movie, &model.request, &model.space),
-            _ => Ok(0.0),
+            (Some(movie), Some(followed)) => followed.scatter(movie, &model.request, &model.space),
+            _ => Ok(None),
         }
     }
 

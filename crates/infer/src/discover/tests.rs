@@ -6,7 +6,7 @@ use super::{Discovery, Fate, Search, Verdict, discover, discover_in_tracks};
 use crate::coefficients::PREFERRED_AREA;
 use crate::sample::observation;
 use crate::search::Watch;
-use crate::tracks::sample::Filmed;
+use crate::tracks::sample::{Filmed, TRUTH};
 use crate::{Constraints, CrossValidation, KnownNoise, Observation, Quantity, Request};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
@@ -163,4 +163,117 @@ fn tracks_tell_whether_polarities_align() {
     assert_eq!((polarity.effect.id, alignment.effect.id), ("polarity", "polarity_alignment"));
     assert_eq!(found.verdict, Verdict::Attributed);
     assert!(alignment.coefficients[0].covers(3.0 * unit), "{alignment:?} {unit}");
+}
+
+/// What turns the polarities of cells is named where it is there, beside the polarity, and not in its place.
+#[test]
+fn tracks_tell_what_drives_polarities() {
+    let filmed = Filmed { size: [100, 7], step: 0.15, error: 0.01, seed: 8 };
+    let mut search = search(&[
+        "polarity",
+        "polarity_alignment",
+        "contact_inhibition",
+        "velocity_alignment",
+        "random_motion",
+    ]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Skipped;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let crawling = Driving { speed: 1.0, rotational_diffusion: 2.0, free_speed: true, ..Driving::default() };
+    for [b, kappa] in [[0.0, 0.0], [30.0, 0.0], [0.0, 0.7]] {
+        let driving = Driving { contact_inhibition: b, velocity_alignment: kappa, ..crawling };
+        let (movie, [_, unit, _]) = filmed.movie_of_driven(driving);
+        let found = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())).unwrap();
+        let ids: Vec<&str> = found.selected.iter().map(|own| own.effect.id).collect();
+        let (drive, truth) = match (b > 0.0, kappa > 0.0) {
+            (true, _) => ("contact_inhibition", b * unit * unit),
+            (_, true) => ("velocity_alignment", kappa * unit),
+            _ => {
+                assert_eq!(ids, ["polarity"]);
+                continue;
+            }
+        };
+        assert_eq!(ids, ["polarity", drive]);
+        assert!(found.selected[1].coefficients[0].covers(truth), "{:?} {truth}", found.selected[1]);
+    }
+}
+
+/// Cells that are moved at random are found to be, by as much as they are; of others, and of those that crawl, it is not said.
+#[test]
+fn tracks_tell_whether_cells_move_at_random() {
+    let filmed = Filmed { size: [100, 6], step: 0.1, error: 0.01, seed: 9 };
+    let mut search = search(&["polarity", "alpha_area", "random_motion"]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Skipped;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    for (diffusion, speed, named) in
+        [(0.0, 0.0, &[][..]), (0.03, 0.0, &["random_motion"]), (0.0, 2.0, &["polarity"])]
+    {
+        let driving = Driving { diffusion, speed, rotational_diffusion: speed, ..Driving::default() };
+        let (movie, [chiral, ..]) = filmed.movie_of_driven(driving);
+        let truth = diffusion * chiral / TRUTH[1];
+        let found = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())).unwrap();
+        let ids: Vec<&str> = found.selected.iter().map(|own| own.effect.id).collect();
+        assert_eq!(ids, named, "{:?}", found.ranking);
+        if diffusion > 0.0 {
+            assert!(found.selected[0].coefficients[0].covers(truth), "{:?} {truth}", found.selected[0]);
+            assert_eq!(found.verdict, Verdict::Attributed);
+        }
+    }
+}
+
+#[test]
+#[ignore]
+fn measure_random_motion() {
+    let mut search = search(&["polarity", "alpha_area", "drift", "random_motion"]);
+    search.fit.noise = KnownNoise::default();
+    search.fit.cross_validation = CrossValidation::Skipped;
+    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    for seed in 20..26 {
+        for (diffusion, speed, step, error) in [
+            (0.0, 0.0, 0.1, 0.01),
+            (0.0, 0.0, 0.2, 0.02),
+            (0.001, 0.0, 0.1, 0.01),
+            (0.01, 0.0, 0.1, 0.01),
+            (0.03, 0.0, 0.1, 0.01),
+            (0.01, 2.0, 0.1, 0.01),
+            (0.0, 2.0, 0.15, 0.01),
+        ] {
+            let filmed = Filmed { size: [100, 6], step, error, seed };
+            let driving =
+                Driving { diffusion, speed, rotational_diffusion: 0.5 * speed, ..Driving::default() };
+            let Ok((movie, [chiral, ..])) = std::panic::catch_unwind(|| filmed.movie_of_driven(driving))
+            else {
+                continue;
+            };
+            let unit = chiral / TRUTH[1];
+            let Ok(found) = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())) else {
+                eprintln!("FAILED");
+                continue;
+            };
+            let mut line = format!(
+                "seed {seed} D {diffusion} v {speed} step {step} truth D {:.5} v {:.4}: {:?}",
+                diffusion * unit,
+                speed * unit,
+                found.verdict
+            );
+            for own in &found.selected {
+                line += &format!(" | {}", own.effect.id);
+                for c in &own.coefficients {
+                    line += &format!(
+                        " {:.5} {:?}",
+                        c.value,
+                        c.interval.map(|e| e.map(|e| (e * 1e5).round() / 1e5))
+                    );
+                }
+            }
+            for own in &found.ranking {
+                line += &format!(" ; {} {:.1} {:?}", own.effect.id, own.statistic, own.fate);
+            }
+            eprintln!(
+                "{line} noise {:.4} {:.4}",
+                found.after.inference.noise.position, found.after.inference.noise.velocity
+            );
+        }
+    }
 }

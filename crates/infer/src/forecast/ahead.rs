@@ -8,6 +8,7 @@ use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use voronudge_geometry::{Tessellation, Vector};
+use voronudge_model::effect::away_from_contacts;
 use voronudge_model::{Model, jacobian, velocities};
 
 /// Rounds in which cells at the rim learn from their neighbours how they move.
@@ -86,6 +87,25 @@ impl<'a> Tissue<'a> {
         Ok(known.into_iter().map(|v| v.unwrap_or_else(Vector::zeros)).collect())
     }
 
+    /// What drives the polarities of cells in view, with b and κ; none if nothing does.
+    fn drive(
+        &self,
+        positions: &[Vector<f64>],
+        [inhibition, alignment]: [f64; 2],
+    ) -> Result<Vec<Vector<f64>>, Error> {
+        if inhibition == 0.0 && alignment == 0.0 {
+            return Ok(Vec::new());
+        }
+        let (tessellation, forces) = self.forces(positions)?;
+        let (column, sign) = away_from_contacts();
+        let away = Model::with_coefficients(&[], &[]).with(column, sign * inhibition);
+        let turned = velocities(&tessellation, positions, &away.within(&self.model.environment));
+        let of_cell = |(force, turned): (Option<Vector<f64>>, Vector<f64>)| {
+            force.map_or(Vector::zeros(), |force| turned + force * alignment)
+        };
+        Ok(forces.into_iter().zip(turned).map(of_cell).collect())
+    }
+
     /// Goes on for a time, in so many steps of the classical Runge–Kutta method; cells at the rim at the velocities at which they are led.
     pub fn go_on(
         &self,
@@ -102,13 +122,19 @@ impl<'a> Tissue<'a> {
                 positions.iter().zip(v).map(|(r, v)| r + v * by).collect()
             };
             let first = self.velocities(positions, polarities, led)?;
+            let drive = self.drive(positions, turning.map_or([0.0; 2], |turning| turning.drives))?;
+            let driven = |polarities: &mut [Vector<f64>]| {
+                polarities.iter_mut().zip(&drive).for_each(|(p, drive)| *p += drive * (0.5 * h));
+            };
             if let Some(turning) = turning {
                 turning.go_on(polarities, 0.5 * h, || Vector::new(normal(), normal()));
+                driven(polarities);
             }
             let second = self.velocities(&moved(&first, 0.5 * h), polarities, led)?;
             let third = self.velocities(&moved(&second, 0.5 * h), polarities, led)?;
             if let Some(turning) = turning {
                 turning.go_on(polarities, 0.5 * h, || Vector::new(normal(), normal()));
+                driven(polarities);
             }
             let fourth = self.velocities(&moved(&third, h), polarities, led)?;
             for (cell, r) in positions.iter_mut().enumerate() {

@@ -29,6 +29,8 @@ pub(super) struct Turning {
     forgotten: f64,
     /// J/6 and the neighbours whose polarities a cell takes on.
     alignment: Option<(f64, Vec<Vec<u32>>)>,
+    /// b and κ
+    pub drives: [f64; 2],
 }
 
 impl Crawl {
@@ -70,7 +72,9 @@ impl Turning {
             });
             (own.rate / 6.0, ties.collect())
         });
-        Self { variance: 0.5 * polarity.speed.powi(2), forgotten: polarity.rate, alignment }
+        let drives = [polarity.contact_inhibition, polarity.velocity_alignment];
+        let drives = drives.map(|own| own.map_or(0.0, |own| own.value));
+        Self { variance: 0.5 * polarity.speed.powi(2), forgotten: polarity.rate, alignment, drives }
     }
 
     /// A polarity of which nothing is known.

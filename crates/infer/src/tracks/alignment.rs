@@ -96,6 +96,13 @@ impl Polarities {
         row
     }
 
+    /// The row of L for a polarity.
+    pub(super) fn laplacian(&self, block: u32) -> Vec<(u32, f64)> {
+        let mut row = self.row(block, -1.0, 1.0, |_| true);
+        row[0].1 += 1.0;
+        row
+    }
+
     /// Adds how polarities hold each other, with σ_v²/σ_u²: but for what each first one is held by of itself.
     pub(super) fn hold_aligned(&self, memory: Memory, ratio: f64, stiffness: &mut Stiffness) {
         let mut entries = Entries::default();
@@ -109,6 +116,11 @@ impl Polarities {
         for firsts in self.firsts_of_frames() {
             self.add_firsts(&firsts, memory, ratio, &mut entries);
         }
+        let (own, rho) = innovation(1.0, memory.times);
+        for before in self.before_driven() {
+            entries.add_square(ratio * own * rho * share(memory, 1.0), &self.laplacian(before));
+        }
+        self.release(memory, ratio, stiffness);
         for (later, earlier, value) in entries.summed() {
             if later == earlier {
                 stiffness.of_blocks[later as usize] += value;
@@ -181,7 +193,7 @@ impl Polarities {
 }
 
 /// a
-fn share(memory: Memory, since: f64) -> f64 {
+pub(super) fn share(memory: Memory, since: f64) -> f64 {
     -(-memory.alignment * since).exp_m1()
 }
 

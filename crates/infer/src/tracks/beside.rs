@@ -1,6 +1,7 @@
 //! Further terms beside the fit of a movie, in one linear problem.
 
 use super::anchors::Share;
+use super::driven::HintsOfDrives;
 use super::inference::Followed;
 use super::memory::Memory;
 use super::movie::Movie;
@@ -8,7 +9,7 @@ use super::objective::MovieObjective;
 use super::states::States;
 use crate::quantity::BASE;
 use crate::search::{Watch, optimise_knowing};
-use crate::{CoefficientSpace, Error, NoiseLevels, Request};
+use crate::{CoefficientSpace, Drives, Error, NoiseLevels, Request};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 use voronudge_model::Structure;
@@ -32,7 +33,7 @@ pub(crate) struct Beside {
 }
 
 impl Followed {
-    fn objective<'a>(
+    pub(super) fn objective<'a>(
         &'a self,
         movie: &'a Movie,
         structure: &'a Structure,
@@ -114,6 +115,24 @@ impl Followed {
         let components = objective.explained_components(&placed, &at);
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
         objective.hint(&equations, components, request.noise)
+    }
+
+    /// By how much −2 log L would fall, to first order, with each drive of polarities that a fit with polarities lacks.
+    pub fn hints_of_drives(
+        &self,
+        movie: &Movie,
+        request: &Request,
+        space: &CoefficientSpace,
+    ) -> Result<HintsOfDrives, Error> {
+        let own = &self.fit.states;
+        let both = Drives { contact_inhibition: true, velocity_alignment: true };
+        let states = own.clone().driven_by(both);
+        let objective =
+            MovieObjective { states: &states, ..self.objective(movie, &request.structure, space) };
+        let mut at = self.fit.parameters.clone();
+        at.resize(space.dimension() + 2 * states.blocks(), 0.0);
+        let equations = objective.linearise_at(&objective.place(&at)?, &at, Share::Known)?;
+        objective.hints_of_drives(&equations, own.polarities.drives)
     }
 
     /// Where the fit of a model with the same unknowns beside the coefficients may begin; `None` if it has others.

@@ -26,7 +26,7 @@ const FALL: f64 = 0.4;
 
 /// Least error of the dynamics over the usual interval, in units of that of a position. Less would change no parameter, but hold cells so
 /// stiffly to the model that a fit cannot get past changes of neighbours.
-const LEAST_SHARE: f64 = 0.15;
+pub(super) const LEAST_SHARE: f64 = 0.15;
 
 /// How often the error of the dynamics is raised to what a fit leaves, and by how many standard deviations that may exceed what is expected.
 const LOOSENINGS: usize = 5;

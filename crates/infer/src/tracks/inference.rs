@@ -67,6 +67,9 @@ pub(crate) fn follow(
     if request.activity == Activity::Alignment {
         states = states.aligning();
     }
+    if request.activity != Activity::None {
+        states = states.driven_by(request.drives);
+    }
     let (explained, required) = (states.motions.len(), 2 * space.dimension() + 2);
     if explained < required {
         return Err(Error::TooFewVelocities { used: explained, required });
@@ -158,7 +161,7 @@ pub(crate) fn follow(
         used,
         total,
     };
-    tracked.polarity = objective.polarity(&equations, components, request.noise)?;
+    tracked.polarity = objective.polarity(&equations, components, request.noise, displacements)?;
     Ok((inference, Followed { tracked, held_out: held_out.map(|held_out| held_out.folds), fit: found }))
 }
 

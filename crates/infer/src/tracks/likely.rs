@@ -1,5 +1,6 @@
 //! Which noise levels and which memory of the polarities are likely, and how well they are known.
 
+use super::driven::Drive;
 use super::memory::{Memory, NONE};
 use super::objective::MovieObjective;
 use super::states::States;
@@ -62,6 +63,12 @@ pub struct Polarity {
     pub correlation: f64,
     /// How cells align, if that was asked for.
     pub alignment: Option<Alignment>,
+    /// How they turn away from contacts, and towards the velocity that the model gives, if that was asked for.
+    pub contact_inhibition: Option<Drive>,
+    /// See there.
+    pub velocity_alignment: Option<Drive>,
+    /// By how much −2 log L, restricted, falls to this one from what is forgotten within an interval.
+    pub evidence_of_memory: f64,
     /// By how much −2 log L, restricted, falls from none to this one: at most χ² with two degrees of freedom if there is none.
     pub evidence: f64,
 }
@@ -223,6 +230,7 @@ impl MovieObjective<'_> {
         equations: &NormalEquations,
         components: f64,
         known: KnownNoise,
+        displacements: &[f64],
     ) -> Result<Option<Polarity>, Error> {
         let Some(memory) = self.memory else { return Ok(None) };
         let Likely { covariance, of_variance: (of_variance, further), .. } =
@@ -248,6 +256,8 @@ impl MovieObjective<'_> {
         };
         let evidence = self.evidence(equations, components, known, memory)?;
         let error = QUANTILE * covariance[(1, 1)].max(0.0).sqrt();
+        let [contact_inhibition, velocity_alignment] =
+            self.drives_found(equations, self.drives(displacements))?;
         let [slowest, fastest] = [-error, error].map(|aside| (log_times + aside).exp() - LASTING);
         Ok(Some(Polarity {
             speed: own,
@@ -257,6 +267,9 @@ impl MovieObjective<'_> {
                 .then(|| [slowest.max(0.0) / interval, fastest.min(TIMES[1]) / interval]),
             correlation: memory.correlation(),
             alignment: self.alignment(equations, components, known, covariance[(3, 3)])?,
+            contact_inhibition,
+            velocity_alignment,
+            evidence_of_memory: self.evidence_of_memory(equations, components, known, memory)?.min(evidence),
             evidence,
         }))
     }

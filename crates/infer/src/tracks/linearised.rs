@@ -1,6 +1,7 @@
 //! The objective of a movie linearised: a row for each motion.
 
 use super::anchors::{Anchors, Share};
+use super::drive::DriveRows;
 use super::objective::{MovieObjective, Placed};
 use super::outset::Outset;
 use super::row_builder::{IDENTITY, RowBuilder};
@@ -43,6 +44,8 @@ struct Rests<'a> {
     anchors: Anchors,
     /// Of the first polarities.
     outset: Outset,
+    /// Of what drives them.
+    drives: Vec<DriveRows>,
     /// The unknowns themselves, which are held.
     displacements: &'a [f64],
 }
@@ -69,7 +72,8 @@ impl MovieObjective<'_> {
         let displacements = self.split(parameters).1;
         let anchors = Anchors::new(self, placed, displacements, share);
         let outset = Outset::new(self, placed, displacements, anchors.dimension);
-        self.equations(parameters, placed, Rests { residuals, anchors, outset, displacements })
+        let drives = self.drive_rows(placed, parameters, anchors.dimension);
+        self.equations(parameters, placed, Rests { residuals, anchors, outset, drives, displacements })
     }
 
     /// The problem in β alone about a minimum whose residuals have changed by so much.
@@ -82,8 +86,10 @@ impl MovieObjective<'_> {
         let displacements = self.split(parameters).1;
         let anchors = Anchors::new(self, placed, displacements, Share::Known).without_rests();
         let outset = Outset::new(self, placed, displacements, anchors.dimension).without_rests();
+        let drives = self.drive_rows_without_rests(placed, parameters, anchors.dimension);
         let displacements = &vec![0.0; displacements.len()];
-        self.equations(parameters, placed, Rests { residuals, anchors, outset, displacements })?.reduced()
+        let rests = Rests { residuals, anchors, outset, drives, displacements };
+        self.equations(parameters, placed, rests)?.reduced()
     }
 
     /// The equations for some rests, with the derivatives at a point.
@@ -93,7 +99,7 @@ impl MovieObjective<'_> {
         placed: &Placed<'_>,
         rests: Rests<'_>,
     ) -> Result<NormalEquations, Error> {
-        let Rests { residuals, anchors, outset, displacements } = rests;
+        let Rests { residuals, anchors, outset, drives, displacements } = rests;
         let (free, _) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
         let mut motions = self.motion_rows(placed, coefficients.as_slice());
@@ -106,10 +112,11 @@ impl MovieObjective<'_> {
         };
         let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> =
             residuals.into_iter().zip(columns).enumerate().map(row).collect();
+        let known = std::iter::once(outset.rows()).chain(drives.iter().map(DriveRows::rows));
         let linearised = Linearisation::new(&Local {
             velocities: Rows { jacobian: &jacobian, rows: &rows },
             positions: anchors.rows(),
-            known: self.memory.map(|_| (outset.rows(), self.weight_of_outset())),
+            known: known.zip(self.weights_of_known()).collect(),
             nudges: displacements,
             stiffness: self.stiffness(),
             free: p,

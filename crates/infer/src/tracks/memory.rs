@@ -15,12 +15,13 @@
 //! same fit: they make successive displacements *anti*-correlated.
 
 use super::alignment::Ties;
+use super::drive::Driven;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::states::{Instant, Motion};
-use crate::Error;
 use crate::linearisation::Held;
 use crate::stiffness::Stiffness;
+use crate::{Drives, Error};
 
 /// Marks a cell without a polarity.
 pub(super) const NONE: u32 = u32::MAX;
@@ -90,6 +91,9 @@ pub(crate) struct Polarities {
     pub terms: usize,
     /// The time since the polarity before of the same cell, in usual intervals; one for each block.
     pub(super) since: Vec<Option<f64>>,
+    /// What may drive them, and those that are.
+    pub drives: Drives,
+    pub(super) driven: Vec<Driven>,
 }
 
 /// The first polarity of a track.
@@ -130,7 +134,7 @@ impl Polarities {
                 before = Some(time);
             }
         }
-        Self { block, first, firsts, since, terms, ties: Ties::new() }
+        Self { block, first, firsts, since, terms, ..Self::default() }
     }
 
     /// Number of polarities.
@@ -143,9 +147,9 @@ impl Polarities {
         self.first..self.first + self.count()
     }
 
-    /// Number of polarities and of blocks of γ.
+    /// Number of polarities, of blocks of γ and of those of drives.
     pub fn blocks(&self) -> usize {
-        self.count() + self.terms.div_ceil(2)
+        self.count() + self.terms.div_ceil(2) + usize::from(self.drives.any())
     }
 
     /// Blocks of γ.
@@ -166,6 +170,7 @@ impl Polarities {
             stiffness.of_blocks[block - 1] += ratio * own * rho * rho;
             stiffness.couplings.push((block as u32, block as u32 - 1, ratio * own * rho));
         }
+        self.release(memory, ratio, stiffness);
     }
 
     /// −log det of the covariance of all polarities, in units of σ_v².
@@ -200,9 +205,17 @@ impl MovieObjective<'_> {
         stiffness
     }
 
-    /// The same with the weight of what is expected of the first polarities.
+    /// The same with the weights of what is known beforehand.
     pub(super) fn held(&self) -> Held {
-        Held { stiffness: self.stiffness(), weight: self.weight_of_outset() }
+        Held { stiffness: self.stiffness(), weights: self.weights_of_known() }
+    }
+
+    /// Weights of what is expected of the first polarities, and of what drives them.
+    pub(super) fn weights_of_known(&self) -> Vec<f64> {
+        let Some(memory) = self.memory else { return Vec::new() };
+        let mut weights = vec![self.weight_of_outset()];
+        weights.extend(self.states.polarities.weights_of_drives(memory, self.ratio(memory)));
+        weights
     }
 
     /// σ_v²/σ_u²

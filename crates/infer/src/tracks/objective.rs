@@ -257,7 +257,7 @@ impl<'a> MovieObjective<'a> {
         });
         let nudges = of_seen.iter().sum();
         let surprise = self.weight_of_outset() * self.surprise(&placed, displacements);
-        let floor = self.stiffness().of(displacements) + surprise;
+        let floor = self.stiffness().of(displacements) + surprise + self.driven(&placed, parameters);
         let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);
         Ok(MovieParts { residual, nudges, floor, priors })
     }

@@ -7,7 +7,7 @@ use super::memory::{NONE, Polarities};
 use super::movie::{Drift, Movie};
 use super::objective::MovieObjective;
 use super::own_motion::OwnMotion;
-use crate::{Error, Observation};
+use crate::{Drives, Error, Observation};
 use rayon::prelude::*;
 use voronudge_geometry::{Vector, Visibility};
 
@@ -180,6 +180,12 @@ impl States {
     /// The same with polarities that may align with those of the neighbours.
     pub fn aligning(self) -> Self {
         Self { polarities: self.polarities.aligning(&self.instants), ..self }
+    }
+
+    /// The same with polarities that may be driven.
+    pub fn driven_by(self, drives: Drives) -> Self {
+        let polarities = if drives.any() { self.polarities.driven_by(drives) } else { self.polarities };
+        Self { polarities, ..self }
     }
 
     /// The same with polarities each by itself.

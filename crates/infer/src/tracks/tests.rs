@@ -1,7 +1,8 @@
 use super::sample::{Filmed, TRUTH};
 use super::{infer_tracks, measure_tracks};
-use crate::{Activity, Constraints, KnownMeasurement, Quantity, Request};
+use crate::{Activity, Constraints, Drives, KnownMeasurement, Quantity, Request};
 use std::ops::ControlFlow;
+use voronudge_simulate::Driving;
 
 /// Cells that move a fifth of their size from frame to frame: parameters within their intervals, where differences miss a third.
 #[test]
@@ -88,6 +89,30 @@ fn no_alignment_is_made_of_crawling() {
     let alignment = polarity.alignment.unwrap();
     assert!(alignment.interval[0] == 0.0 && alignment.interval[1] < speed, "{alignment:?}");
     assert!(alignment.evidence < 4.0, "{alignment:?}");
+}
+
+/// Cells whose polarity turns away from contacts and along the forces: both coefficients are found; of cells that only crawl they are none.
+#[test]
+fn drives_of_polarities_are_found() {
+    let drives = Drives { contact_inhibition: true, velocity_alignment: true };
+    let request = Request { drives, ..crawling() };
+    let filmed = Filmed { size: [100, 7], step: 0.15, error: 0.01, seed: 5 };
+    let crawling = Driving { speed: 1.0, rotational_diffusion: 2.0, free_speed: true, ..Driving::default() };
+    for [b, kappa] in [[0.0, 0.0], [25.0, 0.5]] {
+        let driving = Driving { contact_inhibition: b, velocity_alignment: kappa, ..crawling };
+        let (movie, [chiral, unit, _]) = filmed.movie_of_driven(driving);
+        let (found, tracked) = infer_tracks(&movie, &request, &mut |_| ControlFlow::Continue(())).unwrap();
+        let own = found.parameters.chiral_coefficient;
+        assert!((own.value / chiral - 1.0).abs() < 0.03, "{own:?} {chiral}");
+        let polarity = tracked.polarity.unwrap();
+        let truth = [b * unit * unit, kappa * unit];
+        let found = [polarity.contact_inhibition, polarity.velocity_alignment].map(Option::unwrap);
+        for (drive, truth) in found.into_iter().zip(truth) {
+            let [low, high] = drive.interval;
+            assert!(low < truth && truth < high, "{drive:?} {truth}");
+            assert_eq!(drive.evidence > 6.6, truth > 0.0, "{drive:?} {truth}");
+        }
+    }
 }
 
 /// Of cells that do not crawl no polarity is reported.

@@ -13,6 +13,7 @@ mod boundary_torque;
 mod cell_centre_chirality;
 mod centroid_bias;
 mod chiral_edge_tension;
+mod contact_inhibition;
 mod coordination_tension;
 mod density_gradient;
 mod drift;
@@ -39,12 +40,14 @@ mod polarity;
 mod polarity_alignment;
 mod profile;
 mod quadratic_distortion;
+mod random_motion;
 mod rotation;
 mod shear;
 mod short_range_repulsion;
 mod size_friction;
 mod smooth_field;
 mod time_lag;
+mod velocity_alignment;
 
 pub use alignment::Alignment;
 pub use alpha_adhesion::AlphaAdhesion;
@@ -56,6 +59,7 @@ pub use boundary_torque::BoundaryTorque;
 pub use cell_centre_chirality::CellCentreChirality;
 pub use centroid_bias::CentroidBias;
 pub use chiral_edge_tension::ChiralEdgeTension;
+pub use contact_inhibition::away_from_contacts;
 pub use coordination_tension::CoordinationTension;
 pub use density_gradient::DensityGradient;
 pub use drift::Drift;
@@ -176,7 +180,18 @@ impl Effect {
 
     /// Whether it is about the polarity of cells, an unknown state that a fit of tracks finds, and has no columns.
     pub fn is_of_polarity(&self) -> bool {
-        [polarity::EFFECT.id, polarity_alignment::EFFECT.id].contains(&self.id)
+        self.id == polarity::EFFECT.id || self.turns_polarity()
+    }
+
+    /// Whether it is about what turns polarities, which only cells that have one can tell.
+    pub fn turns_polarity(&self) -> bool {
+        let all = [polarity_alignment::EFFECT, contact_inhibition::EFFECT, velocity_alignment::EFFECT];
+        all.iter().any(|effect| effect.id == self.id)
+    }
+
+    /// Whether it is about what moves cells at random, which tracks show in what the dynamics scatter by; it has no columns.
+    pub fn is_random_motion(&self) -> bool {
+        self.id == random_motion::EFFECT.id
     }
 
     /// The parameter in which cells differ, if that is what it says; it then has no columns.
@@ -234,6 +249,9 @@ static CATALOGUE: &[Effect] = &[
     alignment::EFFECT,
     polarity::EFFECT,
     polarity_alignment::EFFECT,
+    contact_inhibition::EFFECT,
+    velocity_alignment::EFFECT,
+    random_motion::EFFECT,
     heterogeneity::ADHESION,
     heterogeneity::AREA,
     heterogeneity::CHIRALITY,

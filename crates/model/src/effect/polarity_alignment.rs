@@ -17,5 +17,5 @@ pub(super) const EFFECT: Effect = Effect {
 };
 
 /// Why it cannot be tested on velocities.
-const NO_POLARITY: &str =
+pub(super) const NO_POLARITY: &str =
     "it says how polarities go on: give tracks of three frames or more, without velocities or --difference";

@@ -15,6 +15,14 @@ pub struct ActivityReport {
     pub J: Option<Parameter>,
     /// By how much −2 log L falls from cells that do not align.
     pub evidence_of_alignment: Option<f64>,
+    /// How fast polarities turn away from contacts, if it was asked for.
+    pub b: Option<Parameter>,
+    /// By how much −2 log L falls from cells that do not.
+    pub evidence_of_contact_inhibition: Option<f64>,
+    /// Rate at which polarities turn towards the velocity of the model, if it was asked for.
+    pub kappa: Option<Parameter>,
+    /// By how much −2 log L falls from cells that do not.
+    pub evidence_of_velocity_alignment: Option<f64>,
     /// Correlation of the mean polarity over the time between two frames with that over the next.
     pub correlation: f64,
 }

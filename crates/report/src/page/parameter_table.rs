@@ -127,5 +127,12 @@ pub(super) fn activity_rows(activity: &ActivityReport) -> Vec<ParameterRow> {
         row("D_r", &activity.D_r, "rate at which a cell forgets the direction of its polarity"),
     ];
     rows.extend(alignment);
+    let inhibited = activity.b.iter().map(|own| row("b", own, "how fast polarities turn away from contacts"));
+    rows.extend(inhibited);
+    let along = activity.kappa.iter();
+    rows.extend(
+        along
+            .map(|own| row("kappa", own, "rate at which polarities turn towards the velocity of the forces")),
+    );
     rows
 }

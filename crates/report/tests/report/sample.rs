@@ -193,6 +193,10 @@ pub fn report() -> InferReport {
             D_r: held(0.02, "min⁻¹"),
             J: Some(fitted(0.15, 0.03, "min⁻¹")),
             evidence_of_alignment: Some(31.0),
+            b: Some(fitted(0.004, 0.001, "um min⁻²")),
+            evidence_of_contact_inhibition: Some(16.0),
+            kappa: None,
+            evidence_of_velocity_alignment: None,
             correlation: 0.93,
         }),
         spreads: vec![SpreadReport {

@@ -16,7 +16,7 @@ impl Simulation {
     /// go on. Cells behind a wall are put where their mirror images are.
     ///
     /// # Errors
-    /// [`Error::State`] if the directions are not those of as many cells; [`Error::Tessellation`] if the positions cannot be
+    /// [`Error::FreeSpeed`] if speeds of self-propulsion vary; [`Error::State`] if the directions are not those of as many cells; [`Error::Tessellation`] if the positions cannot be
     /// tessellated (not finite, coincident with another or, on a wall, with its own image, none). The simulation is then as it was.
     ///
     /// ```
@@ -42,6 +42,9 @@ impl Simulation {
         let directions = if self.driving.speed == 0.0 { 0 } else { cells };
         if headings.len() != directions {
             return Err(Error::State { cells, positions: cells, headings: headings.len() });
+        }
+        if !self.now.speeds.is_empty() {
+            return Err(Error::FreeSpeed);
         }
         let time = self.now.time;
         let renewed = match self.walls() {

@@ -3,6 +3,7 @@
 use super::{Simulation, Stage};
 use crate::Error;
 use crate::method::{THIRD_ORDER, change_of_step, largest_error};
+use crate::turning::Headings;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
 
@@ -20,7 +21,7 @@ impl Simulation {
         let Stage { positions, headings, slopes: [slope, sum, _] } = stage;
         sum.clone_from(&self.velocities);
         slope.clone_from(&self.velocities);
-        headings.clone_from(&self.now.headings);
+        *headings = self.now.polarities();
         for (reach, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
             self.displace(positions, slope, reach * time_step, time_step)?;
             self.evaluate(positions, headings, self.now.time + reach * time_step, slope)?;
@@ -34,25 +35,27 @@ impl Simulation {
     fn arrive(
         &mut self,
         positions: &mut Vec<Vector<f64>>,
-        headings: &mut Vec<f64>,
+        headings: &mut Headings,
         velocities: &mut Vec<Vector<f64>>,
         time_step: f64,
     ) -> Result<(), Error> {
-        headings.clone_from(&self.now.headings);
-        self.driving.align(headings, self.tessellation.tessellation(), time_step);
+        *headings = self.now.polarities();
+        self.driving.turn(headings, self.tessellation.tessellation(), &self.drive, time_step);
         if self.driving.shakes() {
-            self.driving.shake(positions, headings, self.now.steps, time_step);
+            self.driving.shake(positions, self.now.steps, time_step);
+            self.driving.disturb(headings, self.now.steps, time_step);
             self.check_displacements(positions, time_step)?;
         }
         self.evaluate(positions, headings, self.now.time + time_step, velocities)?;
         std::mem::swap(&mut self.now.positions, positions);
-        std::mem::swap(&mut self.now.headings, headings);
+        self.now.set_polarities(headings);
         std::mem::swap(&mut self.velocities, velocities);
         if let Some(mirrored) = &self.mirrored {
             self.now.crossings += mirrored.bring_back(&mut self.now.positions, &mut self.velocities);
         }
         self.now.time += time_step;
         self.now.steps += 1;
+        self.settle_drive();
         Ok(())
     }
 
@@ -95,7 +98,7 @@ impl Simulation {
     fn bogacki_shampine(&mut self, stage: &mut Stage, time_step: f64) -> Result<f64, Error> {
         let Stage { positions, headings, slopes: [second, third, fourth] } = stage;
         let now = self.now.time;
-        headings.clone_from(&self.now.headings);
+        *headings = self.now.polarities();
         self.displace(positions, &self.velocities, 0.5 * time_step, time_step)?;
         self.evaluate(positions, headings, now + 0.5 * time_step, second)?;
         self.displace(positions, second, 0.75 * time_step, time_step)?;

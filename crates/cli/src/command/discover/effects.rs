@@ -27,7 +27,8 @@ pub(super) fn family(effect: &Effect) -> EffectKind {
         | "a0_heterogeneity"
         | "alpha_heterogeneity"
         | "coordination_tension" => EffectKind::Gradient,
-        "persistence" | "alignment" | "polarity" | "polarity_alignment" => EffectKind::History,
+        "persistence" | "alignment" | "polarity" | "polarity_alignment" | "contact_inhibition"
+        | "velocity_alignment" | "random_motion" => EffectKind::History,
         "label_parameter" | "external_field" => EffectKind::Measured,
         "boundary_tension" | "boundary_torque" => EffectKind::Boundary,
         _ => match effect.kind {
@@ -49,6 +50,9 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
     match (selected.effect.id, count) {
         ("polarity_alignment", 1) => owned(&["J"]),
+        ("contact_inhibition", 1) => owned(&["b"]),
+        ("velocity_alignment", 1) => owned(&["kappa"]),
+        ("random_motion", 1) => owned(&["D"]),
         ("p0_heterogeneity" | "a0_heterogeneity" | "alpha_heterogeneity", 1) => owned(&["s"]),
         (_, 1) => vec![String::new()],
         ("drift", 2) => owned(&["along x", "along y"]),
@@ -137,6 +141,8 @@ fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, Strin
     match candidate.fate {
         Fate::Selected => {
             let found = discovery.selected.iter().find(|selected| selected.effect.id == candidate.effect.id);
+            // What nothing predicts explains nothing.
+            let found = found.filter(|own| !own.effect.is_random_motion());
             let share = found.map_or(String::new(), |selected| {
                 format!(", explains {} of what is missing without it", percent(selected.share_of_excess))
             });

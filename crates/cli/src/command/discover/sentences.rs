@@ -140,6 +140,10 @@ fn reservation(discovery: &Discovery) -> String {
 /// there is the fall of the error on motions held out.
 fn explained(discovery: &Discovery) -> String {
     match discovery.after.tracked {
+        Some(_) if discovery.selected.iter().all(|own| own.effect.is_random_motion()) => {
+            let share: f64 = discovery.selected.iter().map(|own| own.size.powi(2)).sum();
+            format!("{} of the squared velocities, as scatter that nothing predicts", percent(share))
+        }
         Some(_) if discovery.after.budget.effects <= 0.0 => {
             "nothing of the squared velocities, held out".into()
         }

@@ -2,7 +2,7 @@
 
 use crate::command::fit::{Prepared, PreparedTracks, outcome};
 use crate::failure::Failure;
-use voronudge_infer::{Polarity, Tracked};
+use voronudge_infer::{Drive, Polarity, Tracked};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{ActivityReport, Parameter};
 
@@ -27,6 +27,8 @@ pub(super) fn check(movie: Option<&PreparedTracks>) -> Result<(), Failure> {
 pub(super) fn report(data: &DataSet, prepared: &Prepared, tracked: &Tracked) -> Option<ActivityReport> {
     let Polarity { speed, speed_interval, rate, rate_interval, correlation, alignment, .. } =
         tracked.polarity.as_ref()?;
+    let [inhibited, along] =
+        tracked.polarity.as_ref().map_or([None; 2], |own| [own.contact_inhibition, own.velocity_alignment]);
     let (units, scale) = (outcome::units(data), &prepared.scale);
     let parameter = |value: f64, ends: Option<[f64; 2]>, factor: f64, unit: String, words: &str| Parameter {
         value: value * factor,
@@ -61,6 +63,26 @@ pub(super) fn report(data: &DataSet, prepared: &Prepared, tracked: &Tracked) -> 
             )
         }),
         evidence_of_alignment: alignment.map(|own| own.evidence),
+        b: inhibited.map(|Drive { value, interval, .. }| {
+            parameter(
+                value,
+                rate_interval.map(|_| interval),
+                scale.velocity() / scale.time,
+                units.powers(1, -2),
+                "b is how fast the polarity of a cell turns away from its contacts",
+            )
+        }),
+        evidence_of_contact_inhibition: inhibited.map(|own| own.evidence),
+        kappa: along.map(|Drive { value, interval, .. }| {
+            parameter(
+                value,
+                rate_interval.map(|_| interval),
+                1.0 / scale.time,
+                units.powers(0, -1),
+                "kappa is the rate at which the polarity of a cell turns towards the velocity that the forces give it",
+            )
+        }),
+        evidence_of_velocity_alignment: along.map(|own| own.evidence),
         correlation: *correlation,
     })
 }

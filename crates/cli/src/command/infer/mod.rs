@@ -22,7 +22,7 @@ use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
-use voronudge_infer::{Activity, infer, infer_tracks};
+use voronudge_infer::{Activity, Drives, infer, infer_tracks};
 use voronudge_io::{Difference, OutputDirectory};
 use voronudge_model::CellParameter;
 
@@ -45,6 +45,12 @@ pub(crate) struct Arguments {
     /// Let the polarities turn towards those of the neighbours, and fit the rate J of this too; as --active otherwise.
     #[arg(long)]
     align: bool,
+    /// Let the polarities turn away from contacts, and fit how fast, b; as --active otherwise.
+    #[arg(long)]
+    contact_inhibition: bool,
+    /// Let the polarities turn towards the velocity that the forces give, and fit the rate kappa of this; as --active otherwise.
+    #[arg(long)]
+    velocity_alignment: bool,
     /// Let cells differ in a parameter: alpha. For velocities of cells.
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
     vary: Vec<CellParameter>,
@@ -112,8 +118,13 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         _ => (question.prepare(velocities, frames, &mut run)?, None),
     };
-    if arguments.active || arguments.align {
+    let drives = Drives {
+        contact_inhibition: arguments.contact_inhibition,
+        velocity_alignment: arguments.velocity_alignment,
+    };
+    if arguments.active || arguments.align || drives.any() {
         activity::check(movie.as_ref())?;
+        prepared.request.drives = drives;
         prepared.request.activity = if arguments.align { Activity::Alignment } else { Activity::Polarity };
     }
     spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;

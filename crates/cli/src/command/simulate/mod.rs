@@ -2,6 +2,7 @@
 
 mod cells;
 mod chaos;
+mod driving;
 mod measurements;
 mod outcome;
 mod page;
@@ -18,6 +19,7 @@ use crate::run::Run;
 use cells::OfCells;
 use chaos::Measure;
 use clap::{Args, ValueEnum};
+use driving::DrivingArguments;
 use outcome::Finished;
 use recorder::{Kept, Recorder};
 use report::Request;
@@ -29,7 +31,7 @@ use voronudge_geometry::{Domain, FieldOfView, Tessellation};
 use voronudge_model::Model;
 use voronudge_report::Units;
 use voronudge_simulate::{
-    Completion, Driving, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
+    Completion, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
 };
 
 /// Simulates the chiral Voronoi model in a periodic box. The output is a data set.
@@ -52,18 +54,8 @@ pub(crate) struct Arguments {
     /// Error of a displacement that the adaptive method allows in one step, in mean spacings.
     #[arg(long, value_name = "ERROR", default_value_t = 1e-4, allow_negative_numbers = true)]
     tolerance: f64,
-    /// Speed of self-propulsion.
-    #[arg(long, value_name = "SPEED", default_value_t = 0.0, allow_negative_numbers = true)]
-    self_propulsion: f64,
-    /// Rotational diffusion of the directions of self-propulsion.
-    #[arg(long, value_name = "D_R", default_value_t = 0.0, allow_negative_numbers = true)]
-    rotational_diffusion: f64,
-    /// Alignment: the rate at which a cell with six neighbours turns towards the mean direction of their self-propulsion.
-    #[arg(long, value_name = "J", default_value_t = 0.0, allow_negative_numbers = true)]
-    alignment: f64,
-    /// Translational diffusion: noise of the positions.
-    #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true)]
-    diffusion: f64,
+    #[command(flatten)]
+    driving: DrivingArguments,
     /// Also measure the largest Lyapunov exponent, over a further run as long as this one: about four times its cost.
     #[arg(long)]
     lyapunov: bool,
@@ -99,7 +91,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("simulate", &arguments.common)?;
     let out = arguments.common.required_out()?.clone();
     let mut parameters = arguments.parameters.resolve()?;
-    let effects = arguments.effects.resolve()?;
+    let mut effects = arguments.effects.resolve()?;
     let every = Duration::try_from_secs_f64(arguments.checkpoint).map_err(|_| {
         Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", arguments.checkpoint))
             .with_hint("leave --checkpoint out for 30 seconds")
@@ -112,10 +104,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             Failure::new("--cell-parameter does not go with --walls").with_hint("leave one of them out")
         );
     }
-    if arguments.alignment != 0.0 && arguments.self_propulsion == 0.0 {
-        return Err(Failure::new("--alignment turns directions of self-propulsion, and there is none")
-            .with_hint("give --self-propulsion too, or leave --alignment out"));
-    }
+    let driving =
+        arguments.driving.driving(&mut effects, arguments.surroundings.shear()?, arguments.common.seed)?;
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;
     let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
@@ -138,14 +128,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         of_cells,
         effects,
         walls: arguments.surroundings.walls(),
-        driving: Driving {
-            shear: arguments.surroundings.shear()?,
-            speed: arguments.self_propulsion,
-            rotational_diffusion: arguments.rotational_diffusion,
-            alignment: arguments.alignment,
-            diffusion: arguments.diffusion,
-            seed: arguments.common.seed,
-        },
+        driving,
     };
     let measure_chaos = chaos::asked(arguments.lyapunov, &request)?;
     let mut simulation = Simulation::new(start.positions, domain, model)?

@@ -19,7 +19,7 @@ pub(super) struct Recorder {
     row: Vec<f64>,
 }
 
-/// The first line of a checkpoint; coordinates and directions follow as 64-bit floats.
+/// The first line of a checkpoint; coordinates, directions and speeds follow as 64-bit floats.
 #[derive(Serialize, Deserialize)]
 struct Header {
     request: Value,
@@ -27,6 +27,8 @@ struct Header {
     state: State,
     cells: usize,
     headings: usize,
+    #[serde(default)]
+    speeds: usize,
 }
 
 /// The point at which a run goes on.
@@ -93,14 +95,16 @@ impl Recorder {
         let header = Header {
             request: self.request.clone(),
             run: run.clone(),
-            state: State { positions: Vec::new(), headings: Vec::new(), ..state.clone() },
+            state: State { positions: Vec::new(), headings: Vec::new(), speeds: Vec::new(), ..state.clone() },
             cells: state.positions.len(),
             headings: state.headings.len(),
+            speeds: state.speeds.len(),
         };
         let mut bytes = serde_json::to_vec(&header)?;
         bytes.push(b'\n');
         let coordinates = state.positions.iter().flat_map(|r| [r.x, r.y]);
-        bytes.extend(coordinates.chain(state.headings.iter().copied()).flat_map(f64::to_le_bytes));
+        let polarities = state.headings.iter().chain(&state.speeds).copied();
+        bytes.extend(coordinates.chain(polarities).flat_map(f64::to_le_bytes));
         self.recording.checkpoint(&bytes)?;
         self.last = Instant::now();
         Ok(())
@@ -142,13 +146,15 @@ fn parse(bytes: &[u8]) -> Option<(Header, State)> {
     let header: Header = serde_json::from_slice(&bytes[..end]).ok()?;
     let (chunks, rest) = bytes[end + 1..].as_chunks::<8>();
     let numbers: Vec<f64> = chunks.iter().map(|chunk| f64::from_le_bytes(*chunk)).collect();
-    if !rest.is_empty() || numbers.len() != 2 * header.cells + header.headings {
+    if !rest.is_empty() || numbers.len() != 2 * header.cells + header.headings + header.speeds {
         return None;
     }
-    let (coordinates, headings) = numbers.split_at(2 * header.cells);
+    let (coordinates, polarities) = numbers.split_at(2 * header.cells);
+    let (headings, speeds) = polarities.split_at(header.headings);
     let state = State {
         positions: coordinates.chunks_exact(2).map(|r| Vector::new(r[0], r[1])).collect(),
         headings: headings.to_vec(),
+        speeds: speeds.to_vec(),
         ..header.state.clone()
     };
     Some((header, state))

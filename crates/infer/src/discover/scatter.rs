@@ -1,0 +1,66 @@
+//! Random motion without a memory as a candidate: what the dynamics of tracks scatter by.
+//!
+//! It is asked last. The noise levels of every fit have it already, so that it stands in the place of nothing; and whatever else is missing, a
+//! polarity above all, scatters too as long as it has no name.
+
+use super::crawling::p;
+use super::ranking::by_evidence;
+use super::resilience::partial;
+use super::result::{Ranked, Selected};
+use super::steps::{Model, Setting};
+use crate::tracks::Scatter;
+use crate::{Error, Estimate};
+
+/// The scatter of a fit, tested.
+pub(super) struct RandomMotion {
+    candidate: usize,
+    scatter: Scatter,
+    /// Root mean square of the velocities.
+    usual: f64,
+    pub ranked: Ranked,
+}
+
+impl RandomMotion {
+    /// Of the last model, if it is a candidate and can be tested.
+    pub fn of(setting: &Setting<'_>, model: &Model) -> Result<Option<Self>, Error> {
+        let is_it = |k: &usize| setting.candidates[*k].effect.is_random_motion();
+        let Some(candidate) = setting.named(&model.added).into_iter().find(is_it) else { return Ok(None) };
+        let Some(scatter) = setting.scatter(model)? else { return Ok(None) };
+        let inference = &model.inference;
+        let usual = (inference.total / inference.used as f64).sqrt();
+        let evidence = scatter.evidence;
+        let plain = by_evidence(setting, candidate, (evidence, 1, p(evidence, 1)));
+        let size = |diffusion: f64| scatter.speed / usual * (diffusion / scatter.diffusion).sqrt();
+        let [least, most] = scatter.interval.map(size);
+        let ranked = Ranked {
+            size: size(scatter.diffusion),
+            interval: Some([least, most]),
+            detection_limit: most - least,
+            ..plain
+        };
+        Ok(Some(Self { candidate, scatter, usual, ranked }))
+    }
+
+    /// As an effect beside so many others, unless it is no more than chance.
+    pub fn selected(&self, setting: &Setting<'_>, model: &Model) -> Result<Option<Selected>, Error> {
+        if self.ranked.adjusted_p >= setting.level(model.added.len()) {
+            return Ok(None);
+        }
+        let Scatter { diffusion, interval, speed, .. } = self.scatter;
+        Ok(Some(Selected {
+            effect: setting.candidates[self.candidate].effect,
+            columns: Vec::new(),
+            coefficients: vec![Estimate {
+                value: diffusion,
+                standard_error: 0.5 * (interval[1] - interval[0]) / 1.96,
+                interval: interval.map(Some),
+            }],
+            adjusted_p: self.ranked.adjusted_p,
+            // Every model that is fitted has it.
+            share_of_excess: 0.0,
+            size: speed / self.usual,
+            class: Vec::new(),
+            partial: partial(setting, model, &[])?,
+        }))
+    }
+}

@@ -1,0 +1,145 @@
+//! How far cells are moved at random, anew at every moment: what the dynamics scatter by.
+//!
+//! What the model leaves of a displacement has the variance σ_v² T h in each component, which is 2Dh of cells that diffuse. A fit always has such a
+//! scatter, because it holds no cell more stiffly to the model than errors of positions are worth (see [`LEAST_SHARE`]). What speaks
+//! for a scatter is by how much −2 log L falls from the least that a fit has to the likeliest one, positions with errors in either case, and
+//! polarities, if there are some, that may be forgotten faster in its place.
+
+use super::anchors::Share;
+use super::fit::LEAST_SHARE;
+use super::inference::Followed;
+use super::likely::TIMES;
+use super::movie::Movie;
+use super::objective::MovieObjective;
+use crate::noise::{Likelihood, Restricted};
+use crate::normal_equations::NormalEquations;
+use crate::{CoefficientSpace, Error, KnownNoise, Request};
+
+/// Spacing of log k at which the likelihood is looked at, and how far from the fit.
+const SPACING: f64 = 0.5;
+const FURTHEST: i32 = 3;
+
+/// By what x and what is new in an interval are multiplied where polarities stand in the place of a scatter.
+const MORE: [f64; 3] = [1.0, 2.0, 4.0];
+
+/// Fall of −2 log L at the ends of an interval of 95 %.
+const LESS_LIKELY: f64 = 3.841_458_820_694_124;
+
+/// Steps to an end of an interval, in log k, and halvings of the last.
+const STEPS: i32 = 8;
+const BISECTIONS: usize = 5;
+
+/// What the dynamics scatter by, in the units of the movie.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(crate) struct Scatter {
+    /// D
+    pub diffusion: f64,
+    /// Its 95 % interval.
+    pub interval: [f64; 2],
+    /// Root mean square of the mean velocity that it gives a cell over the usual interval.
+    pub speed: f64,
+    /// By how much −2 log L, restricted, falls from the least scatter to this one.
+    pub evidence: f64,
+}
+
+/// The likelihood of a fit as a function of k.
+struct OfSpring<'a> {
+    objective: MovieObjective<'a>,
+    equations: NormalEquations,
+    components: f64,
+    known: KnownNoise,
+}
+
+impl OfSpring<'_> {
+    /// With x and what is new in an interval multiplied, where there are polarities: these stay what they are when the scatter changes.
+    fn at(&self, log_k: f64, [more_times, more_news]: [f64; 2]) -> Result<Likelihood, Error> {
+        let Self { objective, equations, components, known } = self;
+        let (components, known) = (*components, *known);
+        let Some(memory) = objective.memory else {
+            return Restricted { equations, components, known, held: None }.likelihood(log_k);
+        };
+        let levels = objective.levels;
+        let of_scatter = (log_k - levels.spring().ln()).exp();
+        let ratio = (levels.velocity / memory.speed).powi(2) * of_scatter * more_times / more_news;
+        let times = (memory.times * more_times).clamp(TIMES[0], TIMES[1]);
+        objective.likelihood(equations, components, known, [log_k, times, ratio, memory.alignment])
+    }
+
+    fn plain(&self, log_k: f64) -> Result<Likelihood, Error> {
+        self.at(log_k, [1.0; 2])
+    }
+
+    /// The likeliest log k near the fit.
+    fn likeliest(&self) -> Result<f64, Error> {
+        let centre = self.objective.levels.spring().ln();
+        let points: Vec<f64> =
+            (-FURTHEST..=FURTHEST).map(|step| centre + SPACING * f64::from(step)).collect();
+        let values = self.equations.each(&points, |log_k| Ok(self.plain(*log_k)?.criterion))?;
+        let best = (0..points.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
+        let around = best.checked_sub(1).and_then(|k| values.get(k)).zip(values.get(best + 1));
+        let aside = around.map_or(0.0, |(before, after)| {
+            let bend = before + after - 2.0 * values[best];
+            if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 }
+        });
+        Ok(points[best] + SPACING * aside)
+    }
+
+    /// Where the likelihood has fallen as far as the end of an interval, from log k on in steps.
+    fn end(&self, from: f64, least: f64, step: f64) -> Result<f64, Error> {
+        let is_within = |log_k: f64| Ok::<bool, Error>(self.plain(log_k)?.criterion - least < LESS_LIKELY);
+        let (mut inside, mut outside) = (from, from + step);
+        for _ in 0..STEPS {
+            if !is_within(outside)? {
+                break;
+            }
+            (inside, outside) = (outside, outside + step);
+        }
+        for _ in 0..BISECTIONS {
+            let middle = 0.5 * (inside + outside);
+            if is_within(middle)? { inside = middle } else { outside = middle }
+        }
+        Ok(outside)
+    }
+}
+
+impl Followed {
+    /// What the dynamics of a fit scatter by; `None` if that was given.
+    pub fn scatter(
+        &self,
+        movie: &Movie,
+        request: &Request,
+        space: &CoefficientSpace,
+    ) -> Result<Option<Scatter>, Error> {
+        if request.noise.velocity.is_some() {
+            return Ok(None);
+        }
+        let objective = self.objective(movie, &request.structure, space);
+        let at = &self.fit.parameters;
+        let placed = objective.place(at)?;
+        let components = objective.explained_components(&placed, at);
+        let equations = objective.linearise_at(&placed, at, Share::Known)?;
+        let own = OfSpring { objective, equations, components, known: request.noise };
+        let interval = movie.interval();
+        let least = 2.0 * (LEAST_SHARE / interval).ln();
+        let log_k = own.likeliest()?.max(least);
+        let Likelihood { criterion, variance } = own.plain(log_k)?;
+        let tried: Vec<[f64; 2]> = match objective.memory {
+            Some(_) => MORE.iter().flat_map(|times| MORE.map(|news| [*times, news])).collect(),
+            None => vec![[1.0; 2]],
+        };
+        let values = own.equations.each(&tried, |more| Ok(own.at(least, *more)?.criterion))?;
+        let without = values.into_iter().fold(f64::INFINITY, f64::min);
+        let evidence = (without - criterion).max(0.0);
+        let diffusion = |log_k: f64| Ok::<f64, Error>(0.5 * own.plain(log_k)?.variance * interval);
+        let ends = [
+            if evidence < LESS_LIKELY { 0.0 } else { diffusion(own.end(log_k, criterion, -SPACING)?)? },
+            diffusion(own.end(log_k, criterion, SPACING)?)?,
+        ];
+        Ok(Some(Scatter {
+            diffusion: 0.5 * variance * interval,
+            interval: ends,
+            speed: (2.0 * variance).sqrt(),
+            evidence,
+        }))
+    }
+}
