@@ -5,7 +5,7 @@ use claims::differing::Differing;
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 use voronudge_infer::discover::{Discovery, Search, Verdict, discover};
-use voronudge_infer::{Inference, Observation, Quantity, infer};
+use voronudge_infer::{Inference, Observation, Quantity, Unkept, infer};
 use voronudge_model::CellParameter::{self, Chirality, PreferredArea, PreferredPerimeter};
 
 const NOISE: Noise = Noise { position: 0.01, velocity: 0.05 };
@@ -63,7 +63,8 @@ fn cells_that_are_alike_are_not_found_to_differ() {
 
 /// The search for what is missing, without being told that cells may differ.
 fn searched(tissue: &Differing, frames: &[Observation]) -> Discovery {
-    discover(frames, &Search::new(tissue.request(&[])), &mut |_| ControlFlow::Continue(())).unwrap()
+    discover(frames, &Search::new(tissue.request(&[])), &mut Unkept, &mut |_| ControlFlow::Continue(()))
+        .unwrap()
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! Progress with time left on stderr, and Ctrl-C.
 
 use crate::arguments::Verbosity;
+use crate::failure::Failure;
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -73,6 +74,11 @@ impl Progress {
         } else {
             ControlFlow::Continue(())
         }
+    }
+
+    /// Ends a command that the user wants to stop, where nothing is left but to write.
+    pub fn heed(&self) -> Result<(), Failure> {
+        if self.interrupted.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
     }
 
     /// Reports how far a fit has come; tells whether to go on.

@@ -52,6 +52,10 @@ impl Run {
         self.seed = seed;
     }
 
+    pub fn seed(&self) -> u64 {
+        self.seed
+    }
+
     pub fn warn(&mut self, text: impl Into<String>) {
         let text = text.into();
         if self.verbosity == Verbosity::Normal {

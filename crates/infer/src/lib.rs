@@ -40,6 +40,7 @@ mod position_rows;
 mod predictive;
 mod quadratic;
 mod quantity;
+mod replicates;
 mod request;
 mod result;
 mod robust;
@@ -72,6 +73,7 @@ pub use measurement::{Determined, KnownMeasurement, Measurement, RivalWindow, me
 pub use noise::{KnownNoise, NoiseLevels, NoiseSource};
 pub use observation::{Observation, Velocities};
 pub use quantity::Quantity;
+pub use replicates::{Keeper, Known, Unkept};
 pub use request::{Activity, CrossValidation, Drives, Examination, Loss, Method, Request};
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};
 pub use scale::Scale;

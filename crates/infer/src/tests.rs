@@ -2,9 +2,10 @@
 
 use crate::sample::{COEFFICIENTS, flow, observation};
 use crate::{
-    Constraints, CrossValidation, Error, Inference, KnownNoise, Loss, Method, Observation, Prior, Quantity,
-    Request, Window, WindowKind, bootstrap, infer, landscape, profile,
+    Constraints, CrossValidation, Error, Inference, Keeper, Known, KnownNoise, Loss, Method, Observation,
+    Prior, Quantity, Request, Unkept, Window, WindowKind, bootstrap, infer, landscape, profile,
 };
+use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 
 fn request(constraints: Constraints) -> Request {
@@ -95,13 +96,52 @@ fn refitted_landscapes_lie_below_those_with_fixed_nudges() {
     assert!(lower >= 24, "{lower}");
 }
 
+/// Keeps replicates in memory.
+#[derive(Default)]
+struct Kept {
+    made: BTreeMap<usize, Option<Vec<f64>>>,
+    news: usize,
+    /// Which half is made here.
+    of_two: Option<usize>,
+}
+
+impl Keeper for Kept {
+    fn begin(&mut self, _: &Inference, _: usize) -> ControlFlow<()> {
+        ControlFlow::Continue(())
+    }
+
+    fn known(&self, index: usize) -> Known {
+        match self.made.get(&index) {
+            Some(outcome) => Known::Made(outcome.clone()),
+            None if self.of_two.is_some_and(|half| index % 2 != half) => Known::Elsewhere,
+            None => Known::Missing,
+        }
+    }
+
+    fn keep(&mut self, index: usize, outcome: Option<&[f64]>) -> ControlFlow<()> {
+        self.news += 1;
+        self.made.insert(index, outcome.map(<[f64]>::to_vec));
+        ControlFlow::Continue(())
+    }
+}
+
 #[test]
 fn the_bootstrap_spreads_like_the_standard_error_and_repeats() {
     let frames = [observation(0.02, 0.05, 7)];
     let request = request(Constraints::fixed([(Quantity::AreaElasticity, COEFFICIENTS[0])]));
     let result = fit(&frames, &request);
-    let again = || bootstrap(&frames, &request, &result, 60, &mut |_| ControlFlow::Continue(())).unwrap();
-    let (first, second) = (again(), again());
+    let mut kept = Kept::default();
+    let again =
+        |kept: &mut Kept| bootstrap(&frames, &request, &result, 60, kept, &mut |_| ControlFlow::Continue(()));
+    // Elsewhere the even ones are made, here the others.
+    kept.of_two = Some(0);
+    assert_eq!(again(&mut kept), Err(Error::Interrupted));
+    assert_eq!(kept.made.keys().copied().collect::<Vec<_>>(), (0..60).step_by(2).collect::<Vec<_>>());
+    kept = Kept { made: kept.made, ..Kept::default() };
+    let first = again(&mut kept).unwrap();
+    assert_eq!((kept.news, kept.made.len()), (30, 60));
+    let second =
+        bootstrap(&frames, &request, &result, 60, &mut Unkept, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(first, second);
     assert_eq!(first.failed, 0);
     let values = first.values(Quantity::ChiralCoefficient);

@@ -7,7 +7,7 @@ use claims::differing::Differing;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_infer::discover::{Discovery, Search, discover};
-use voronudge_infer::{Quantity, infer};
+use voronudge_infer::{Quantity, Unkept, infer};
 use voronudge_model::CellParameter::{self, AreaElasticity, Chirality, PreferredArea, PreferredPerimeter};
 
 const CELLS: usize = 324;
@@ -89,7 +89,9 @@ fn searched(
     let tissue = Differing::new(cells, seed, frames, spreads)?;
     let measured = tissue.measured(NOISE, seed)?;
     let begun = std::time::Instant::now();
-    let found = discover(&measured, &Search::new(tissue.request(&[])), &mut |_| ControlFlow::Continue(()))?;
+    let found = discover(&measured, &Search::new(tissue.request(&[])), &mut Unkept, &mut |_| {
+        ControlFlow::Continue(())
+    })?;
     Ok((found, begun.elapsed().as_secs_f64()))
 }
 

@@ -3,10 +3,12 @@
 mod dataset;
 mod effects;
 mod parameters;
+mod shard;
 
 pub(crate) use dataset::DataSetArguments;
 pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
 pub(crate) use parameters::ParameterArguments;
+pub(crate) use shard::Shard;
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
@@ -49,6 +51,11 @@ pub(crate) struct CommonArguments {
 }
 
 impl CommonArguments {
+    /// The same with another seed.
+    pub fn with_seed(self, seed: u64) -> Self {
+        Self { seed, ..self }
+    }
+
     pub fn verbosity(&self) -> Verbosity {
         if self.quiet { Verbosity::Quiet } else { Verbosity::Normal }
     }

@@ -14,5 +14,6 @@ pub(crate) mod moduli;
 pub(crate) mod observe;
 pub(crate) mod phase_diagram;
 pub(crate) mod phase_diffusion;
+mod replicates;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

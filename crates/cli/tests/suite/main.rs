@@ -28,6 +28,7 @@ mod phase_diagrams;
 mod phase_diffusions;
 mod program;
 mod refusal;
+mod replicates;
 mod resumption;
 mod scratch;
 mod shape_imports;

@@ -34,9 +34,10 @@ pub use result::*;
 pub use transfer::{Absent, Transfer};
 
 use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
+use crate::replicates::Keeper;
 use crate::search::Watch;
 use crate::tracks::Movie;
-use crate::{CrossValidation, Error, Observation};
+use crate::{CrossValidation, Error, Observation, Unkept};
 use candidate::{candidates, candidates_of_tracks};
 use classes::{Selection, selection};
 use evidence::Evidence;
@@ -52,13 +53,19 @@ const MOST_BLOCKS: usize = 3;
 
 /// Fits the base model to snapshots, finds what it leaves unexplained, and adds the effects that explain it.
 ///
-/// Lengths in units of ℓ₀. `observe` is told of progress and may stop the search.
+/// Lengths in units of ℓ₀. `keeper` keeps what fits to synthetic data come to. `observe` is told of progress and may stop the search.
 ///
 /// # Errors
-/// [`Error`] if the base model cannot be fitted or the caller stops.
-pub fn discover(frames: &[Observation], search: &Search, observe: Observer<'_>) -> Result<Discovery, Error> {
+/// [`Error`] if the base model cannot be fitted, the caller stops, or some of the synthetic data are fitted elsewhere.
+pub fn discover(
+    frames: &[Observation],
+    search: &Search,
+    keeper: &mut dyn Keeper,
+    observe: Observer<'_>,
+) -> Result<Discovery, Error> {
     let offered = candidates(frames, search);
-    searched(Setting { frames, movie: None, search, candidates: &offered }, &mut Watch { observe })
+    let setting = Setting { frames, movie: None, search, candidates: &offered };
+    searched(setting, keeper, &mut Watch { observe })
 }
 
 /// The same for cells followed through time: their tracks are fitted themselves, and the polarity of cells that crawl is a candidate, an
@@ -70,10 +77,14 @@ pub fn discover_in_tracks(movie: &Movie, search: &Search, observe: Observer<'_>)
     let frames = movie.observations()?;
     let offered = candidates_of_tracks(&frames, &search.candidates);
     let setting = Setting { frames: &frames, movie: Some(movie), search, candidates: &offered };
-    searched(setting, &mut Watch { observe })
+    searched(setting, &mut Unkept, &mut Watch { observe })
 }
 
-fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Error> {
+fn searched(
+    setting: Setting<'_>,
+    keeper: &mut dyn Keeper,
+    watch: &mut Watch<'_>,
+) -> Result<Discovery, Error> {
     let Setting { frames, search, .. } = setting;
     let base = setting.fit(Vec::new(), None, watch)?;
     let split = Split::new(frames, blocks(frames));
@@ -84,7 +95,7 @@ fn searched(setting: Setting<'_>, watch: &mut Watch<'_>) -> Result<Discovery, Er
     if testable {
         grown = growth.grow(watch)?;
         if let Some(unconfirmed) = grown {
-            null_sets = null_data::searched(&setting, &base, &unconfirmed.tested, watch)?;
+            null_sets = null_data::searched(&setting, &base, &unconfirmed.tested, keeper, watch)?;
             grown = growth.confirm(unconfirmed, &null_sets, watch)?;
         }
     }

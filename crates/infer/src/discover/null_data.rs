@@ -1,12 +1,12 @@
 //! Synthetic data without an effect, searched like the data.
 
 use super::classes::Tested;
-use super::result::NullSets;
+use super::result::{NullSets, Observer};
 use super::steps::{Model, Setting};
+use crate::replicates::{Keeper, Series};
 use crate::search::Watch;
 use crate::uncertainty::synthetic;
 use crate::{Error, infer};
-use std::ops::ControlFlow;
 
 /// Sets refitted if nothing else is asked for: a result that none of 20 reaches has p = 1/21.
 const SETS: usize = 20;
@@ -22,6 +22,7 @@ pub(super) fn searched(
     setting: &Setting<'_>,
     base: &Model,
     tested: &[Tested],
+    keeper: &mut dyn Keeper,
     watch: &mut Watch<'_>,
 ) -> Result<NullSets, Error> {
     let in_doubt = tested.iter().any(|own| own.adjusted_p >= CLEAR);
@@ -32,20 +33,27 @@ pub(super) fn searched(
         None if in_doubt && base.inference.used <= LARGE => SETS,
         None => 0,
     };
-    // Apart from the replicates of a bootstrap with the same seed.
-    let numbers: Vec<u64> = (1..=count as u64).map(|k| 1_000_000 + k).collect();
-    let smallest =
-        watch.each("null data", &numbers, 1.0, |number| Ok(smallest_p(setting, base, *number).ok()))?;
-    let (seeds, mut smallest_p): (Vec<u64>, Vec<f64>) =
-        numbers.into_iter().zip(smallest).filter_map(|(seed, p)| Some((seed, p?))).unzip();
+    let series = Series { stage: "null data", count, made_from: &base.inference };
+    let smallest = series.make(
+        |index, observe| Ok([smallest_p(setting, base, number(index), observe)?]),
+        keeper,
+        watch,
+    )?;
+    let known = smallest.into_iter().enumerate().filter_map(|(index, p)| Some((number(index), p?[0])));
+    let (seeds, mut smallest_p): (Vec<u64>, Vec<f64>) = known.unzip();
     smallest_p.sort_unstable_by(f64::total_cmp);
     Ok(NullSets { smallest_p, seeds })
 }
 
-fn smallest_p(setting: &Setting<'_>, base: &Model, number: u64) -> Result<f64, Error> {
+/// The number of a set, apart from those of the replicates of a bootstrap with the same seed.
+fn number(index: usize) -> u64 {
+    1_000_001 + index as u64
+}
+
+fn smallest_p(setting: &Setting<'_>, base: &Model, number: u64, observe: Observer<'_>) -> Result<f64, Error> {
     let (frames, request) =
         synthetic(setting.frames, &base.request, &base.inference, base.inference.noise.velocity, number)?;
-    let inference = infer(&frames, &request, &mut |_| ControlFlow::Continue(()))?;
+    let inference = infer(&frames, &request, observe)?;
     let setting = Setting { frames: &frames, ..*setting };
     let model = setting.model(Vec::new(), request, inference)?;
     let projected = model.lineup.beyond(&[]);

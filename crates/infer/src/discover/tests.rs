@@ -7,7 +7,7 @@ use crate::coefficients::PREFERRED_AREA;
 use crate::sample::observation;
 use crate::search::Watch;
 use crate::tracks::sample::{Filmed, TRUTH};
-use crate::{Constraints, CrossValidation, KnownNoise, Observation, Quantity, Request};
+use crate::{Constraints, CrossValidation, KnownNoise, Observation, Quantity, Request, Unkept};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
@@ -35,14 +35,14 @@ fn drifting(seed: u64) -> Observation {
 fn a_drift_is_named_and_its_absence_is_not() {
     let search = search(&["drift", "alpha_area", "size_friction"]);
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
-    let found = discover(&[drifting(8)], &search, &mut silent).unwrap();
+    let found = discover(&[drifting(8)], &search, &mut Unkept, &mut silent).unwrap();
     assert_eq!(found.verdict, Verdict::Attributed);
     assert_eq!(found.selected.len(), 1);
     let drift = &found.selected[0];
     assert_eq!(drift.effect.id, "drift");
     assert!(drift.coefficients[0].covers(0.3) && drift.coefficients[1].covers(-0.2), "{drift:?}");
     assert!(found.likelihood_gain.is_some_and(|[gain, error]| gain > error));
-    let nothing = discover(&[observation(0.02, 0.05, 8)], &search, &mut silent).unwrap();
+    let nothing = discover(&[observation(0.02, 0.05, 8)], &search, &mut Unkept, &mut silent).unwrap();
     assert_eq!(nothing.verdict, Verdict::NothingMissing);
     assert!(nothing.selected.is_empty());
 }

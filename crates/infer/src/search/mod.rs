@@ -24,7 +24,7 @@ use rayon::prelude::*;
 use std::ops::ControlFlow;
 
 /// Tasks at once between two reports of progress, whatever the number of threads.
-const AT_ONCE: usize = 8;
+pub(crate) const AT_ONCE: usize = 8;
 
 /// Relative decrease of the objective that counts as none.
 pub(crate) const TOLERANCE: f64 = 1e-5;

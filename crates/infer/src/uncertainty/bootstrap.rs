@@ -1,14 +1,15 @@
 //! Parametric bootstrap: what the same procedure makes of data that the fit itself could have made.
 
+use crate::discover::Observer;
+use crate::replicates::{Keeper, Series};
 use crate::search::Watch;
 use crate::{
-    CrossValidation, Error, Examination, Flow, Inference, Observation, Prior, Progress, Quantity, Request,
-    Velocities, infer,
+    CrossValidation, Error, Examination, Flow, Inference, Observation, Prior, Quantity, Request, Velocities,
+    infer,
 };
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
-use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 
 /// Estimates from synthetic data sets.
@@ -45,21 +46,22 @@ impl Bootstrap {
 /// Refits synthetic data: cells at the nudged positions that move as predicted, measured with the noise of the fit.
 ///
 /// Noise levels that were estimated are estimated anew each time. Replicates run in parallel; each has a seed of its own
-/// made from the request's, so results do not depend on the number of threads.
+/// made from the request's, so results depend neither on the number of threads nor on what `keeper` knows of them.
 ///
 /// # Errors
-/// [`Error::Interrupted`].
+/// [`Error::Interrupted`], also where some replicates are made elsewhere.
 pub fn bootstrap(
     frames: &[Observation],
     request: &Request,
     result: &Inference,
     replicates: usize,
-    observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+    keeper: &mut dyn Keeper,
+    observe: Observer<'_>,
 ) -> Result<Bootstrap, Error> {
-    let numbers: Vec<u64> = (1..=replicates as u64).collect();
-    let objective = result.objective / result.expected_objective;
-    let refit = |number: &u64| Ok(replicate(frames, request, result, *number).ok());
-    let fitted = Watch { observe }.each("bootstrap", &numbers, objective, refit)?;
+    let series = Series { stage: "bootstrap", count: replicates, made_from: result };
+    let refit =
+        |index: usize, observe: Observer<'_>| replicate(frames, request, result, index as u64 + 1, observe);
+    let fitted = series.make(refit, keeper, &mut Watch { observe })?;
     let failed = fitted.iter().filter(|fit| fit.is_none()).count();
     Ok(Bootstrap { replicates: fitted.into_iter().flatten().collect(), failed })
 }
@@ -69,11 +71,12 @@ fn replicate(
     request: &Request,
     result: &Inference,
     number: u64,
+    observe: Observer<'_>,
 ) -> Result<[f64; 5], Error> {
     // Where the model misses more than the noise explains, the misfit counts as noise of the velocities.
     let scatter = result.noise.velocity * result.excess().sqrt();
     let (synthetic, request) = synthetic(frames, request, result, scatter, number)?;
-    let refit = infer(&synthetic, &request, &mut |_| ControlFlow::Continue(()))?;
+    let refit = infer(&synthetic, &request, observe)?;
     Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))
 }
 

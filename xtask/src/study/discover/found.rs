@@ -6,7 +6,7 @@ use std::fmt;
 use std::ops::ControlFlow;
 use std::time::Instant;
 use voronudge_infer::discover::{Discovery, Search, Verdict, discover};
-use voronudge_infer::{Constraints, CrossValidation, Estimate, KnownNoise, Request, infer};
+use voronudge_infer::{Constraints, CrossValidation, Estimate, KnownNoise, Request, Unkept, infer};
 use voronudge_model::effect::Kind;
 
 /// What a search came to.
@@ -39,7 +39,7 @@ impl Found {
         let fit = Request { noise: told, cross_validation, ..Request::new(Constraints::default()) };
         let search = Search { null_sets, identities: sample.identities.clone(), ..Search::new(fit.clone()) };
         let begun = Instant::now();
-        let discovery = discover(&sample.frames, &search, &mut |_| ControlFlow::Continue(()))?;
+        let discovery = discover(&sample.frames, &search, &mut Unkept, &mut |_| ControlFlow::Continue(()))?;
         let seconds = begun.elapsed().as_secs_f64();
         let coefficient = match sample.added.as_slice() {
             [added] => {

@@ -1,6 +1,6 @@
 //! What is searched for, and how.
 
-use crate::arguments::effect;
+use crate::arguments::{Shard, effect};
 use crate::failure::Failure;
 use clap::Args;
 use voronudge_infer::Request;
@@ -55,6 +55,15 @@ impl SearchOptions {
                 .with_hint("name more under --effects, or fewer under --without"));
         }
         Ok(candidates)
+    }
+
+    /// Refuses to share nothing.
+    pub fn check(&self, shard: Option<Shard>) -> Result<(), Failure> {
+        if shard.is_none() || self.null_sets != Some(0) {
+            return Ok(());
+        }
+        Err(Failure::new("--shard shares null sets, but --null-sets is 0")
+            .with_hint("leave out --shard, or give --null-sets a number"))
     }
 
     /// The search for `candidates` after a fit.

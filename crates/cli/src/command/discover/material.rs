@@ -5,6 +5,7 @@ use super::history::History;
 use super::measured::Findings;
 use super::surroundings::{self, ExternalMap};
 use crate::command::fit::{Prepared, PreparedTracks};
+use crate::command::replicates::Kept;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
@@ -62,15 +63,21 @@ impl Asked<'_> {
 
     /// Searches what was found out about the measurement by the base model, and, if an effect that was found shows it in another light, once
     /// more. What predicts velocities held out better is kept.
-    pub fn searched(&self, raw: &Raw, data: Data<'_>, progress: &mut Progress) -> Result<Searched, Failure> {
+    pub fn searched(
+        &self,
+        raw: &Raw,
+        data: Data<'_>,
+        kept: &mut Kept,
+        progress: &mut Progress,
+    ) -> Result<Searched, Failure> {
         let place = |error: Error| raw.prepared.place(error, &self.arguments.snapshots);
         let base = &raw.prepared.request.structure;
         let material = self.understood(raw, base, progress).map_err(place)?;
-        let found = self.search(raw, self.surrounded(raw, data, material)?, progress)?;
+        let found = self.search(raw, self.surrounded(raw, data, material)?, kept, progress)?;
         let Some(structure) = extended(raw, &found.discovery) else { return Ok(found) };
         match self.understood(raw, &structure, progress) {
             Ok(again) if !again.is_measured_like(&found.material) => {
-                let again = self.search(raw, self.surrounded(raw, data, again)?, progress)?;
+                let again = self.search(raw, self.surrounded(raw, data, again)?, kept, progress)?;
                 Ok(if again.predicts_better_than(&found) { again } else { found })
             }
             Err(Error::Interrupted) => Err(place(Error::Interrupted)),
@@ -112,7 +119,13 @@ impl Asked<'_> {
         Ok(material)
     }
 
-    fn search(&self, raw: &Raw, material: Material, progress: &mut Progress) -> Result<Searched, Failure> {
+    fn search(
+        &self,
+        raw: &Raw,
+        material: Material,
+        kept: &mut Kept,
+        progress: &mut Progress,
+    ) -> Result<Searched, Failure> {
         let Material { prepared, tracks } = &material;
         let search = Search {
             identities: identities(prepared),
@@ -122,7 +135,7 @@ impl Asked<'_> {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
         let searched: Result<Discovery, Error> = match tracks {
             Some(tracks) => discover_in_tracks(&tracks.movie, &search, &mut observe),
-            None => discover(&prepared.observations, &search, &mut observe),
+            None => discover(&prepared.observations, &search, kept, &mut observe),
         };
         let discovery = searched.map_err(|error| raw.prepared.place(error, &self.arguments.snapshots))?;
         Ok(Searched { material, search, discovery })

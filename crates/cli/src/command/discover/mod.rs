@@ -19,6 +19,7 @@ use super::fit::{
     ConstraintArguments, Measured, Prepared, PreparedTracks, Question, SearchArguments, SnapshotArguments,
     arrays, browser, latent, outcome, spreads, words,
 };
+use super::replicates::{Course, Kept, ReplicateArguments};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -74,15 +75,37 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     method: SearchArguments,
     #[command(flatten)]
+    replicates: ReplicateArguments,
+    #[command(flatten)]
     common: CommonArguments,
 }
 
-pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
+impl Arguments {
+    /// Follows the command line of parts with what these have made.
+    pub fn merged(
+        self,
+        common: impl FnOnce(CommonArguments) -> CommonArguments,
+        replicates: ReplicateArguments,
+        course: Course,
+    ) -> Result<Answer, Failure> {
+        let common = common(self.common);
+        follow(Self { open_report: false, replicates, common, ..self }, course)
+    }
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    follow(arguments, Course::typed())
+}
+
+fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     let mut run = Run::begin("discover", &arguments.common)?;
+    // From here on Ctrl-C ends the command where nothing is left behind.
+    let mut progress = Progress::new(arguments.common.verbosity());
     arguments.snapshots.check()?;
     arguments.latent.check()?;
     let constraints = arguments.known.constraints()?;
     let candidates = arguments.options.candidates()?;
+    arguments.options.check(arguments.replicates.shard)?;
     let mut data = arguments.snapshots.data.load()?;
     let map = arguments.field.load(&mut data)?;
     arguments.check.possible(&arguments, &data, arguments.difference)?;
@@ -90,11 +113,17 @@ pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
     let snapshots = &arguments.snapshots;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
-    let mut progress = Progress::new(arguments.common.verbosity());
     let raw = asked.raw(&data, &mut run)?;
     let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), &mut run)?;
-    let searched = asked.searched(&raw, (&data, map.as_ref()), &mut progress);
-    let searched = searched.inspect_err(|_| progress.finish())?;
+    let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
+    let mut kept = Kept::open(&folder, ("discover", "null sets"), own, (&run, &data))?;
+    let searched = asked.searched(&raw, (&data, map.as_ref()), &mut kept, &mut progress);
+    if kept.is_part() {
+        progress.finish();
+        return kept.finish_part(searched.map(|_| ()), (&mut run, out), &progress);
+    }
+    let searched = searched.inspect_err(|_| progress.finish()).map_err(|failure| kept.failed(failure))?;
+    kept.caution(&mut run);
     let units = outcome::units(&data);
     let forecast = match &coming {
         Some(coming) => coming.forecast(&asked, (&data, &units), &searched, &mut run, &mut progress),
@@ -108,9 +137,9 @@ pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
         &mut progress,
     );
     progress.finish();
-    let compared = compared?;
-    let (forecast, Searched { material: Material { prepared, tracks }, search, discovery }) =
-        (forecast?, searched);
+    let compared = compared.map_err(|failure| kept.failed(failure))?;
+    let forecast = forecast.map_err(|failure| kept.failed(failure))?;
+    let Searched { material: Material { prepared, tracks }, search, discovery } = searched;
     prepared.caution(&mut run);
     let predictors = raw.past.and_then(|past| past.predictors);
     let last = &discovery.after.inference;
@@ -144,8 +173,9 @@ pub(crate) fn run(mut arguments: Arguments) -> Result<Answer, Failure> {
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report)?)?;
-    let folder = out.path().to_owned();
+    progress.heed().map_err(|failure| kept.failed(failure))?;
     run.finish(Some(out), &json, &summary::summary(&report, &folder))?;
+    kept.discard()?;
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }
@@ -172,6 +202,7 @@ impl Asked<'_> {
             (arguments.given_difference.is_some(), "--given-difference"),
             (snapshots.background.is_some(), "--background"),
             (arguments.options.null_sets.is_some_and(|count| count > 0), "--null-sets"),
+            (arguments.replicates.shard.is_some(), "--shard"),
             (arguments.predictions.is_asked(), "--predict"),
             (arguments.field.is_asked(), "--field"),
         ];

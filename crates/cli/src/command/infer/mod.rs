@@ -14,6 +14,7 @@ use super::fit::{
     ConstraintArguments, Measured, PreparedTracks, Question, SnapshotArguments, arrays, browser, latent,
     words,
 };
+use super::replicates::{Course, Kept, ReplicateArguments};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -66,10 +67,23 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     uncertainty: UncertaintyArguments,
     #[command(flatten)]
+    replicates: ReplicateArguments,
+    #[command(flatten)]
     common: CommonArguments,
 }
 
 impl Arguments {
+    /// Follows the command line of parts with what these have made.
+    pub fn merged(
+        self,
+        common: impl FnOnce(CommonArguments) -> CommonArguments,
+        replicates: ReplicateArguments,
+        course: Course,
+    ) -> Result<Answer, Failure> {
+        let common = common(self.common);
+        follow(Self { open_report: false, replicates, common, ..self }, course)
+    }
+
     /// Refuses what is for velocities, where tracks are fitted.
     fn check_tracks(&self) -> Result<(), Failure> {
         let asked = [
@@ -91,12 +105,18 @@ impl Arguments {
 }
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    follow(arguments, Course::typed())
+}
+
+fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     let mut run = Run::begin("infer", &arguments.common)?;
+    // From here on Ctrl-C ends the command where nothing is left behind.
+    let mut progress = Progress::new(arguments.common.verbosity());
     arguments.snapshots.check()?;
     arguments.latent.check()?;
     let constraints = arguments.known.constraints()?;
     let method = arguments.method.method()?;
-    arguments.uncertainty.check(&constraints)?;
+    arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
     let data = arguments.snapshots.data.load()?;
     let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let velocities = Measured::of_tracks(&arguments.snapshots, &data, arguments.difference)?;
@@ -129,7 +149,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
-    let mut progress = Progress::new(arguments.common.verbosity());
+    let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
+    let mut kept = Kept::open(&folder, ("infer", "replicates"), own, (&run, &data))?;
     let understood = arguments.latent.understand(true, movie.as_mut(), &mut prepared, &mut progress);
     prepared.caution(&mut run);
     let fitted = understood.and_then(|()| {
@@ -143,11 +164,16 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
     });
     let answered = fitted.and_then(|(result, tracked)| {
-        let answers = arguments.uncertainty.ask(&prepared, &result, &mut progress)?;
+        let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
         Ok((result, tracked, answers))
     });
     progress.finish();
-    let (result, tracked, answers) = answered.map_err(|error| prepared.place(error, &arguments.snapshots))?;
+    let answered = answered.map_err(|error| prepared.place(error, &arguments.snapshots));
+    if kept.is_part() {
+        return kept.finish_part(answered.map(|_| ()), (&mut run, out), &progress);
+    }
+    let (result, tracked, answers) = answered.map_err(|failure| kept.failed(failure))?;
+    kept.caution(&mut run);
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
@@ -163,9 +189,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;
-    let folder = out.path().to_owned();
     let summary = summary::summary(&report, &folder);
+    progress.heed().map_err(|failure| kept.failed(failure))?;
     run.finish(Some(out), &json, &summary)?;
+    kept.discard()?;
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }

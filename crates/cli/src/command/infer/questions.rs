@@ -1,6 +1,8 @@
 //! What is asked beyond the fit: profiles, landscapes, the bootstrap.
 
+use crate::arguments::Shard;
 use crate::command::fit::{Prepared, quantity};
+use crate::command::replicates::Kept;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use clap::Args;
@@ -63,7 +65,11 @@ fn varies(space: &CoefficientSpace, quantity: Quantity) -> bool {
 
 impl UncertaintyArguments {
     /// Refuses questions that constraints leave no room for, before the fit.
-    pub fn check(&self, constraints: &Constraints) -> Result<(), Failure> {
+    pub fn check(&self, constraints: &Constraints, shard: Option<Shard>) -> Result<(), Failure> {
+        if shard.is_some() && self.bootstrap == 0 {
+            return Err(Failure::new("--shard shares the replicates of --bootstrap, but none are asked for")
+                .with_hint("leave out --shard, or add --bootstrap N"));
+        }
         let space = CoefficientSpace::new(constraints)?;
         let refuse = |place: &str, held: Quantity| {
             Err(Failure::new(format!("{place}: {} is held", held.name()))
@@ -101,9 +107,17 @@ impl UncertaintyArguments {
         &self,
         prepared: &Prepared,
         result: &Inference,
+        kept: &mut Kept,
         progress: &mut Progress,
     ) -> Result<Answers, Error> {
         let (frames, request, points) = (&prepared.observations, &prepared.request, self.points as usize);
+        // First what is kept and shared.
+        let bootstrap = match self.bootstrap {
+            0 => None,
+            count => {
+                Some(bootstrap(frames, request, result, count, kept, &mut |state| progress.tell(state))?)
+            }
+        };
         let mut profiles = Vec::new();
         for quantity in &self.profile {
             let stage = format!("profile {}", quantity.name());
@@ -118,10 +132,6 @@ impl UncertaintyArguments {
                 progress.step(&stage, state.step.0, state.step.1)
             })?);
         }
-        let bootstrap = match self.bootstrap {
-            0 => None,
-            count => Some(bootstrap(frames, request, result, count, &mut |state| progress.tell(state))?),
-        };
         Ok(Answers { profiles, landscapes, bootstrap })
     }
 }

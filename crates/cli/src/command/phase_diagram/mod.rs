@@ -12,13 +12,13 @@ pub(crate) use outcome::finish;
 pub(crate) use scaling::ScalingArguments;
 
 use crate::Answer;
-use crate::arguments::CommonArguments;
+use crate::arguments::{CommonArguments, Shard};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
 use points::{Header, Points};
-use request::{GridArguments, Request, Shard};
+use request::{GridArguments, Request};
 use std::collections::BTreeSet;
 use std::path::Path;
 use voronudge_io::{Journal, Recording};
@@ -92,7 +92,7 @@ fn open(out: &Path, header: Header, resume: bool) -> Result<(Journal, Points), F
         return Ok((journal, Points { header, records: Vec::new() }));
     };
     if !resume {
-        return Err(Failure::new(format!("{} holds a diagram that was interrupted", place()))
+        return Err(Failure::new(format!("{} holds a run that was interrupted", place()))
             .with_hint("add --resume to go on with it, or remove its folder .voronudge-run"));
     }
     let points = Points::parse(lines.iter().map(String::as_str), place())?;

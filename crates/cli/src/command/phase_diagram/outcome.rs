@@ -2,8 +2,9 @@
 
 use super::diagram::{Diagram, Field};
 use super::points::{FILE, Points};
-use super::request::{Quantity, Request, Shard};
+use super::request::{Quantity, Request};
 use super::scaling::{Collapse, Scaling};
+use crate::arguments::Shard;
 use crate::failure::Failure;
 use crate::run::Run;
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 //! The runs of a diagram as a file: a header, then a line for each run, in order.
 
 use super::point::Record;
-use super::request::{Request, Shard};
+use super::request::Request;
+use crate::arguments::Shard;
 use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;

@@ -1,5 +1,6 @@
 //! What a diagram is asked for.
 
+use crate::arguments::Shard;
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
@@ -249,7 +250,7 @@ impl Request {
     pub fn jobs(&self, shard: Shard) -> Vec<Job> {
         let all = (0..self.points())
             .flat_map(|point| (0..self.replicas).map(move |replica| Job { point, replica }));
-        all.enumerate().filter(|(index, _)| index % shard.of == shard.part - 1).map(|(_, job)| job).collect()
+        all.enumerate().filter(|(index, _)| shard.has(*index)).map(|(_, job)| job).collect()
     }
 
     /// The model at a point, with K_P and the mean area as units.
@@ -277,28 +278,5 @@ impl Request {
 
     pub fn seed(&self, job: Job) -> u64 {
         seed_of_run(self.seed, job.point as u64, job.replica as u64)
-    }
-}
-
-/// Part `part` of `of`, from one.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub(crate) struct Shard {
-    pub part: usize,
-    pub of: usize,
-}
-
-impl Shard {
-    pub const WHOLE: Self = Self { part: 1, of: 1 };
-}
-
-impl std::str::FromStr for Shard {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let parts = text.split_once('/').and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
-        match parts {
-            Some((part, of)) if 1 <= part && part <= of => Ok(Self { part, of }),
-            _ => Err("a shard is written 1/4, 2/4, 3/4 or 4/4".into()),
-        }
     }
 }

@@ -1,0 +1,44 @@
+//! Fits to synthetic data that are kept: a run that was cut off goes on, and machines share them. These are the null sets of `discover` and the
+//! bootstrap of `infer`.
+//!
+//! | file | what |
+//! |---|---|
+//! | `header` | what a run was asked for, and in what another differs |
+//! | `lines` | what the fits came to, as lines of a journal or of a part |
+//! | `kept` | the journal of a run, and the part that it writes |
+
+mod header;
+mod kept;
+mod lines;
+
+pub(crate) use header::CommandLine;
+pub(crate) use kept::Kept;
+pub(crate) use lines::{Agreement, FILE, Made};
+
+use crate::arguments::Shard;
+use clap::Args;
+
+#[derive(Debug, Default, Args)]
+#[command(next_help_heading = "General")]
+pub(crate) struct ReplicateArguments {
+    /// Go on with the run that was interrupted in --out; begin if there is none.
+    #[arg(long)]
+    pub resume: bool,
+    /// Fit only a part of the synthetic data, such as 1/4, and nothing that comes after; `merge` puts all parts together.
+    #[arg(long, value_name = "PART/OF")]
+    pub shard: Option<Shard>,
+}
+
+/// A command line that is followed, with what is known of its fits to synthetic data.
+pub(crate) struct Course {
+    pub line: CommandLine,
+    /// Made elsewhere, if the command line is that of parts.
+    pub made: Option<Made>,
+}
+
+impl Course {
+    /// As typed.
+    pub fn typed() -> Self {
+        Self { line: CommandLine::typed(), made: None }
+    }
+}
