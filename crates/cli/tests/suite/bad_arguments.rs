@@ -107,7 +107,10 @@ fn impossible_simulations_are_refused() {
     assert_line_refused("simulate --dt 0", &["time step is 0"]);
     assert_line_refused("simulate --time -5", &["duration is -5"]);
     assert_line_refused("simulate --alignment 1", &["self-propulsion"]);
-    assert_line_refused("simulate --effect contact_inhibition=1", &["self-propulsion", "polarity"]);
+    assert_line_refused(
+        "simulate --effect contact_inhibition=1",
+        &["--contact-inhibition", "self-propulsion"],
+    );
     assert_line_refused("simulate --free-speed", &["--free-speed", "self-propulsion"]);
     assert_line_refused("simulate --diffusion 0.1 --effect random_motion=0.1", &["--diffusion", "the same"]);
     assert_line_refused("simulate --effect polarity=0.3", &["1 coefficients", "2"]);

@@ -62,21 +62,20 @@ impl DrivingArguments {
         take(effects, "contact_inhibition", [("--contact-inhibition", &mut driving.contact_inhibition)])?;
         take(effects, "velocity_alignment", [("--velocity-alignment", &mut driving.velocity_alignment)])?;
         take(effects, "random_motion", [("--diffusion", &mut driving.diffusion)])?;
-        let turns = [
-            (driving.alignment != 0.0, "--alignment turns"),
-            (driving.contact_inhibition != 0.0, "--contact-inhibition turns"),
-            (driving.velocity_alignment != 0.0, "--velocity-alignment turns"),
-            (free_speed, "--free-speed frees the speed of"),
+        let (turns, frees) = ("turns directions of", "frees the speed of");
+        let asked = [
+            (driving.alignment != 0.0, "--alignment", turns),
+            (driving.contact_inhibition != 0.0, "--contact-inhibition", turns),
+            (driving.velocity_alignment != 0.0, "--velocity-alignment", turns),
+            (free_speed, "--free-speed", frees),
         ];
-        match turns.into_iter().find(|(is_asked, _)| *is_asked && driving.speed == 0.0) {
-            Some((_, what)) => {
-                let option = what.split(' ').next().unwrap_or(what);
-                let what = what
-                    .strip_suffix("turns")
-                    .map_or(what.to_owned(), |own| format!("{own}turns directions of"));
-                Err(Failure::new(format!("{what} self-propulsion, and there is none")).with_hint(format!(
-                    "give --self-propulsion or --effect polarity too, or leave {option} or the effect of that name out"
-                )))
+        match asked.into_iter().find(|(is_asked, ..)| *is_asked && driving.speed == 0.0) {
+            Some((_, option, what)) => {
+                let hint = format!(
+                    "give --self-propulsion or --effect polarity too, or leave {option}, or the effect that says the same, out"
+                );
+                Err(Failure::new(format!("{option} {what} self-propulsion, and there is none"))
+                    .with_hint(hint))
             }
             None => Ok(driving),
         }
