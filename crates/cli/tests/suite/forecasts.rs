@@ -51,7 +51,7 @@ fn cells_that_crawl_are_forecast() {
     let check = &told["check"];
     assert_eq!((&check["frames"], &check["draws"]), (&json!([4, 5, 6, 7, 8, 9, 10, 11]), &json!(99)));
     let [base, extended] = ["base", "extended"].map(|own| check["p"][own].as_f64().unwrap());
-    assert!((base - 0.01).abs() < 1e-12 && extended > 0.02, "{base} {extended}");
+    assert!(base < 0.05 && extended > 0.1, "{base} {extended}");
     assert!(check["quantities"].as_array().unwrap().len() > 10);
     let page = fs::read_to_string(out.file("report.html")).unwrap();
     assert!(page.contains("What the models make of the cells"));

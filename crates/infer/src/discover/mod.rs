@@ -139,11 +139,10 @@ fn searched(
         selected.selected.extend(random.selected(&setting, last)?);
     }
     ranking.settle(&selected);
-    // What moves cells at random predicts nothing.
+    // What single cells have of their own predicts no other cell, and what moves them at random predicts nothing.
     let only_scatters = !explains && !selected.selected.is_empty();
     let proven = match search.fit.cross_validation {
-        _ if differing.is_some() => false,
-        _ if only_scatters => true,
+        _ if differing.is_some() || only_scatters => false,
         CrossValidation::Done => gain.is_some_and(verdict::predicts_better),
         CrossValidation::Skipped => true,
     };

@@ -111,6 +111,9 @@ fn reservation(discovery: &Discovery) -> String {
     if discovery.cells_differ() && discovery.shared().all(|_| discovery.predicts_better()) {
         return "but what single cells have of their own predicts no cell that was not seen, so data held out cannot show it".into();
     }
+    if discovery.selected.iter().all(|own| own.effect.is_random_motion()) {
+        return "but what moves cells at random predicts nothing, so data held out cannot show it".into();
+    }
     if !discovery.predicts_better() {
         let why = discovery.gain.map_or("this could not be put to the test".into(), |[value, error]| {
             format!(
