@@ -5,6 +5,7 @@ use super::fit::{Course, Fit, MOST_STEPS};
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
+use super::own_motion::OwnMotion;
 use super::rule::Rule;
 use super::settling::ROUGH;
 use super::states::States;
@@ -58,7 +59,7 @@ impl<'a, 'w> Begun<'a, 'w> {
                 course.rule = Rule::RungeKutta(FEWEST_STEPS);
                 course.resolve(&states, &naive);
                 let at = course.objective(&states).start(&naive);
-                states = states.clone().told_apart(&course.objective(&states), &at)?;
+                states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
                 at
             }
             None => course.foresee(&states, naive.clone())?,
@@ -85,7 +86,7 @@ impl<'a, 'w> Begun<'a, 'w> {
         });
         let mut course = Course::new(movie, request, space, watch, (rule, levels, memory));
         let naive = naive_coefficients(&course.objective(&states))?;
-        states = states.clone().told_apart(&course.objective(&states), &at)?;
+        states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
         let at = course.approach(&states, at)?;
         Ok(Self { course, at, naive, states })
     }

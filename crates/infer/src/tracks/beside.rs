@@ -6,6 +6,7 @@ use super::inference::Followed;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
+use super::own_motion::OwnMotion;
 use super::states::States;
 use crate::quantity::BASE;
 use crate::search::{Watch, optimise_knowing};
@@ -109,7 +110,8 @@ impl Followed {
         let mut at = self.fit.parameters.clone();
         at.resize(space.dimension() + 2 * states.blocks(), 0.0);
         let fitted = self.objective(movie, &request.structure, space);
-        let states = states.clone().told_apart(&MovieObjective { states: &states, memory, ..fitted }, &at)?;
+        let own_motion = OwnMotion::at(&MovieObjective { states: &states, memory, ..fitted }, &at)?;
+        let states = States { own_motion, ..states };
         let objective = MovieObjective { states: &states, memory, ..fitted };
         let placed = objective.place(&at)?;
         let components = objective.explained_components(&placed, &at);

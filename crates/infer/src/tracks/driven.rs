@@ -1,13 +1,11 @@
 //! What a fit says of drives of polarities, and what one without them says.
 
+use super::likely::QUANTILE;
 use super::memory::Memory;
 use super::objective::MovieObjective;
 use crate::normal_equations::NormalEquations;
 use crate::{Drives, Error};
 use nalgebra::DMatrix;
-
-/// Quantile of the normal distribution for intervals of 95 %.
-const QUANTILE: f64 = 1.959_963_984_540_054;
 
 /// A drive of polarities, in the units of the movie.
 #[derive(Debug, Clone, Copy, PartialEq)]

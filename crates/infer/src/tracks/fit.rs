@@ -4,6 +4,7 @@ use super::begun::Begun;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
+use super::own_motion::OwnMotion;
 use super::rule::Rule;
 use super::settling::{FINAL, PASSING, Settling};
 use super::states::States;
@@ -84,11 +85,11 @@ pub(super) fn fit(
     from: Option<(&Fit, Vec<f64>)>,
     watch: &mut Watch<'_>,
 ) -> Result<Fit, Error> {
-    let Begun { mut course, at, naive, states } = match from {
+    let Begun { mut course, at, naive, mut states } = match from {
         Some(from) => Begun::further(movie, states, request, space, watch, from)?,
         None => Begun::new(movie, states, request, space, watch)?,
     };
-    let states = states.clone().told_apart(&course.objective(&states), &at)?;
+    states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
     let (at, error) = course.finish(&states, at)?;
     let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
     Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })

@@ -27,8 +27,8 @@ const SLOW: f64 = 0.02;
 const SPACINGS: [f64; 4] = [1.0, 0.5, 1.0, 0.5];
 
 /// Quantile of the normal distribution for intervals of 95 %, and the square of it.
-const QUANTILE: f64 = 1.959_963_984_540_054;
-const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
+pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
+pub(super) const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
 
 /// Half the width of an interval of log v₀ from which on its ends are looked for one by one; in how many steps.
 const BROAD: f64 = 0.5;

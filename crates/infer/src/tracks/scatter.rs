@@ -8,7 +8,7 @@
 use super::anchors::Share;
 use super::fit::LEAST_SHARE;
 use super::inference::Followed;
-use super::likely::TIMES;
+use super::likely::{LESS_LIKELY, TIMES};
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use crate::noise::{Likelihood, Restricted};
@@ -21,9 +21,6 @@ const FURTHEST: i32 = 3;
 
 /// By what x and what is new in an interval are multiplied where polarities stand in the place of a scatter.
 const MORE: [f64; 3] = [1.0, 2.0, 4.0];
-
-/// Fall of −2 log L at the ends of an interval of 95 %.
-const LESS_LIKELY: f64 = 3.841_458_820_694_124;
 
 /// Steps to an end of an interval, in log k, and halvings of the last.
 const STEPS: i32 = 8;

@@ -5,7 +5,6 @@
 
 use super::memory::{NONE, Polarities};
 use super::movie::{Drift, Movie};
-use super::objective::MovieObjective;
 use super::own_motion::OwnMotion;
 use crate::{Drives, Error, Observation};
 use rayon::prelude::*;
@@ -166,15 +165,6 @@ impl States {
     pub fn crawling(self, movie: &Movie, terms: usize) -> Self {
         let polarities = Polarities::new(movie, &self.instants, &self.motions, self.blocks(), terms);
         Self { polarities, ..self }
-    }
-
-    /// The same with the motions of cells that crawl told apart as they are at a point of a fit.
-    ///
-    /// # Errors
-    /// [`Error::Geometry`].
-    pub fn told_apart(mut self, objective: &MovieObjective<'_>, parameters: &[f64]) -> Result<Self, Error> {
-        self.own_motion = OwnMotion::at(objective, parameters)?;
-        Ok(self)
     }
 
     /// The same with polarities that may align with those of the neighbours.

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::tracks::memory::Memory;
+use crate::tracks::own_motion::OwnMotion;
 use crate::tracks::rule::Rule;
 use crate::tracks::sample::Filmed;
 use crate::tracks::states::States;
@@ -130,7 +131,8 @@ fn misses(time: f64, rule: Rule, [crawling, told_apart]: [bool; 2]) -> Vec<f64> 
     }
     if told_apart {
         let around = Around { objective: objective(&movie, &states, &structure, &space, rule) };
-        states = states.clone().told_apart(&around.objective, &around.at(0.0)).unwrap();
+        let own_motion = OwnMotion::at(&around.objective, &around.at(0.0)).unwrap();
+        states = States { own_motion, ..states };
     }
     let mut misses = Around { objective: objective(&movie, &states, &structure, &space, rule) }.misses();
     misses.sort_by(f64::total_cmp);
@@ -170,7 +172,8 @@ fn motions_that_are_told_apart_depend_on_their_own_way_alone() {
     let rule = Rule::RungeKutta(4);
     let together = Around { objective: objective(&movie, &crawling, &structure, &space, rule) };
     let at = together.at(0.0);
-    let apart = crawling.clone().told_apart(&together.objective, &at).unwrap();
+    let own_motion = OwnMotion::at(&together.objective, &at).unwrap();
+    let apart = States { own_motion, ..crawling.clone() };
     const STEP: f64 = 1e-6;
     let spread = |states: &States| -> f64 {
         let residuals = |at: &[f64]| {
