@@ -1,7 +1,7 @@
 //! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
 
 use crate::least_squares::{invert, within_bounds};
-use crate::linearisation::{Held, Linearisation};
+use crate::linearisation::{Eliminated, Held, Linearisation};
 use crate::quadratic::HalfSpace;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
@@ -23,6 +23,8 @@ pub(crate) struct NormalEquations {
     velocity: f64,
     free: DVector<f64>,
     space: CoefficientSpace,
+    /// Half the decrease with β of what −2 log L has beside Φ/σ_v².
+    tilt: DVector<f64>,
 }
 
 /// A step and the decrease of Φ that it promises.
@@ -110,17 +112,25 @@ impl NormalEquations {
             velocity: levels.velocity,
             free: DVector::from_column_slice(free),
             space: space.clone(),
+            tilt: DVector::zeros(free.len()),
         }
+    }
+
+    /// The same with half the decrease with β of what −2 log L has beside Φ/σ_v².
+    pub fn tilted(mut self, tilt: DVector<f64>) -> Self {
+        self.priors.gradient += &tilt * self.velocity.powi(2);
+        Self { tilt, ..self }
     }
 
     /// The same problem at other noise levels.
     pub fn at_levels(self, levels: NoiseLevels) -> Self {
-        Self::new(&self.space, levels, self.free.as_slice(), self.frames)
+        Self::new(&self.space, levels, self.free.as_slice(), self.frames).tilted(self.tilt)
     }
 
     /// The reduced problem at other noise levels.
     pub fn reduced_at(&self, levels: NoiseLevels) -> Result<Reduced, Error> {
-        let priors = Priors::new(&self.space, levels.velocity, self.free.as_slice());
+        let mut priors = Priors::new(&self.space, levels.velocity, self.free.as_slice());
+        priors.gradient += &self.tilt * levels.velocity.powi(2);
         reduce(&self.frames, priors, levels.spring())
     }
 
@@ -202,6 +212,25 @@ impl NormalEquations {
             step.extend(own);
         }
         Ok(Step { step, promised })
+    }
+
+    /// How the nudges follow the coefficients.
+    pub fn following(&self) -> Result<impl Fn(&DVector<f64>) -> Vec<f64>, Error> {
+        let parts = self.frames.iter().map(|frame| frame.eliminate(self.spring, &[]));
+        let parts = parts.collect::<Result<Vec<_>, Error>>()?;
+        let still = DVector::zeros(self.free.len());
+        Ok(move |step: &DVector<f64>| {
+            let of_part = |part: &Eliminated| {
+                let (moved, anyway) = (part.nudge_step(step), part.nudge_step(&still));
+                moved.into_iter().zip(anyway).map(|(moved, anyway)| moved - anyway).collect::<Vec<f64>>()
+            };
+            step.iter().copied().chain(parts.iter().flat_map(of_part)).collect()
+        })
+    }
+
+    /// log det of the second derivative of Φ with respect to the nudges.
+    pub fn log_determinant(&self) -> Result<f64, Error> {
+        self.frames.iter().map(|frame| Ok(frame.factor(self.spring)?.log_determinant())).sum()
     }
 
     /// Covariance of the two unknowns of a block where there is one part, all others free, in units of σ_v².

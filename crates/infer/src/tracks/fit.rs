@@ -1,6 +1,7 @@
 //! Coefficients, trajectories and noise levels together, in as many steps of integration as it takes.
 
 use super::begun::Begun;
+use super::integrated::Integrated;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -32,6 +33,9 @@ pub(super) const LEAST_SHARE: f64 = 0.15;
 /// How often the error of the dynamics is raised to what a fit leaves, and by how many standard deviations that may exceed what is expected.
 const LOOSENINGS: usize = 5;
 const ACCEPTED_EXCESS: f64 = 2.5;
+
+/// How often what integrating over the unknowns adds is found anew.
+const INTEGRATIONS: usize = 2;
 
 /// Relative decrease of the objective that counts as none: at the end, and on the way.
 const TOLERANCE: f64 = 5e-5;
@@ -90,6 +94,7 @@ pub(super) fn fit(
         None => Begun::new(movie, states, request, space, watch)?,
     };
     states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
+    let at = course.integrate(&mut states, at)?;
     let (at, error) = course.finish(&states, at)?;
     let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
     Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })
@@ -168,6 +173,18 @@ impl<'a> Course<'a, '_> {
             }
         }
         Ok(start)
+    }
+
+    /// Fit, noise levels and what integrating over the unknowns adds in turn, where cells crawl.
+    fn integrate(&mut self, states: &mut States, mut at: Vec<f64>) -> Result<Vec<f64>, Error> {
+        if self.memory.is_none() {
+            return Ok(at);
+        }
+        for _ in 0..INTEGRATIONS {
+            at = self.settle(states, at, FINAL)?;
+            states.integrated = Some(Integrated::at(&self.objective(states), &at)?);
+        }
+        Ok(at)
     }
 
     /// Noise levels, and the minimum at these. Kinks where contacts change can keep a fit from the minimum that the likelihood expects:

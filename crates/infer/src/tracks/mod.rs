@@ -19,6 +19,7 @@ mod fit;
 mod held_out;
 mod hint;
 mod inference;
+mod integrated;
 mod join;
 mod lasting;
 mod likely;

@@ -64,7 +64,7 @@ pub(crate) struct MovieParts {
     pub nudges: f64,
     /// What keeps places that were not seen, and polarities.
     pub floor: f64,
-    /// Penalty of the priors.
+    /// Penalty of the priors, and what integrating over the unknowns adds.
     pub priors: f64,
 }
 
@@ -258,7 +258,8 @@ impl<'a> MovieObjective<'a> {
         let nudges = of_seen.iter().sum();
         let surprise = self.weight_of_outset() * self.surprise(&placed, displacements);
         let floor = self.stiffness().of(displacements) + surprise + self.driven(&placed, parameters);
-        let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);
+        let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity)
+            + self.integration(free);
         Ok(MovieParts { residual, nudges, floor, priors })
     }
 

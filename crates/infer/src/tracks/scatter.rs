@@ -2,25 +2,19 @@
 //!
 //! What the model leaves of a displacement has the variance σ_v² T h in each component, which is 2Dh of cells that diffuse. A fit always has such a
 //! scatter, because it holds no cell more stiffly to the model than errors of positions are worth (see [`LEAST_SHARE`]). What speaks
-//! for a scatter is by how much −2 log L falls from the least that a fit has to the likeliest one, positions with errors in either case, and
-//! polarities, if there are some, that may be forgotten faster in its place.
+//! for a scatter is by how much −2 log L falls from the least that a fit has to the likeliest one, positions with errors in either case.
 
 use super::anchors::Share;
 use super::fit::LEAST_SHARE;
 use super::inference::Followed;
-use super::likely::{LESS_LIKELY, TIMES};
+use super::likely::LESS_LIKELY;
 use super::movie::Movie;
-use super::objective::MovieObjective;
 use crate::noise::{Likelihood, Restricted};
-use crate::normal_equations::NormalEquations;
-use crate::{CoefficientSpace, Error, KnownNoise, Request};
+use crate::{CoefficientSpace, Error, Request};
 
 /// Spacing of log k at which the likelihood is looked at, and how far from the fit.
 const SPACING: f64 = 0.5;
 const FURTHEST: i32 = 3;
-
-/// By what x and what is new in an interval are multiplied where polarities stand in the place of a scatter.
-const MORE: [f64; 3] = [1.0, 2.0, 4.0];
 
 /// Steps to an end of an interval, in log k, and halvings of the last.
 const STEPS: i32 = 8;
@@ -33,45 +27,27 @@ pub(crate) struct Scatter {
     pub diffusion: f64,
     /// Its 95 % interval.
     pub interval: [f64; 2],
-    /// Root mean square of the mean velocity that it gives a cell over the usual interval.
-    pub speed: f64,
     /// By how much −2 log L, restricted, falls from the least scatter to this one.
     pub evidence: f64,
 }
 
-/// The likelihood of a fit as a function of k.
+/// The likelihood of a fit as a function of k, near that of the fit.
 struct OfSpring<'a> {
-    objective: MovieObjective<'a>,
-    equations: NormalEquations,
-    components: f64,
-    known: KnownNoise,
+    restricted: Restricted<'a>,
+    fitted: f64,
 }
 
 impl OfSpring<'_> {
-    /// With x and what is new in an interval multiplied, where there are polarities: these stay what they are when the scatter changes.
-    fn at(&self, log_k: f64, [more_times, more_news]: [f64; 2]) -> Result<Likelihood, Error> {
-        let Self { objective, equations, components, known } = self;
-        let (components, known) = (*components, *known);
-        let Some(memory) = objective.memory else {
-            return Restricted { equations, components, known, held: None }.likelihood(log_k);
-        };
-        let levels = objective.levels;
-        let of_scatter = (log_k - levels.spring().ln()).exp();
-        let ratio = (levels.velocity / memory.speed).powi(2) * of_scatter * more_times / more_news;
-        let times = (memory.times * more_times).clamp(TIMES[0], TIMES[1]);
-        objective.likelihood(equations, components, known, [log_k, times, ratio, memory.alignment])
-    }
-
-    fn plain(&self, log_k: f64) -> Result<Likelihood, Error> {
-        self.at(log_k, [1.0; 2])
+    fn at(&self, log_k: f64) -> Result<Likelihood, Error> {
+        self.restricted.likelihood(log_k)
     }
 
     /// The likeliest log k near the fit.
     fn likeliest(&self) -> Result<f64, Error> {
-        let centre = self.objective.levels.spring().ln();
+        let centre = self.fitted;
         let points: Vec<f64> =
             (-FURTHEST..=FURTHEST).map(|step| centre + SPACING * f64::from(step)).collect();
-        let values = self.equations.each(&points, |log_k| Ok(self.plain(*log_k)?.criterion))?;
+        let values = self.restricted.equations.each(&points, |log_k| Ok(self.at(*log_k)?.criterion))?;
         let best = (0..points.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
         let around = best.checked_sub(1).and_then(|k| values.get(k)).zip(values.get(best + 1));
         let aside = around.map_or(0.0, |(before, after)| {
@@ -83,7 +59,7 @@ impl OfSpring<'_> {
 
     /// Where the likelihood has fallen as far as the end of an interval, from log k on in steps.
     fn end(&self, from: f64, least: f64, step: f64) -> Result<f64, Error> {
-        let is_within = |log_k: f64| Ok::<bool, Error>(self.plain(log_k)?.criterion - least < LESS_LIKELY);
+        let is_within = |log_k: f64| Ok::<bool, Error>(self.at(log_k)?.criterion - least < LESS_LIKELY);
         let (mut inside, mut outside) = (from, from + step);
         for _ in 0..STEPS {
             if !is_within(outside)? {
@@ -100,7 +76,7 @@ impl OfSpring<'_> {
 }
 
 impl Followed {
-    /// What the dynamics of a fit scatter by; `None` if that was given.
+    /// What the dynamics of a fit of cells that do not crawl scatter by; `None` if that was given.
     pub fn scatter(
         &self,
         movie: &Movie,
@@ -114,29 +90,18 @@ impl Followed {
         let at = &self.fit.parameters;
         let placed = objective.place(at)?;
         let components = objective.explained_components(&placed, at);
-        let equations = objective.linearise_at(&placed, at, Share::Known)?;
-        let own = OfSpring { objective, equations, components, known: request.noise };
+        let equations = &objective.linearise_at(&placed, at, Share::Known)?;
+        let restricted = Restricted { equations, components, known: request.noise, held: None };
+        let own = OfSpring { restricted, fitted: objective.levels.spring().ln() };
         let interval = movie.interval();
         let least = 2.0 * (LEAST_SHARE / interval).ln();
         let log_k = own.likeliest()?.max(least);
-        let Likelihood { criterion, variance } = own.plain(log_k)?;
-        let tried: Vec<[f64; 2]> = match objective.memory {
-            Some(_) => MORE.iter().flat_map(|times| MORE.map(|news| [*times, news])).collect(),
-            None => vec![[1.0; 2]],
-        };
-        let values = own.equations.each(&tried, |more| Ok(own.at(least, *more)?.criterion))?;
-        let without = values.into_iter().fold(f64::INFINITY, f64::min);
-        let evidence = (without - criterion).max(0.0);
-        let diffusion = |log_k: f64| Ok::<f64, Error>(0.5 * own.plain(log_k)?.variance * interval);
-        let ends = [
-            if evidence < LESS_LIKELY { 0.0 } else { diffusion(own.end(log_k, criterion, -SPACING)?)? },
-            diffusion(own.end(log_k, criterion, SPACING)?)?,
-        ];
-        Ok(Some(Scatter {
-            diffusion: 0.5 * variance * interval,
-            interval: ends,
-            speed: (2.0 * variance).sqrt(),
-            evidence,
-        }))
+        let Likelihood { criterion, variance } = own.at(log_k)?;
+        let evidence = (own.at(least)?.criterion - criterion).max(0.0);
+        let diffusion = |variance: f64| 0.5 * variance * interval;
+        let end = |step: f64| Ok::<f64, Error>(diffusion(own.at(own.end(log_k, criterion, step)?)?.variance));
+        let lower = if evidence < LESS_LIKELY { 0.0 } else { end(-SPACING)? };
+        let interval = [lower, end(SPACING)?];
+        Ok(Some(Scatter { diffusion: diffusion(variance), interval, evidence }))
     }
 }

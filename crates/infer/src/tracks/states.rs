@@ -3,6 +3,7 @@
 //! A cell has a place of its own at a frame if it was seen there or if its motion to or from there is explained. Elsewhere (in gaps at the
 //! rim of an open field) it is on the straight line between its nearest places before and after, if there are both.
 
+use super::integrated::Integrated;
 use super::memory::{NONE, Polarities};
 use super::movie::{Drift, Movie};
 use super::own_motion::OwnMotion;
@@ -84,6 +85,8 @@ pub(crate) struct States {
     pub polarities: Polarities,
     /// What tells the motions of cells that crawl apart from what their neighbours do to them.
     pub own_motion: Option<OwnMotion>,
+    /// What the likelihood of the coefficients has beside the objective of cells that crawl.
+    pub integrated: Option<Integrated>,
 }
 
 /// Marks an absent cell.
@@ -150,7 +153,7 @@ impl States {
         };
         let drifts = (start.len(), drifts);
         let polarities = Polarities::default();
-        Ok(Self { drifts, instants, intervals, motions, anchors, start, polarities, own_motion: None })
+        Ok(Self { drifts, instants, intervals, motions, anchors, start, polarities, own_motion: None, integrated: None })
     }
 
     /// The same with positions measured at another share of the way to the centroids.

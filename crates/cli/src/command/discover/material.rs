@@ -98,9 +98,7 @@ impl Asked<'_> {
         let surroundings = Arc::new(Environment::default().about(surroundings::origin(&prepared)));
         let about = |frame: &Observation| frame.clone().within(surroundings.clone());
         prepared.observations = prepared.observations.iter().map(about).collect();
-        // Where cells crawl, what a model without polarities finds are no cells.
-        let usual = tracks.is_none();
-        self.arguments.latent.understand(usual, tracks.as_mut(), &mut prepared, progress)?;
+        self.arguments.latent.understand(tracks.as_mut(), &mut prepared, progress)?;
         prepared.request.structure = base;
         Ok(Material { prepared, tracks })
     }

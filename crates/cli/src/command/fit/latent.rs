@@ -41,16 +41,15 @@ impl LatentArguments {
     }
 
     /// Finds out how the cells of a problem were measured: which were not detected, what a position is, over which windows velocities are
-    /// averaged. Windows make the data of a flow field; what a position is can be told of complete cells only. Cells are looked for if that was
-    /// said, or if it is usual.
+    /// averaged. Windows make the data of a flow field; what a position is can be told of complete cells only. Cells are looked for unless that
+    /// was said to be needless.
     pub fn understand(
         &self,
-        usual: bool,
         tracks: Option<&mut PreparedTracks>,
         prepared: &mut Prepared,
         progress: &mut Progress,
     ) -> Result<(), Error> {
-        let completes = self.complete.unwrap_or(usual);
+        let completes = self.complete.unwrap_or(true);
         match tracks {
             Some(tracks) => {
                 if completes {

@@ -151,7 +151,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     prepared.request.varied.clone_from(&arguments.vary);
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(&folder, ("infer", "replicates"), own, (&run, &data))?;
-    let understood = arguments.latent.understand(true, movie.as_mut(), &mut prepared, &mut progress);
+    let understood = arguments.latent.understand(movie.as_mut(), &mut prepared, &mut progress);
     prepared.caution(&mut run);
     let fitted = understood.and_then(|()| {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
