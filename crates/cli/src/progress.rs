@@ -2,6 +2,7 @@
 
 use crate::arguments::Verbosity;
 use crate::failure::Failure;
+use crate::terminal::note;
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
@@ -66,7 +67,7 @@ impl Progress {
             bar.set_length(total);
             bar.set_position(done);
             if self.lines.as_mut().is_some_and(|lines| lines.are_due(elapsed)) {
-                eprintln!("{}", line(stage, [done, total], elapsed, bar.eta()));
+                note(&line(stage, [done, total], elapsed, bar.eta()));
             }
         }
         if self.interrupted.load(Ordering::SeqCst) {

@@ -36,6 +36,11 @@ impl ParameterArguments {
         self.resolve_over(Parameters::default())
     }
 
+    /// The file that they are read from, if there is one.
+    pub fn file(&self) -> Option<&Path> {
+        self.parameters.as_deref()
+    }
+
     /// The parameters with other defaults.
     pub fn resolve_over(&self, defaults: Parameters<f64>) -> Result<Parameters<f64>, Failure> {
         let mut parameters = defaults;

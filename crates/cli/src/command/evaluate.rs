@@ -116,7 +116,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?,
         None => (0..data.frames()).collect(),
     };
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out =
+        arguments.common.output(data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file()))?;
     // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
     let base = Model::chiral_voronoi(&parameters);
     let mut fields = Vec::new();

@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// A run of many minutes, with frames close together.
-const LINE: &str = "simulate --cells 100 --time 10000 --dt 0.01 --frames 100000 --alpha 1";
+const LINE: &str = "simulate --overwrite --cells 100 --time 10000 --dt 0.01 --frames 100000 --alpha 1";
 
 fn start(line: &str, out: &Path) -> Child {
     let mut command = command();

@@ -28,6 +28,7 @@ mod phase_diagrams;
 mod phase_diffusions;
 mod program;
 mod refusal;
+mod reliability;
 mod replicates;
 mod resumption;
 mod scratch;

@@ -6,6 +6,7 @@ mod datasets;
 mod flow_arrays;
 mod flow_tables;
 mod flows;
+mod folders;
 mod frames;
 mod output;
 mod settings;

@@ -13,7 +13,7 @@ use clap::{Args, ValueEnum};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use voronudge_infer::{Intercept, LinePoint};
-use voronudge_io::{FlowProfile, OutputDirectory, read_flow_profile};
+use voronudge_io::{FlowProfile, read_flow_profile};
 use voronudge_report::channel_report::ChiralityReport;
 use voronudge_simulate::measure::Estimate;
 
@@ -94,8 +94,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .at(table.display())
             .with_hint("at least three rows are needed within --from and --to, with velocities larger than their errors")
     })?;
-    let out = arguments.common.required_out()?;
-    let mut out = OutputDirectory::create(out)?;
+    let mut out = arguments.common.output([&table])?;
     if profile.errors.is_none() {
         run.warn("the table has no errors (v_x_error, v_y_error): both velocities count alike, and the interval is from the scatter");
     }

@@ -9,7 +9,6 @@ use crate::command::simulate::StartArguments;
 use crate::failure::Failure;
 use crate::run::Run;
 use clap::Args;
-use voronudge_io::OutputDirectory;
 use voronudge_report::ModuliPage;
 use voronudge_simulate::recommended_time_step;
 
@@ -72,7 +71,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
                 .with_hint(format!("leave {name} out for the default")));
         }
     }
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out =
+        arguments.common.output(arguments.start.file().into_iter().chain(arguments.parameters.file()))?;
     let starts = measure::starts(&arguments)?;
     let first = &starts[0].1;
     let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();

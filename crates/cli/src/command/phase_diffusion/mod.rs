@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use voronudge_infer::phase_diffusion::{
     Fluctuations, PhaseRequest, RateOrder, ReferencePlaces, phase_diffusion,
 };
-use voronudge_io::{FrameSelection, OutputDirectory};
+use voronudge_io::FrameSelection;
 
 /// Residuals of consecutive frames that correlate by more than this are not independent.
 const CORRELATED: f64 = 0.3;
@@ -95,7 +95,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => (0..data.frames()).collect(),
     };
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(&data.inputs)?;
     let tracked = TrackedPattern::new(&data, &frames, arguments.reference.as_deref())
         .map_err(|failure| failure.at(&place))?;
     let present = data.cells();

@@ -89,7 +89,6 @@ enum MethodName {
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("simulate", &arguments.common)?;
-    let out = arguments.common.required_out()?.clone();
     let mut parameters = arguments.parameters.resolve()?;
     let mut effects = arguments.effects.resolve()?;
     let every = Duration::try_from_secs_f64(arguments.checkpoint).map_err(|_| {
@@ -145,8 +144,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             request.dt
         ));
     }
+    let inputs = arguments.start.file().into_iter().chain(arguments.parameters.file());
+    let inputs = inputs.chain(OfCells::files(&arguments.cell_parameter));
+    let folder = arguments.common.claim(inputs)?;
     let (mut recorder, kept) =
-        Recorder::open(&out, &request, schedule.steps_per_frame()?, every, arguments.resume)?;
+        Recorder::open(&folder, &request, schedule.steps_per_frame()?, every, arguments.resume)?;
     let mut so_far = RunState::default();
     if let Some(Kept { run, state }) = kept {
         so_far = run;
@@ -209,8 +211,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
     let finished = Finished { simulation: &simulation, schedule, summary, lyapunov, steps_per_second };
     let units = Units { length: start.length_unit, time: start.time_unit };
-    outcome::finish(&run, &mut recorder, (request, start.cell_box, units), finished)?;
-    recorder.discard()?;
+    outcome::finish(&run, recorder, (request, start.cell_box, units), finished)?;
     Ok(Answer::Positive)
 }
 

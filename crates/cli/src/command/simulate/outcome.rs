@@ -27,7 +27,7 @@ pub(super) struct Finished<'a> {
 /// Measures what the frames tell, writes all results and prints the summary.
 pub(super) fn finish(
     run: &Run,
-    recorder: &mut Recorder,
+    mut recorder: Recorder,
     (request, start, units): (Request, PeriodicBox, Units),
     finished: Finished<'_>,
 ) -> Result<(), Failure> {
@@ -36,7 +36,8 @@ pub(super) fn finish(
         None => Spectra::OfManyFrames,
         Some(_) => Spectra::OfTheEnd,
     };
-    let measurements = Measurements::new(recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
+    let measurements =
+        Measurements::new(&mut recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
     let mut results = recorder.results()?;
     let mut settings = settings(simulation, &request, &schedule, &units);
     describe(&mut settings, &request, start, schedule.frame_interval());

@@ -20,7 +20,7 @@ use frame::Solved;
 use lattice::Lattice;
 pub(crate) use report::{mean_field, named};
 use request::SelectionArguments;
-use voronudge_io::{FrameSelection, OutputDirectory};
+use voronudge_io::FrameSelection;
 
 /// Linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional points.
 ///
@@ -73,7 +73,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if arguments.frames.is_none() && data.frames() > 1 {
         run.warn(format!("of {} frames only the first is looked at; --frames chooses others", data.frames()));
     }
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(&data.inputs)?;
     let mut progress = Progress::new(arguments.common.verbosity());
     let mut solved = Vec::new();
     for &frame in &frames {
