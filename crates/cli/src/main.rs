@@ -3,6 +3,7 @@
 mod arguments;
 mod command;
 mod failure;
+mod memory;
 mod output;
 mod progress;
 mod run;

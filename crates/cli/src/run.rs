@@ -2,6 +2,7 @@
 
 use crate::arguments::{CommonArguments, Format, Verbosity};
 use crate::failure::Failure;
+use crate::progress::heed_signals;
 use crate::terminal::{self, legible};
 use std::time::Instant;
 use voronudge_io::{DataSet, OutputDirectory};
@@ -22,6 +23,7 @@ const MOST_THREADS: usize = 1024;
 
 impl Run {
     pub fn begin(name: &'static str, common: &CommonArguments) -> Result<Self, Failure> {
+        heed_signals();
         if let Some(threads) = common.threads {
             if threads == 0 {
                 return Err(Failure::new("--threads is 0, but at least one thread is needed")

@@ -179,7 +179,7 @@ impl OutputDirectory {
         self.stage(name, |file| write_npy(file, array))
     }
 
-    fn stage(
+    pub(crate) fn stage(
         &mut self,
         name: &str,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,

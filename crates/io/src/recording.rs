@@ -51,8 +51,11 @@ struct FrameFile {
     name: String,
     path: PathBuf,
     file: BufWriter<File>,
+    shape: [usize; 3],
     /// Bytes before the first frame, and of each.
     lengths: [u64; 2],
+    /// Frames so far.
+    frames: usize,
     /// Of all frames so far.
     sum: Sha256,
 }
@@ -103,6 +106,7 @@ impl Recording {
         };
         let bytes: Vec<u8> = frame.iter().copied().flat_map(f64::to_le_bytes).collect();
         array.sum.update(&bytes);
+        array.frames += 1;
         array.file.write_all(&bytes).map_err(|source| output_error(&array.path, OutputFault::Write(source)))
     }
 
@@ -152,6 +156,31 @@ impl Recording {
         Ok(results)
     }
 
+    /// Frames that all arrays have so far.
+    #[must_use]
+    pub fn frames(&self) -> usize {
+        self.arrays.iter().map(|array| array.frames).min().unwrap_or(0)
+    }
+
+    /// Writes the frames so far as arrays of their own, for a run that does not come to its end.
+    ///
+    /// # Errors
+    /// As [`OutputDirectory::write_array`].
+    pub fn write_so_far(&mut self, out: &mut OutputDirectory) -> Result<(), Error> {
+        self.flush()?;
+        let frames = self.frames();
+        for array in &mut self.arrays {
+            let ([_, rows, columns], [before, each]) = (array.shape, array.lengths);
+            let file = array.file.get_mut();
+            out.stage(&array.name, |target| {
+                file.seek(SeekFrom::Start(before))?;
+                target.write_all(&header([frames, rows, columns]))?;
+                io::copy(&mut file.take(frames as u64 * each), target).map(|_| ())
+            })?;
+        }
+        Ok(())
+    }
+
     /// Gives the recording up.
     ///
     /// # Errors
@@ -179,7 +208,8 @@ impl FrameFile {
             Ok(file)
         };
         let file = create().map_err(|source| output_error(&path, OutputFault::Write(source)))?;
-        Ok(Self { name: name.into(), path, file, lengths: lengths(shape), sum: Sha256::new() })
+        let (lengths, sum) = (lengths(shape), Sha256::new());
+        Ok(Self { name: name.into(), path, file, shape, lengths, frames: 0, sum })
     }
 
     fn open(
@@ -205,7 +235,7 @@ impl FrameFile {
             Ok(Some((BufWriter::new(file), sum)))
         };
         match open() {
-            Ok(Some((file, sum))) => Ok(Self { name: name.into(), path, file, lengths, sum }),
+            Ok(Some((file, sum))) => Ok(Self { name: name.into(), path, file, shape, lengths, frames, sum }),
             Ok(None) => Err(output_error(&path, OutputFault::Damaged { place: "these frames are".into() })),
             Err(source) => Err(output_error(&path, OutputFault::Write(source))),
         }

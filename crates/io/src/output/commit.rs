@@ -11,6 +11,7 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::folder::deciding;
 use super::run::{self, RUN};
 use super::{output_error, refuse_folder};
 use crate::error::{Error, OutputFault};
@@ -37,8 +38,10 @@ pub(crate) fn commit(staging: &Path, folder: &Path, ends: Ends) -> Result<(), Er
         fs::rename(staging, folder.join(DECIDED))?;
         sync_folder(folder)
     };
-    switch().map_err(|source| output_error(folder, OutputFault::Switch(source)))?;
-    complete(folder).map(|_| ())
+    deciding(|| {
+        switch().map_err(|source| output_error(folder, OutputFault::Switch(source)))?;
+        complete(folder)
+    })
 }
 
 /// Puts results that are decided in place; nothing to do if there are none.

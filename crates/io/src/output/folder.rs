@@ -3,7 +3,7 @@
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 use super::commit::{self, DECIDED};
 use super::run::{self, RUN};
@@ -45,6 +45,26 @@ struct Claim {
     lock: Option<File>,
 }
 
+/// Directories that this process holds, and whether it has decided on results of one.
+static HELD: Mutex<Held> = Mutex::new(Held { claims: Vec::new(), decided: false });
+
+struct Held {
+    claims: Vec<(PathBuf, Origin)>,
+    decided: bool,
+}
+
+/// The table of what is held; it stays usable if a thread has died with it.
+fn held() -> MutexGuard<'static, Held> {
+    HELD.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Does what decides on results, and what comes after; no signal ends the process in between.
+pub(crate) fn deciding<T>(decide: impl FnOnce() -> T) -> T {
+    let mut held = held();
+    held.decided = true;
+    decide()
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Origin {
     Found,
@@ -76,8 +96,9 @@ impl OutputFolder {
         claim.lock = lock(&claim.path).map_err(|fault| output_error(&claim.path, fault))?;
         commit::complete(&claim.path)?;
         if claim.lock.is_some() {
-            claim.sweep()?;
+            sweep(&claim.path)?;
         }
+        held().claims.push((claim.path.clone(), origin));
         Ok(Self(Arc::new(claim)))
     }
 
@@ -85,6 +106,23 @@ impl OutputFolder {
     #[must_use]
     pub fn path(&self) -> &Path {
         &self.0.path
+    }
+
+    /// Removes what is not yet decided from all directories that this process holds, before it ends at once. Whether it may end: it must
+    /// not if results are decided, as they are about to be in place. If it may, nothing can be decided any more.
+    #[must_use]
+    pub fn abandon_all() -> bool {
+        let held = held();
+        if held.decided {
+            return false;
+        }
+        for (path, origin) in &held.claims {
+            // Whatever stays is swept by the next to claim the directory.
+            let _ = sweep(path);
+            give_up(path, *origin);
+        }
+        std::mem::forget(held);
+        true
     }
 
     /// Finishes what a process that ended has decided to put into a directory, if there is such a thing, before the directory is read.
@@ -96,32 +134,39 @@ impl OutputFolder {
     }
 }
 
-impl Claim {
-    /// Removes what processes that were killed have left and nobody can use.
-    fn sweep(&self) -> Result<(), Error> {
-        let failure = |source| output_error(&self.path, OutputFault::NotWritable(source));
-        for entry in fs::read_dir(&self.path).map_err(failure)? {
-            let entry = entry.map_err(failure)?;
-            let name = entry.file_name();
-            let is_folder = entry.file_type().map_err(failure)?.is_dir();
-            let staged = name.to_string_lossy().starts_with(STAGING) && name != RUN && name != DECIDED;
-            if is_folder && (staged || (name == RUN && run::is_empty(&entry.path()))) {
-                run::remove(&entry.path())?;
-            }
+/// Removes what processes that were killed have left in a directory and nobody can use.
+fn sweep(path: &Path) -> Result<(), Error> {
+    let failure = |source| output_error(path, OutputFault::NotWritable(source));
+    for entry in fs::read_dir(path).map_err(failure)? {
+        let entry = entry.map_err(failure)?;
+        let name = entry.file_name();
+        let is_folder = entry.file_type().map_err(failure)?.is_dir();
+        let staged = name.to_string_lossy().starts_with(STAGING) && name != RUN && name != DECIDED;
+        if is_folder && (staged || (name == RUN && run::is_empty(&entry.path()))) {
+            run::remove(&entry.path())?;
         }
-        Ok(())
+    }
+    Ok(())
+}
+
+/// Removes the file of the lock, and a directory that was made and holds nothing.
+fn give_up(path: &Path, origin: Origin) {
+    let _ = fs::remove_file(path.join(LOCK));
+    if origin == Origin::Made {
+        // Fails, as it should, where the directory holds results.
+        let _ = fs::remove_dir(path);
     }
 }
 
 impl Drop for Claim {
     fn drop(&mut self) {
-        if self.lock.is_some() {
-            // While it is still locked, so that nobody else's is removed.
-            let _ = fs::remove_file(self.path.join(LOCK));
-        }
-        if self.origin == Origin::Made {
-            // Fails, as it should, where the directory holds results.
-            let _ = fs::remove_dir(&self.path);
+        let claim = (self.path.clone(), self.origin);
+        held().claims.retain(|other| *other != claim);
+        match self.lock {
+            // While it is still locked, so that nobody else's file is removed.
+            Some(_) => give_up(&self.path, self.origin),
+            None if self.origin == Origin::Made => drop(fs::remove_dir(&self.path)),
+            None => {}
         }
     }
 }

@@ -2,6 +2,7 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod arrays;
+mod corpus;
 mod datasets;
 mod flow_arrays;
 mod flow_tables;

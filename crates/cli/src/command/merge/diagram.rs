@@ -22,7 +22,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut results = arguments.common.output(&arguments.parts)?;
     let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
     run.finish(Some(results), &json, &summary)?;
-    Ok(Answer::Positive)
+    Ok(points.answer())
 }
 
 /// All runs in order, if the parts belong together and none is missing or there twice.

@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::run::Run;
 use clap::Args;
 use voronudge_report::ModuliPage;
-use voronudge_simulate::recommended_time_step;
+use voronudge_simulate::{Schedule, recommended_time_step};
 
 /// Elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, beside the mean-field theory.
 ///
@@ -84,6 +84,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
              out wrong by tens of per cent"
         ));
     }
+    Schedule { time: arguments.time.max(arguments.transient + arguments.average), time_step, frames: 1 }
+        .steps_per_frame()?;
     let protocol = measure::Protocol::new(&arguments, &parameters, time_step, spacing);
     let measured = measure::replicas(&starts, &parameters, &protocol, arguments.common.verbosity())?;
     report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));

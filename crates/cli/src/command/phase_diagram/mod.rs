@@ -76,7 +76,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut results = journal.results()?;
     let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
     run.finish(Some(results), &json, &summary)?;
-    Ok(Answer::Positive)
+    Ok(points.answer())
 }
 
 /// Begins a journal, or goes on with one of the same request.

@@ -2,12 +2,13 @@
 
 use crate::arguments::Shard;
 use crate::failure::Failure;
+use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use voronudge_model::Parameters;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
-use voronudge_simulate::{recommended_time_step, seed_of_run};
+use voronudge_simulate::{MOST_STEPS, recommended_time_step, seed_of_run};
 
 /// Points along an axis, and runs at each, that nobody means.
 const MOST_POINTS: usize = 1000;
@@ -217,6 +218,12 @@ impl Request {
                     .with_hint(format!("leave --{name} out for the default")));
             }
         }
+        let threads = rayon::current_num_threads();
+        refuse_beyond(
+            format!("{threads} runs of {} cells at a time", typed.cells),
+            typed.cells.saturating_mul(threads),
+            OF_A_SIMULATED_CELL,
+        )?;
         let mut quantities = typed.quantities.clone();
         quantities.sort();
         quantities.dedup();
@@ -227,7 +234,7 @@ impl Request {
             ))
             .with_hint("ask for fewer cells, or leave mean_square_frequency out"));
         }
-        Ok(Self {
+        let request = Self {
             version: env!("CARGO_PKG_VERSION").into(),
             preferred_perimeters: Range::new("P_0", &typed.P_0)?,
             chiralities: Range::new("alpha", &typed.alpha)?,
@@ -239,7 +246,29 @@ impl Request {
             area_elasticity: typed.K_A,
             least_distance: typed.least_distance,
             seed,
-        })
+        };
+        request.check()?;
+        Ok(request)
+    }
+
+    /// Whether the grid can be meant; also asked of one that was read from a file.
+    pub fn check(&self) -> Result<(), Failure> {
+        let counts = [self.preferred_perimeters.count, self.chiralities.count, self.replicas, self.cells];
+        if counts.contains(&0) || counts[..3].iter().any(|count| *count > MOST_POINTS) {
+            return Err(Failure::new(format!(
+                "a diagram of {} × {} points with {} runs of {} cells",
+                counts[0], counts[1], counts[2], counts[3]
+            ))
+            .with_hint(format!("take 1 to {MOST_POINTS} of each, and one cell or more")));
+        }
+        let steps = |point: usize| self.time / self.time_step(point);
+        match (0..self.points()).map(steps).find(|steps| !(1.0..=MOST_STEPS).contains(steps)) {
+            Some(steps) => {
+                let fault = voronudge_simulate::Error::TooManySteps { steps, limit: MOST_STEPS };
+                Err(Failure::from(fault))
+            }
+            None => Ok(()),
+        }
     }
 
     pub fn points(&self) -> usize {

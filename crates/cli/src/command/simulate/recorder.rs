@@ -126,6 +126,16 @@ impl Recorder {
         Ok(self.recording.results()?)
     }
 
+    /// Frames so far.
+    pub fn frames(&self) -> usize {
+        self.recording.frames()
+    }
+
+    /// Writes them as arrays of their own.
+    pub fn write_so_far(&mut self, out: &mut OutputDirectory) -> Result<(), Failure> {
+        Ok(self.recording.write_so_far(out)?)
+    }
+
     /// Removes what is only needed to go on.
     pub fn discard(self) -> Result<(), Failure> {
         Ok(self.recording.discard()?)

@@ -1,6 +1,7 @@
 //! Where the cells begin.
 
 use crate::failure::Failure;
+use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use crate::snapshot::{Snapshot, domain_at};
 use clap::Args;
 use serde::Serialize;
@@ -97,7 +98,7 @@ fn check_size(named: &str, cells: usize, frames: usize) -> Result<(), Failure> {
         ))
         .with_hint("keep fewer frames, or run fewer cells"));
     }
-    Ok(())
+    refuse_beyond(named, cells, OF_A_SIMULATED_CELL)
 }
 
 fn random(arguments: &StartArguments, seed: u64, frames: usize) -> Result<Start, Failure> {
