@@ -49,8 +49,10 @@ pub enum Error {
     /// A schedule that records nothing.
     #[error("0 frames, but a schedule records at least 1")]
     NoFrames,
-    /// A tolerance of the adaptive method that is not a positive finite number.
-    #[error("the tolerance is {tolerance}, but it must be positive and finite")]
+    /// A tolerance of the adaptive method that is no small positive number.
+    #[error(
+        "the tolerance is {tolerance}, but it must be positive and finite, and at most 1, the mean spacing"
+    )]
     Tolerance {
         /// The tolerance given.
         tolerance: f64,

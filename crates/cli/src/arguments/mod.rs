@@ -7,7 +7,7 @@ mod shard;
 
 pub(crate) use dataset::DataSetArguments;
 pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
-pub(crate) use parameters::ParameterArguments;
+pub(crate) use parameters::{LARGEST_PARAMETER, ParameterArguments};
 pub(crate) use shard::Shard;
 
 use crate::failure::Failure;

@@ -135,6 +135,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
                 .map_err(|error| Failure::new(error.to_string()).at(place()))?;
         }
         let model = effects.add_to(base.clone(), surroundings, domain)?;
+        let moving = velocities(&tessellation, &snapshot.positions, &model);
+        if moving.iter().any(|v| v.x.is_infinite() || v.y.is_infinite()) {
+            return Err(Failure::new("velocities are too large to be numbers")
+                .at(place())
+                .with_hint("give parameters in units in which lengths and times of cells are about 1"));
+        }
         if index == 0 && arguments.jacobian {
             let matrix = jacobian(&tessellation, &snapshot.positions, &model);
             if frames.len() > 1 {
@@ -143,7 +149,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             write_jacobian(&mut out, &matrix, &snapshot, &data)?;
         }
         fields.push(Fields {
-            velocities: velocities(&tessellation, &snapshot.positions, &model),
+            velocities: moving,
             areas: areas(&tessellation, &snapshot.positions),
             perimeters: perimeters(&tessellation, &snapshot.positions),
             stress: oriented(

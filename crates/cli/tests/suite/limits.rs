@@ -117,3 +117,19 @@ fn a_run_that_fails_late_keeps_its_frames() {
     succeed("simulate --time 0.2 --frames 2 --alpha 1", &[("--start", &partial), ("--out", &on)]);
     succeed("evaluate", &[("", &partial), ("--out", &parent.file("evaluated"))]);
 }
+
+#[test]
+fn numbers_that_mean_nothing_are_refused() {
+    for flag in ["--K_P 1e308", "--K_A 1e300", "--alpha -1e200", "--P_0 1e51"] {
+        let name = flag.split_once(' ').unwrap().0.trim_start_matches('-');
+        let facts = [name, "1e50 is the most"];
+        assert_refused(&format!("simulate --cells 10 --time 1e-3 --dt 1e-3 {flag}"), &[], &facts);
+        assert_refused(&format!("evaluate {flag}"), &[&crate::program::fixture("reference-small")], &facts);
+    }
+    assert_refused("phase-diagram --cells 10 --K_A 1e200", &[], &["--K_A", "1e50"]);
+    assert_refused("simulate --cells 10 --method adaptive --tolerance 1e6", &[], &["tolerance", "at most 1"]);
+    let folder = Folder::new();
+    let still = folder.write("still.csv", "x,v_x,v_y\n0,0,1\n1,0,2\n2,0,1.5\n3,0,1\n");
+    let facts = ["still.csv: v_x is at most 0", "no flow across"];
+    assert_refused("estimate-chirality --shape-index 4", &[&still], &facts);
+}

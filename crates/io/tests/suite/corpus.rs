@@ -19,8 +19,8 @@ fn corpus(name: &str) -> PathBuf {
 
 fn labels(path: &Path) -> Result<(), Error> {
     let scale = ImageScale::default();
-    let linking = LabelLinking::None;
-    import_labels(path, &LabelOptions { scale, gap: 2, linking, border: BorderCells::Keep }).map(|_| ())
+    let linking = LabelLinking::Separate;
+    import_labels(path, &LabelOptions { scale, gap: 2, linking, border: BorderCells::Kept }).map(|_| ())
 }
 
 fn field(path: &Path) -> Result<(), Error> {
@@ -31,7 +31,7 @@ fn field(path: &Path) -> Result<(), Error> {
         prominence: None,
         distance: 0.0,
         edge: Edge::Open,
-        linking: FieldLinking::None,
+        linking: FieldLinking::Separate,
     };
     import_field(path, &options).map(|_| ())
 }
@@ -64,9 +64,7 @@ fn tables_whose_arrays_do_not_fit_in_memory_are_refused() {
     // A thousand tracks of one spot each in a hundred thousand frames.
     let name = "tracks-times-frames.csv";
     let read = import_tracks(&corpus(name), &ImportOptions::default());
-    if let Err(error) = read {
-        assert!(error.to_string().contains(name), "{error}");
-    }
+    assert_told(read, &[name, "1310 tracks"], "");
 }
 
 /// A generator of 64-bit numbers, the same everywhere.
@@ -190,7 +188,8 @@ fn mutated_images_are_read_or_refused() {
     let mut encoder = tiff::encoder::TiffEncoder::new(&mut whole).unwrap();
     encoder.write_image::<tiff::encoder::colortype::Gray8>(24, 24, image.as_slice().unwrap()).unwrap();
     assert_survives(8, &whole.into_inner(), &path, 600, || labels(&path));
-    let path = scratch.write_array("field.npy", &image.mapv(|label| f64::from(label % 5)));
+    let waves = Array2::from_shape_fn((24, 24), |(row, column)| (row as f64).sin() * (column as f64).sin());
+    let path = scratch.write_array("field.npy", &waves);
     let whole = fs::read(&path).unwrap();
     assert_survives(9, &whole, &path, 600, || field(&path));
 }

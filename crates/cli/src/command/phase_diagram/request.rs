@@ -1,6 +1,6 @@
 //! What a diagram is asked for.
 
-use crate::arguments::Shard;
+use crate::arguments::{LARGEST_PARAMETER, Shard};
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
@@ -113,8 +113,10 @@ impl Range {
         let &[from, to, count] = typed else {
             return Err(fault("needs three numbers".into()));
         };
-        if !from.is_finite() || !to.is_finite() {
-            return Err(fault(format!("{from} {to}: both ends must be finite")));
+        if from.abs().max(to.abs()) > LARGEST_PARAMETER || from.is_nan() || to.is_nan() {
+            return Err(fault(format!(
+                "{from:e} {to:e}: both ends must be finite, and at most {LARGEST_PARAMETER:e} in magnitude"
+            )));
         }
         if !(1.0..=MOST_POINTS as f64).contains(&count) || count.fract() != 0.0 {
             return Err(fault(format!("has a count of {count}, but it must be 1 to {MOST_POINTS}")));
@@ -213,9 +215,11 @@ impl Request {
             }
         }
         for (name, value) in [("K_A", typed.K_A), ("least-distance", typed.least_distance)] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(Failure::new(format!("--{name} is {value}, but it must not be negative"))
-                    .with_hint(format!("leave --{name} out for the default")));
+            if !(0.0..=LARGEST_PARAMETER).contains(&value) {
+                return Err(Failure::new(format!(
+                    "--{name} is {value}, but it must be 0 to {LARGEST_PARAMETER:e}"
+                ))
+                .with_hint(format!("leave --{name} out for the default")));
             }
         }
         let threads = rayon::current_num_threads();

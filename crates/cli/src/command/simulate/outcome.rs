@@ -33,6 +33,10 @@ pub(super) fn finish(
     finished: Finished<'_>,
 ) -> Result<(), Failure> {
     let Finished { simulation, schedule, summary, lyapunov, steps_per_second } = finished;
+    if summary.mean_square_velocity.is_some_and(|square| !square.is_finite()) {
+        return Err(Failure::new("the squares of the velocities are too large to be numbers")
+            .with_hint("give parameters in units in which lengths and times of cells are about 1"));
+    }
     let spectra = match request.driving.shear {
         None => Spectra::OfManyFrames,
         Some(_) => Spectra::OfTheEnd,
