@@ -113,7 +113,10 @@ fn commands_without_steps_end_at_once_and_leave_nothing() {
         let output = run.wait_with_output().unwrap();
         assert!(begun.elapsed() < Duration::from_secs(2));
         let told = String::from_utf8(output.stderr).unwrap();
-        assert_eq!((output.status.code(), told.as_str()), (Some(130), "error: interrupted; nothing was written\n"));
+        assert_eq!(
+            (output.status.code(), told.as_str()),
+            (Some(130), "error: interrupted; nothing was written\n")
+        );
         assert!(names(parent.path()).is_empty(), "{:?}", names(parent.path()));
     }
 }
