@@ -43,6 +43,8 @@ fn more_steps_than_anybody_waits_for_are_refused() {
 fn counts_that_nobody_means_are_refused() {
     assert_refused("channel --preset ht1080 --bins 4294967296", &[], &["4294967296 bins"]);
     assert_refused("moduli --cells 20 --replicas 18446744073709551615", &[], &["--replicas is"]);
+    let data = crate::program::fixture("reference-small");
+    assert_refused("phase-diffusion --wave-vectors 100000", &[&data], &["--wave-vectors is 100000"]);
     assert_refused("phase-diagram --shard 1/18446744073709551615", &[], &["a shard is written"]);
     for side in ["1e-200", "1e200"] {
         assert_refused(&format!("simulate --cells 10 --box {side} {side}"), &[], &["box side x", "1e-100"]);

@@ -62,12 +62,22 @@ enum Cause {
     Driving,
 }
 
+/// Wave vectors whose rates are fitted in one dense problem.
+const MOST_WAVE_VECTORS: usize = 1000;
+
 impl Arguments {
     fn request(&self) -> Result<PhaseRequest, Failure> {
         if self.wave_vectors == 0 {
             return Err(
                 Failure::new("--wave-vectors is 0, but at least one is needed").with_hint("12 is usual")
             );
+        }
+        if self.wave_vectors > MOST_WAVE_VECTORS {
+            return Err(Failure::new(format!(
+                "--wave-vectors is {}, but {MOST_WAVE_VECTORS} are the most",
+                self.wave_vectors
+            ))
+            .with_hint("12 is usual"));
         }
         Ok(PhaseRequest {
             wave_vectors: self.wave_vectors,
