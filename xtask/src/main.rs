@@ -5,6 +5,7 @@ mod figures;
 mod fixtures;
 mod oracle;
 mod program;
+mod soak;
 mod study;
 
 use clap::{Parser, Subcommand};
@@ -29,6 +30,8 @@ enum Command {
     },
     /// Make figures of the paper anew, and the page of them.
     Figures(figures::Arguments),
+    /// Kill runs of the program at random moments, take them up again, and compare with runs that were left alone.
+    Soak(soak::Arguments),
     /// Run a statistical study and print its table.
     Study(Box<study::Arguments>),
     /// Make everything in fixtures/ from recorded seeds; twice gives the same bytes.
@@ -47,6 +50,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Check { only } => check::run(&root, &only),
         Command::Figures(arguments) => figures::run(&root, &arguments),
+        Command::Soak(arguments) => soak::run(&root, &arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),
     };

@@ -46,6 +46,11 @@ impl Failure {
         &self.message
     }
 
+    /// The advice.
+    pub fn hint(&self) -> Option<&str> {
+        self.hint.as_deref()
+    }
+
     pub fn exit_code(&self) -> u8 {
         self.exit_code
     }

@@ -3,9 +3,12 @@
 mod arguments;
 mod command;
 mod failure;
+mod memory;
+mod output;
 mod progress;
 mod run;
 mod snapshot;
+mod terminal;
 
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
@@ -52,7 +55,7 @@ fn main() -> ExitCode {
         Ok(Answer::Positive) => ExitCode::SUCCESS,
         Ok(Answer::Negative) => ExitCode::from(1),
         Err(failure) => {
-            eprintln!("{failure}");
+            terminal::note(&failure.to_string());
             ExitCode::from(failure.exit_code())
         }
     }

@@ -2,13 +2,14 @@
 
 use crate::arguments::Verbosity;
 use crate::failure::Failure;
+use crate::terminal::note;
 use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::time::{Duration, Instant};
+use voronudge_io::OutputFolder;
 
 /// How long a command works in silence.
 const PATIENCE: Duration = Duration::from_secs(1);
@@ -18,6 +19,23 @@ const FIRST_GAP: Duration = Duration::from_secs(5);
 const LONGEST_GAP: Duration = Duration::from_secs(60);
 const GROWTH: f64 = 1.5;
 
+/// Whether the user wants the command to stop, and whether the command looks at that.
+static INTERRUPTED: AtomicBool = AtomicBool::new(false);
+static LISTENING: AtomicBool = AtomicBool::new(false);
+
+/// Takes over Ctrl-C and SIGTERM for the whole command. One that does not look whether it is to stop ends at once, and so does any at the
+/// second time, without anything left behind.
+pub(crate) fn heed_signals() {
+    // A second handler in one process is refused, which leaves the first in force: nothing is lost.
+    let _ = ctrlc::set_handler(|| {
+        let again = INTERRUPTED.swap(true, Ordering::SeqCst);
+        if (again || !LISTENING.load(Ordering::SeqCst)) && OutputFolder::abandon_all() {
+            note(&format!("error: {}", Failure::interrupted().message()));
+            std::process::exit(130);
+        }
+    });
+}
+
 /// Shows how far a command has come once it takes longer than a second, and knows whether the user wants it to stop. Where there is no terminal
 /// to draw a bar on, it says so in lines, ever more rarely.
 pub(crate) struct Progress {
@@ -25,23 +43,15 @@ pub(crate) struct Progress {
     bar: Option<ProgressBar>,
     lines: Option<Lines>,
     begun: Instant,
-    interrupted: Arc<AtomicBool>,
     verbosity: Verbosity,
 }
 
 impl Progress {
-    /// Takes over Ctrl-C: from now on the command ends at its next step, cleanly.
+    /// From now on the command looks whether it is to stop at each step, and ends there, cleanly.
     pub fn new(verbosity: Verbosity) -> Self {
-        let interrupted = Arc::new(AtomicBool::new(false));
-        let flag = Arc::clone(&interrupted);
-        // A second handler in one process is refused, which leaves the first in force: nothing is lost.
-        let _ = ctrlc::set_handler(move || {
-            if flag.swap(true, Ordering::SeqCst) {
-                std::process::exit(130);
-            }
-        });
+        LISTENING.store(true, Ordering::SeqCst);
         let lines = (!std::io::stderr().is_terminal()).then(Lines::new);
-        Self { bar: None, lines, begun: Instant::now(), interrupted, verbosity }
+        Self { bar: None, lines, begun: Instant::now(), verbosity }
     }
 
     /// Reports a step out of a total; tells whether to go on.
@@ -66,19 +76,15 @@ impl Progress {
             bar.set_length(total);
             bar.set_position(done);
             if self.lines.as_mut().is_some_and(|lines| lines.are_due(elapsed)) {
-                eprintln!("{}", line(stage, [done, total], elapsed, bar.eta()));
+                note(&line(stage, [done, total], elapsed, bar.eta()));
             }
         }
-        if self.interrupted.load(Ordering::SeqCst) {
-            ControlFlow::Break(())
-        } else {
-            ControlFlow::Continue(())
-        }
+        if INTERRUPTED.load(Ordering::SeqCst) { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     }
 
     /// Ends a command that the user wants to stop, where nothing is left but to write.
     pub fn heed(&self) -> Result<(), Failure> {
-        if self.interrupted.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
+        if INTERRUPTED.load(Ordering::SeqCst) { Err(Failure::interrupted()) } else { Ok(()) }
     }
 
     /// Reports how far a fit has come; tells whether to go on.

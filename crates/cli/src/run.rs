@@ -2,6 +2,8 @@
 
 use crate::arguments::{CommonArguments, Format, Verbosity};
 use crate::failure::Failure;
+use crate::progress::heed_signals;
+use crate::terminal::{self, legible};
 use std::time::Instant;
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_report::infer_report::{InputFile, RunRecord};
@@ -21,6 +23,7 @@ const MOST_THREADS: usize = 1024;
 
 impl Run {
     pub fn begin(name: &'static str, common: &CommonArguments) -> Result<Self, Failure> {
+        heed_signals();
         if let Some(threads) = common.threads {
             if threads == 0 {
                 return Err(Failure::new("--threads is 0, but at least one thread is needed")
@@ -59,7 +62,7 @@ impl Run {
     pub fn warn(&mut self, text: impl Into<String>) {
         let text = text.into();
         if self.verbosity == Verbosity::Normal {
-            eprintln!("warning: {text}");
+            terminal::note(&format!("warning: {text}"));
         }
         self.warnings.push(text);
     }
@@ -68,7 +71,7 @@ impl Run {
     pub fn record(&self, inputs: Option<&DataSet>) -> RunRecord {
         RunRecord {
             command: self.name.into(),
-            command_line: std::env::args().collect::<Vec<_>>().join(" "),
+            command_line: command_line(),
             version: env!("CARGO_PKG_VERSION").into(),
             seed: self.seed,
             threads: rayon::current_num_threads(),
@@ -87,14 +90,27 @@ impl Run {
 
     /// Puts the results in place and prints the summary.
     pub fn finish(&self, out: Option<OutputDirectory>, json: &str, summary: &str) -> Result<(), Failure> {
+        let place = out.as_ref().map(|out| out.path().to_owned());
         if let Some(out) = out {
             out.commit()?;
         }
-        match (self.format, self.verbosity) {
-            (Format::Json, _) => println!("{json}"),
-            (Format::Text, Verbosity::Normal) => print!("{summary}"),
-            (Format::Text, Verbosity::Quiet) => {}
-        }
-        Ok(())
+        let printed = match (self.format, self.verbosity) {
+            (Format::Json, _) => terminal::print(&format!("{json}\n")),
+            (Format::Text, Verbosity::Normal) => terminal::print(&legible(summary)),
+            (Format::Text, Verbosity::Quiet) => Ok(()),
+        };
+        printed.map_err(|error| {
+            let failure = Failure::new(format!("stdout cannot be written: {error}"));
+            match place {
+                Some(out) => failure.with_hint(format!("the results are complete in {}", out.display())),
+                None => failure,
+            }
+        })
     }
+}
+
+/// The command line as typed; what is not text is replaced.
+fn command_line() -> String {
+    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+    words.collect::<Vec<_>>().join(" ")
 }

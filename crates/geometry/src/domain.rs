@@ -2,6 +2,7 @@
 
 use crate::builder::MOST_BOXES;
 use crate::{Error, Scalar, Vector};
+use std::ops::RangeInclusive;
 
 /// The boundary condition. All of geometry, mechanics and inference see boundaries through this type only.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -21,6 +22,9 @@ pub struct PeriodicBox {
     offset: f64,
 }
 
+/// Sides whose squares and products are numbers of full precision.
+const SIDES: RangeInclusive<f64> = 1e-100..=1e100;
+
 impl PeriodicBox {
     /// A rectangular box with sides `[L_x, L_y]`.
     ///
@@ -36,7 +40,7 @@ impl PeriodicBox {
     /// [`Error::BoxSide`] or [`Error::BoxOffset`] if a number is not usable.
     pub fn sheared(lengths: [f64; 2], offset: f64) -> Result<Self, Error> {
         for (axis, length) in ['x', 'y'].into_iter().zip(lengths) {
-            if !(length.is_finite() && length > 0.0) {
+            if !SIDES.contains(&length) {
                 return Err(Error::BoxSide { axis, length });
             }
         }

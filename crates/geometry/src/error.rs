@@ -5,7 +5,7 @@ use thiserror::Error;
 #[non_exhaustive]
 pub enum Error {
     /// A box side that is not a positive finite number.
-    #[error("box side {axis} is {length}, but it must be positive and finite")]
+    #[error("box side {axis} is {length:e}, but it must be positive and finite, from 1e-100 to 1e100")]
     BoxSide {
         /// Name of the side: `x` or `y`.
         axis: char,

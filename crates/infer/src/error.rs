@@ -95,7 +95,7 @@ pub enum Error {
         value: f64,
     },
     /// The linear algebra failed.
-    #[error(transparent)]
+    #[error("the equations of the fit cannot be solved: {0}")]
     Algebra(#[from] voronudge_linalg::Error),
     /// The optimiser failed.
     #[error("the optimiser failed: {0}")]
@@ -107,6 +107,12 @@ pub enum Error {
 
 impl Error {
     /// Advice on what to change, if there is any.
+    ///
+    /// ```
+    /// let error = voronudge_infer::Error::from(voronudge_linalg::Error::NotPositiveDefinite);
+    /// assert!(error.to_string().starts_with("the equations of the fit cannot be solved: "));
+    /// assert!(error.hint().is_some());
+    /// ```
     pub fn hint(&self) -> Option<&'static str> {
         match self {
             Self::Geometry { source, .. } => source.hint(),
@@ -126,6 +132,11 @@ impl Error {
             Self::Constraint(_) => Some("check --fix, --bounds and --prior; K_P must not be held at zero"),
             Self::Spread(_) => Some("leave --vary out, or give velocities of fewer cells"),
             Self::Degenerate => Some("fix one of the parameters, for example K_A, or give more cells"),
+            Self::Algebra(voronudge_linalg::Error::OutOfMemory { .. }) => Some("give fewer cells or frames"),
+            Self::Algebra(_) => Some(
+                "cells that all but coincide, velocities far out of line, or noise levels far from the scatter of the data can do this: \
+                 look at the data with observe, or fix a parameter",
+            ),
             Self::Noise { .. } => {
                 Some("give the standard deviation of one component, in the units of the data")
             }

@@ -1,7 +1,7 @@
 //! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
 
 use crate::least_squares::{invert, within_bounds};
-use crate::linearisation::{Eliminated, Held, Linearisation};
+use crate::linearisation::{Held, Linearisation};
 use crate::quadratic::HalfSpace;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
@@ -214,18 +214,20 @@ impl NormalEquations {
         Ok(Step { step, promised })
     }
 
-    /// How the nudges follow the coefficients.
-    pub fn following(&self) -> Result<impl Fn(&DVector<f64>) -> Vec<f64>, Error> {
+    /// Derivatives of all unknowns by the free coefficients, where the nudges follow these.
+    pub fn ridge(&self) -> Result<DMatrix<f64>, Error> {
         let parts = self.frames.iter().map(|frame| frame.eliminate(self.spring, &[]));
         let parts = parts.collect::<Result<Vec<_>, Error>>()?;
-        let still = DVector::zeros(self.free.len());
-        Ok(move |step: &DVector<f64>| {
-            let of_part = |part: &Eliminated| {
-                let (moved, anyway) = (part.nudge_step(step), part.nudge_step(&still));
-                moved.into_iter().zip(anyway).map(|(moved, anyway)| moved - anyway).collect::<Vec<f64>>()
-            };
-            step.iter().copied().chain(parts.iter().flat_map(of_part)).collect()
-        })
+        let p = self.free.len();
+        let at = |free: &DVector<f64>| {
+            let nudges = parts.iter().flat_map(|part| part.nudge_step(free));
+            DVector::from_iterator(p + 2 * self.places(), free.iter().copied().chain(nudges))
+        };
+        let still = at(&DVector::zeros(p));
+        let columns: Vec<DVector<f64>> = (0..p)
+            .map(|k| at(&DVector::from_fn(p, |row, _| f64::from(u8::from(row == k)))) - &still)
+            .collect();
+        Ok(DMatrix::from_columns(&columns))
     }
 
     /// log det of the second derivative of Φ with respect to the nudges.

@@ -119,6 +119,10 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
     let field = parse_field_images(path, &bytes)?;
     let (_, rows, columns) = field.dim();
     let lengths = [columns as f64 * pixel, rows as f64 * pixel];
+    if options.smoothing > lengths[0].max(lengths[1]) {
+        let fault = SettingFault::BeyondImage { key: "smoothing", value: options.smoothing, size: lengths };
+        return Err(Error::Setting(fault));
+    }
     let domain = match options.edge {
         Edge::Open => Domain::Open,
         Edge::Periodic => {

@@ -11,7 +11,11 @@ use self::png::{Indices, parse_png};
 use self::tiff::{integers, parse_tiff, reals};
 use crate::array::{parse_integers, parse_reals};
 use crate::error::{Error, FormatFault, ImageFault, ShapeFault};
+use crate::memory::machine_memory;
 use crate::tracks::SIZE_LIMIT;
+
+/// Memory that an image takes while it is read and searched, in 8 bytes for each pixel.
+const COPIES: u64 = 4;
 
 /// Labels (frames, rows, columns), 0 for background; one image is one frame.
 pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Array3<i64>, Error> {
@@ -93,10 +97,12 @@ fn as_picture(error: Error) -> Error {
 /// Refuses pages that do not fit in memory, before anything is allocated for their pixels.
 fn check_size(path: &Path, page: usize, size: [u32; 2]) -> Result<(), Error> {
     let [columns, rows] = size;
-    let needed = 8 * (page as u64 + 1) * u64::from(columns) * u64::from(rows);
-    if needed > SIZE_LIMIT {
+    let pixels = (page as u64 + 1).saturating_mul(u64::from(columns) * u64::from(rows));
+    let needed = pixels.saturating_mul(8);
+    let limit = machine_memory().map_or(SIZE_LIMIT, |memory| SIZE_LIMIT.min(memory / COPIES));
+    if needed > limit {
         let size = [columns as usize, rows as usize];
-        let fault = ImageFault::TooLarge { page, size, bytes: needed, limit: SIZE_LIMIT };
+        let fault = ImageFault::TooLarge { page, size, bytes: needed, limit };
         return Err(image_error(path, fault));
     }
     Ok(())

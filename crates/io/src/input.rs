@@ -4,8 +4,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-use sha2::{Digest, Sha256};
-
+use crate::digest::sha256;
 use crate::error::{Error, FileFault};
 
 /// A file that went into a result, for the record.
@@ -17,14 +16,19 @@ pub struct InputFile {
     pub sha256: String,
 }
 
+impl AsRef<Path> for InputFile {
+    fn as_ref(&self) -> &Path {
+        &self.path
+    }
+}
+
 /// Reads a regular file and records it.
 ///
 /// The sum is taken of the very bytes handed back, so the record stays true even if the file
 /// changes afterwards.
 pub(crate) fn read_input(path: &Path) -> Result<(Vec<u8>, InputFile), Error> {
     let bytes = read_bytes(path)?;
-    let sha256 = Sha256::digest(&bytes).iter().map(|byte| format!("{byte:02x}")).collect();
-    let record = InputFile { path: path.to_path_buf(), sha256 };
+    let record = InputFile { path: path.to_path_buf(), sha256: sha256(&bytes) };
     Ok((bytes, record))
 }
 

@@ -1,32 +1,35 @@
 //! Lines written one after another by a long run of many parts, which can be taken up again where it was cut off.
 
 use std::fs::{self, File, OpenOptions};
-use std::io::{self, Seek, SeekFrom, Write};
+use std::io::{Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use crate::digest::sha256;
 use crate::error::{Error, OutputFault};
-use crate::output::{OutputDirectory, output_error};
-use crate::recording::{FOLDER, remove};
+use crate::output::run::{self, JOURNAL, RUN, RunFolder, remove};
+use crate::output::{OutputDirectory, OutputFolder, output_error};
 
-const NAME: &str = "journal";
+/// Digits of the checksum before a line.
+const DIGITS: usize = 16;
 
 /// The lines of an unfinished run inside its output directory. The first says what the run is, each other one a part of it
 /// that is done, in any order.
 ///
 /// A line is on the disk when [`append`](Self::append) returns. One that was cut off, so that it lacks its end, counts as not
-/// written.
+/// written. Each has a checksum of itself and its number before it, so that a journal that was changed is refused.
 ///
 /// ```
-/// # let folder = tempfile::tempdir()?;
-/// # let out = folder.path().join("out");
-/// use voronudge_io::Journal;
-/// let mut journal = Journal::begin(&out, "squares of 1 to 3")?;
+/// # let scratch = tempfile::tempdir()?;
+/// # let out = scratch.path().join("out");
+/// use voronudge_io::{Journal, OutputFolder};
+/// let folder = OutputFolder::claim(&out)?;
+/// let mut journal = Journal::begin(&folder, "squares of 1 to 3")?;
 /// journal.append("2 4")?;
 /// drop(journal); // the program dies, while it writes
 /// let torn = out.join(".voronudge-run/journal");
 /// std::fs::write(&torn, std::fs::read_to_string(&torn)? + "3 ")?;
 ///
-/// let (mut journal, lines) = Journal::resume(&out)?;
+/// let (mut journal, lines) = Journal::resume(&folder)?;
 /// assert_eq!(lines, ["squares of 1 to 3", "2 4"]);
 /// journal.append("1 1")?;
 /// assert_eq!(Journal::find(&out)?.map(|lines| lines.len()), Some(3));
@@ -36,34 +39,24 @@ const NAME: &str = "journal";
 /// ```
 #[derive(Debug)]
 pub struct Journal {
-    folder: PathBuf,
-    path: PathBuf,
     file: File,
-    /// The output directory, if it was made here.
-    made: Option<PathBuf>,
+    path: PathBuf,
+    /// Lines so far.
+    lines: usize,
+    run: RunFolder,
 }
 
 impl Journal {
-    /// Begins a journal in an output directory, which is made if need be. An unfinished run is given up.
+    /// Begins a journal in an output directory. An unfinished run is given up.
     ///
     /// # Errors
     /// [`Error::Output`] where a file cannot be written.
-    pub fn begin(out: &Path, first: &str) -> Result<Self, Error> {
-        if out.as_os_str().is_empty() {
-            return Err(output_error(out, OutputFault::Unnamed));
-        }
-        if out.is_file() {
-            return Err(output_error(out, OutputFault::NotADirectory));
-        }
-        let made = (!out.exists()).then(|| out.to_path_buf());
-        fs::create_dir_all(out).map_err(|source| output_error(out, OutputFault::Create(source)))?;
-        let folder = out.join(FOLDER);
-        remove(&folder)?;
-        fs::create_dir(&folder).map_err(|source| output_error(&folder, OutputFault::NotWritable(source)))?;
-        let path = folder.join(NAME);
+    pub fn begin(folder: &OutputFolder, first: &str) -> Result<Self, Error> {
+        let run = RunFolder::begin(folder)?;
+        let path = run.path().join(JOURNAL);
         let file =
             File::create(&path).map_err(|source| output_error(&path, OutputFault::NotWritable(source)))?;
-        let mut journal = Self { folder, path, file, made };
+        let mut journal = Self { file, path, lines: 0, run };
         journal.append(first)?;
         Ok(journal)
     }
@@ -71,35 +64,32 @@ impl Journal {
     /// The whole lines of an unfinished run in an output directory; `None` if there is none.
     ///
     /// # Errors
-    /// [`Error::Output`] where it cannot be read.
+    /// [`Error::File`] where it cannot be read, [`Error::Output`] where it was changed.
     pub fn find(out: &Path) -> Result<Option<Vec<String>>, Error> {
-        let path = out.join(FOLDER).join(NAME);
-        match fs::read(&path) {
-            Ok(bytes) => {
-                let lines = whole_lines(&bytes);
-                Ok((!lines.is_empty()).then_some(lines))
-            }
-            Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-            Err(source) => Err(output_error(&path, OutputFault::Write(source))),
-        }
+        let path = out.join(RUN).join(JOURNAL);
+        let Some(bytes) = run::read(&path)? else { return Ok(None) };
+        let lines = whole_lines(&path, &bytes)?;
+        Ok((!lines.is_empty()).then_some(lines))
     }
 
     /// Takes up an unfinished journal after its last whole line; also returns the lines so far.
     ///
     /// # Errors
-    /// [`Error::Output`] where there is none, or it cannot be written.
-    pub fn resume(out: &Path) -> Result<(Self, Vec<String>), Error> {
-        let folder = out.join(FOLDER);
-        let path = folder.join(NAME);
+    /// [`Error::Output`] where there is none, it was changed, or it cannot be written.
+    pub fn resume(folder: &OutputFolder) -> Result<(Self, Vec<String>), Error> {
+        let run = RunFolder::resume(folder);
+        let path = run.path().join(JOURNAL);
+        let failure = |source| output_error(&path, OutputFault::Write(source));
+        let bytes = fs::read(&path).map_err(failure)?;
+        let lines = whole_lines(&path, &bytes)?;
         let open = || {
-            let bytes = fs::read(&path)?;
             let mut file = OpenOptions::new().write(true).open(&path)?;
             file.set_len(whole(&bytes).len() as u64)?;
             file.seek(SeekFrom::End(0))?;
-            Ok((file, whole_lines(&bytes)))
+            Ok(file)
         };
-        let (file, lines) = open().map_err(|source| output_error(&path, OutputFault::Write(source)))?;
-        Ok((Self { folder, path, file, made: None }, lines))
+        let file = open().map_err(failure)?;
+        Ok((Self { file, path, lines: lines.len(), run }, lines))
     }
 
     /// Appends a line, without its end, which must not have another inside.
@@ -107,32 +97,30 @@ impl Journal {
     /// # Errors
     /// [`Error::Output`] where it cannot be written.
     pub fn append(&mut self, line: &str) -> Result<(), Error> {
+        let text = format!("{} {line}\n", checksum(self.lines, line));
         let write = |file: &mut File| {
-            file.write_all(format!("{line}\n").as_bytes())?;
+            file.write_all(text.as_bytes())?;
             file.sync_data()
         };
-        write(&mut self.file).map_err(|source| output_error(&self.path, OutputFault::Write(source)))
+        write(&mut self.file).map_err(|source| output_error(&self.path, OutputFault::Write(source)))?;
+        self.lines += 1;
+        Ok(())
     }
 
-    /// The results of the output directory. The journal stays until [`discard`](Self::discard).
+    /// The results of the output directory. The journal stays until they are committed.
     ///
     /// # Errors
     /// [`Error::Output`] where the directory cannot be written to.
-    pub fn results(&self) -> Result<OutputDirectory, Error> {
-        OutputDirectory::staged_in(self.folder.parent().unwrap_or(&self.folder), &self.folder)
+    pub fn results(self) -> Result<OutputDirectory, Error> {
+        OutputDirectory::of_run(self.run)
     }
 
-    /// Removes the journal, once the results are in place; and the output directory if it was made for it and is empty.
+    /// Gives the run up.
     ///
     /// # Errors
     /// [`Error::Output`] where it cannot be removed.
     pub fn discard(self) -> Result<(), Error> {
-        remove(&self.folder)?;
-        if let Some(out) = &self.made {
-            // Fails, as it should, where the directory holds results.
-            let _ = fs::remove_dir(out);
-        }
-        Ok(())
+        remove(self.run.path())
     }
 }
 
@@ -142,6 +130,21 @@ fn whole(bytes: &[u8]) -> &[u8] {
     &bytes[..end]
 }
 
-fn whole_lines(bytes: &[u8]) -> Vec<String> {
-    String::from_utf8_lossy(whole(bytes)).lines().map(str::to_owned).collect()
+fn whole_lines(path: &Path, bytes: &[u8]) -> Result<Vec<String>, Error> {
+    let text = String::from_utf8_lossy(whole(bytes));
+    let line = |(number, text): (usize, &str)| match text.split_once(' ') {
+        Some((sum, line)) if sum == checksum(number, line) => Ok(line.to_owned()),
+        _ => {
+            let place = format!("line {} is", number + 1);
+            Err(output_error(path, OutputFault::Damaged { place }))
+        }
+    };
+    text.split_terminator('\n').enumerate().map(line).collect()
+}
+
+/// The sum of a line and its number, so that lines cannot change places either.
+fn checksum(number: usize, line: &str) -> String {
+    let mut sum = sha256(format!("{number} {line}").as_bytes());
+    sum.truncate(DIGITS);
+    sum
 }

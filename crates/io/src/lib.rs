@@ -14,6 +14,8 @@
 //! | read which frames the user wants | [`FrameSelection`] |
 //! | read a profile of velocities across a channel | [`read_flow_profile`] |
 //! | read one array | [`read_reals`], [`read_integers`], [`read_vectors`] |
+//! | refuse what the machine has no memory for | [`machine_memory`] |
+//! | keep other processes out of a directory of results | [`OutputFolder`] |
 //! | write results so that a killed run spoils nothing | [`OutputDirectory`] |
 //! | write frames of a long run that can be taken up again | [`Recording`] |
 //!
@@ -30,6 +32,7 @@
 
 mod array;
 mod dataset;
+mod digest;
 mod error;
 mod field_import;
 mod field_of_view;
@@ -42,6 +45,7 @@ mod input;
 mod journal;
 mod label_import;
 mod measurement;
+mod memory;
 mod noise;
 mod outline_import;
 mod output;
@@ -71,9 +75,10 @@ pub use input::InputFile;
 pub use journal::Journal;
 pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_labels};
 pub use measurement::{DeclaredWindow, PositionsAre, WindowKind};
+pub use memory::machine_memory;
 pub use noise::Noise;
 pub use outline_import::{OutlineOptions, import_outlines};
-pub use output::OutputDirectory;
+pub use output::{OutputDirectory, OutputFolder};
 pub use recording::Recording;
 pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
 pub use source::Source;

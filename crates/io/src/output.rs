@@ -1,5 +1,9 @@
 //! Results written so that a run that dies leaves the earlier results whole.
 
+pub(crate) mod commit;
+pub(crate) mod folder;
+pub(crate) mod run;
+
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
@@ -10,12 +14,19 @@ use tempfile::TempDir;
 
 use crate::array::write_npy;
 use crate::error::{Error, OutputFault};
+use commit::Ends;
+pub use folder::OutputFolder;
+use run::RunFolder;
+
+/// How names of hidden folders begin.
+const STAGING: &str = ".voronudge-";
 
 /// A directory that receives results all at once.
 ///
-/// Files are written completely into a hidden directory inside it and are moved to their places
-/// by [`commit`](Self::commit). Dropping without a commit removes them, and the directory too if
-/// it was made for this run. Files of other names are left alone.
+/// Files are written completely into a hidden directory inside it. [`commit`](Self::commit) decides by one move that they
+/// are the results, and puts them in place; where a process dies after that move, the next to claim or to read the directory
+/// finishes. Dropping without a commit removes them, and the directory too if it was made for this run. Files of other names
+/// are left alone.
 ///
 /// ```no_run
 /// use ndarray::array;
@@ -30,68 +41,54 @@ use crate::error::{Error, OutputFault};
 pub struct OutputDirectory {
     // Declared, and so dropped, before the directory it lies in.
     staging: TempDir,
-    directory: Directory,
+    /// The run that it ends, if it has files in common with it.
+    _run: Option<RunFolder>,
+    ends: Ends,
+    folder: OutputFolder,
     /// File names in the order of writing, each once.
     staged: Vec<String>,
 }
 
-/// The directory itself, which goes again if it was made here and stays empty.
-#[derive(Debug)]
-struct Directory {
-    path: PathBuf,
-    origin: Origin,
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Origin {
-    Found,
-    Made,
-}
-
 impl OutputDirectory {
-    /// Makes the directory where it does not exist and makes sure that files can be written.
-    ///
-    /// Call it before the computation, so that a hopeless `--out` is told at once.
+    /// Claims a directory for results.
     ///
     /// # Errors
-    /// [`Error::Output`] where the path is a file, or cannot be created or written to.
+    /// As [`OutputFolder::claim`].
     pub fn create(path: impl Into<PathBuf>) -> Result<Self, Error> {
-        let path = path.into();
-        let failure = |fault| Err(output_error(&path, fault));
-        if path.as_os_str().is_empty() {
-            return failure(OutputFault::Unnamed);
-        }
-        let origin = match fs::metadata(&path) {
-            Ok(metadata) if metadata.is_dir() => Origin::Found,
-            Ok(_) => return failure(OutputFault::NotADirectory),
-            Err(_) => match fs::create_dir_all(&path) {
-                Ok(()) => Origin::Made,
-                Err(source) => return failure(OutputFault::Create(source)),
-            },
-        };
-        let directory = Directory { path, origin };
-        // Making the hidden directory is the proof that the place is writable.
-        let staging = tempfile::Builder::new()
-            .prefix(".voronudge-")
-            .tempdir_in(&directory.path)
-            .map_err(|source| output_error(&directory.path, OutputFault::NotWritable(source)))?;
-        Ok(Self { staging, directory, staged: Vec::new() })
+        Self::of(OutputFolder::claim(path)?)
     }
 
-    /// For a directory that exists, with the files that are not yet in place in a folder of it.
-    pub(crate) fn staged_in(path: &Path, folder: &Path) -> Result<Self, Error> {
-        let staging = tempfile::Builder::new()
-            .prefix("results-")
-            .tempdir_in(folder)
-            .map_err(|source| output_error(path, OutputFault::NotWritable(source)))?;
-        let directory = Directory { path: path.to_path_buf(), origin: Origin::Found };
-        Ok(Self { staging, directory, staged: Vec::new() })
+    /// For a directory that is claimed.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where it cannot be written to.
+    pub fn of(folder: OutputFolder) -> Result<Self, Error> {
+        let staging = hidden(STAGING, folder.path(), folder.path())?;
+        Ok(Self { staging, _run: None, ends: Ends::Nothing, folder, staged: Vec::new() })
+    }
+
+    /// For the results of a run, with the files that are not yet in place in its folder.
+    pub(crate) fn of_run(run: RunFolder) -> Result<Self, Error> {
+        let folder = run.folder().clone();
+        let staging = hidden("results-", run.path(), folder.path())?;
+        Ok(Self { staging, _run: Some(run), ends: Ends::TheRun, folder, staged: Vec::new() })
+    }
+
+    /// The directory as it is claimed.
+    #[must_use]
+    pub fn folder(&self) -> &OutputFolder {
+        &self.folder
     }
 
     /// The directory.
     #[must_use]
     pub fn path(&self) -> &Path {
-        &self.directory.path
+        self.folder.path()
+    }
+
+    /// States that the results end the run whose journal is in the directory: the commit removes it.
+    pub fn end_run(&mut self) {
+        self.ends = Ends::TheRun;
     }
 
     /// The names written so far, in order.
@@ -141,37 +138,36 @@ impl OutputDirectory {
         self.stage(name, |file| file.write_all(bytes))
     }
 
-    /// Takes in a finished file that lies elsewhere on the same disk; it stays there as well.
-    pub(crate) fn link(&mut self, name: &str, file: &Path) -> Result<(), Error> {
-        let target = self.directory.path.join(name);
+    /// Takes in a finished file of the run, by its name there; it stays there as well.
+    pub(crate) fn link(&mut self, name: &str, (path, file): (&Path, &File)) -> Result<(), Error> {
+        let target = self.path().join(name);
         refuse_folder(&target)?;
         let staged = self.staging.path().join(name);
-        fs::hard_link(file, &staged)
-            .or_else(|_| fs::copy(file, &staged).map(|_| ()))
-            .map_err(|source| output_error(&target, OutputFault::Write(source)))?;
+        let link = || {
+            if fs::hard_link(path, &staged).is_err() {
+                fs::copy(path, &staged)?;
+                File::open(&staged)?.sync_all()?;
+            }
+            match folder::is_at(file, path) {
+                true => Ok(()),
+                false => Err(io::Error::other("another program has replaced it")),
+            }
+        };
+        link().map_err(|source| output_error(&target, OutputFault::Write(source)))?;
         self.staged.retain(|known| known != name);
         self.staged.push(name.to_owned());
         Ok(())
     }
 
-    /// Moves everything to its place; earlier results of the same names are replaced.
+    /// Puts all results in place; earlier results of the same names are replaced.
     ///
     /// Returns the paths of the results in the order of writing.
     ///
     /// # Errors
-    /// [`Error::Output`]; whether a name is taken by a folder is looked at before the first move.
+    /// [`Error::Output`]; whether a name is taken by a folder is looked at before anything is decided.
     pub fn commit(self) -> Result<Vec<PathBuf>, Error> {
-        let names = self.staged.iter();
-        let targets: Vec<PathBuf> = names.map(|name| self.directory.path.join(name)).collect();
-        for target in &targets {
-            refuse_folder(target)?;
-        }
-        for (done, (name, target)) in self.staged.iter().zip(&targets).enumerate() {
-            fs::rename(self.staging.path().join(name), target).map_err(|source| {
-                let total = targets.len();
-                output_error(target, OutputFault::Rename { source, done, total })
-            })?;
-        }
+        let targets = commit::targets(self.path(), &self.staged)?;
+        commit::commit(self.staging.path(), self.path(), self.ends)?;
         Ok(targets)
     }
 
@@ -183,16 +179,16 @@ impl OutputDirectory {
         self.stage(name, |file| write_npy(file, array))
     }
 
-    fn stage(
+    pub(crate) fn stage(
         &mut self,
         name: &str,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), Error> {
-        let target = self.directory.path.join(name);
+        let target = self.path().join(name);
         let plain = Path::new(name).file_name().is_some_and(|plain| plain == name);
         if !plain {
             let name = name.to_owned();
-            return Err(output_error(&self.directory.path, OutputFault::InvalidName { name }));
+            return Err(output_error(self.path(), OutputFault::InvalidName { name }));
         }
         refuse_folder(&target)?;
         // A write that fails must not leave half a file to be committed.
@@ -210,13 +206,10 @@ impl OutputDirectory {
     }
 }
 
-impl Drop for Directory {
-    fn drop(&mut self) {
-        if self.origin == Origin::Made {
-            // Fails, as it should, where the directory holds results.
-            let _ = fs::remove_dir(&self.path);
-        }
-    }
+/// Makes a hidden folder for files that are not yet in place.
+fn hidden(prefix: &str, parent: &Path, out: &Path) -> Result<TempDir, Error> {
+    let made = tempfile::Builder::new().prefix(prefix).tempdir_in(parent);
+    made.map_err(|source| output_error(out, OutputFault::NotWritable(source)))
 }
 
 fn refuse_folder(target: &Path) -> Result<(), Error> {

@@ -13,6 +13,7 @@ use crate::flow::{FlowField, FlowNames, grid_error};
 use crate::input::{InputFile, file_fault, read_input};
 use crate::measurement::{DeclaredWindow, PositionsAre};
 use crate::noise::Noise;
+use crate::output::OutputFolder;
 use crate::settings::Settings;
 use crate::validate::ArrayNames;
 
@@ -86,6 +87,9 @@ impl Source {
     /// [`Error::Value`] and [`Error::Grid`] as listed at [`DataSet::check`], the latter also for a
     /// flow field without its coordinates.
     pub fn load(&self) -> Result<DataSet, Error> {
+        if let Some(folder) = &self.folder {
+            OutputFolder::settle(folder)?;
+        }
         let mut inputs = Vec::new();
         let mut settings = self.read_settings(&mut inputs)?;
         let boundary = match self.boundary {

@@ -21,7 +21,9 @@ pub(crate) use vectors::{Vector, VectorTable, read_table};
 
 /// The most that a compressed table may grow to: far above any real one, far below what would
 /// exhaust a machine.
-const DECOMPRESSED_LIMIT: u64 = 4 << 30;
+const DECOMPRESSED_LIMIT: u64 = 1 << 30;
+/// The most rows of a table.
+const ROW_LIMIT: usize = 20_000_000;
 
 /// Rows that TrackMate may put between the header and the first spot.
 const EXTRA_HEADER_ROWS: usize = 3;
@@ -81,6 +83,9 @@ fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, 
         }
         extra_rows = 0;
         match columns.spot(&row) {
+            Ok(Some(_)) if table.spots.len() == ROW_LIMIT => {
+                return Err((offset_of(&row), TableFault::TooManyRows { limit: ROW_LIMIT }));
+            }
             Ok(Some(spot)) => table.spots.push(spot),
             Ok(None) => table.untracked += 1,
             Err(fault) => return Err((offset_of(&row), fault)),

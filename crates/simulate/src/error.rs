@@ -38,11 +38,21 @@ pub enum Error {
         /// The duration given.
         time: f64,
     },
+    /// A schedule that nobody lives to see the end of.
+    #[error("the duration has {steps:.3e} time steps, but {limit:.0e} are the most")]
+    TooManySteps {
+        /// Steps needed.
+        steps: f64,
+        /// The most possible.
+        limit: f64,
+    },
     /// A schedule that records nothing.
     #[error("0 frames, but a schedule records at least 1")]
     NoFrames,
-    /// A tolerance of the adaptive method that is not a positive finite number.
-    #[error("the tolerance is {tolerance}, but it must be positive and finite")]
+    /// A tolerance of the adaptive method that is no small positive number.
+    #[error(
+        "the tolerance is {tolerance}, but it must be positive and finite, and at most 1, the mean spacing"
+    )]
     Tolerance {
         /// The tolerance given.
         tolerance: f64,
@@ -186,6 +196,7 @@ impl Error {
                 "take a smaller time step: K_P Δt ≤ 0.01 for |α| ≤ 1, K_P |α| Δt ≤ 0.01 above; halve it until the result \
                  does not change",
             ),
+            Self::TooManySteps { .. } => Some("shorten the duration, or take a larger time step"),
             Self::Duration { .. } => Some("give the duration in units of time, about 1/K_P"),
             Self::Tolerance { .. } => Some("1e-4 of the mean spacing is usual"),
             Self::Walls { .. } => {

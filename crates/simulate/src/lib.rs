@@ -57,7 +57,7 @@ pub use error::Error;
 pub use honeycomb::honeycomb;
 pub use method::Method;
 pub use placement::{Generator, RandomPlacement, generator, seed_of_run};
-pub use schedule::{Completion, Event, Frame, RunState, Schedule, Summary, resume, run};
+pub use schedule::{Completion, Event, Frame, MOST_STEPS, RunState, Schedule, Summary, resume, run};
 pub use simulation::{Bond, Simulation, State};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;

@@ -5,6 +5,9 @@ use serde::{Deserialize, Serialize};
 use std::ops::ControlFlow;
 use voronudge_observables::{BlockAverage, TransitionCounter, mean_square_velocity};
 
+/// Steps of a schedule that no machine makes: a tissue of ten cells would take a year.
+pub const MOST_STEPS: f64 = 1e12;
+
 /// How long to run and what to record.
 ///
 /// Frame `k` of `F` is taken at `(k + 1) T / F` after the beginning: the last is the end of the run, and the beginning,
@@ -34,13 +37,16 @@ impl Schedule {
     /// Number of steps between two frames.
     ///
     /// # Errors
-    /// [`Error::NoFrames`], [`Error::Duration`] and [`Error::TimeStep`] for an impossible schedule.
+    /// [`Error::NoFrames`], [`Error::Duration`], [`Error::TimeStep`] and [`Error::TooManySteps`] for an impossible schedule.
     pub fn steps_per_frame(&self) -> Result<usize, Error> {
         let positive = |value: f64| value.is_finite() && value > 0.0;
         match self {
             Self { frames: 0, .. } => Err(Error::NoFrames),
             Self { time, .. } if !positive(*time) => Err(Error::Duration { time: *time }),
             Self { time_step, .. } if !positive(*time_step) => Err(Error::TimeStep { time_step: *time_step }),
+            _ if self.time / self.time_step > MOST_STEPS => {
+                Err(Error::TooManySteps { steps: self.time / self.time_step, limit: MOST_STEPS })
+            }
             // A quotient that exceeds a whole number by rounding alone is not rounded up.
             _ => Ok((self.frame_interval() / self.time_step * (1.0 - 1e-12)).ceil().max(1.0) as usize),
         }

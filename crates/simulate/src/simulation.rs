@@ -134,10 +134,10 @@ impl Simulation {
     /// The same with another method of integration.
     ///
     /// # Errors
-    /// [`Error::Tolerance`] if a tolerance is not positive and finite.
+    /// [`Error::Tolerance`] if a tolerance is not positive, or is more than the spacing of the cells.
     pub fn with_method(mut self, method: Method) -> Result<Self, Error> {
         if let Method::BogackiShampine { tolerance } = method
-            && !(tolerance.is_finite() && tolerance > 0.0)
+            && !(tolerance > 0.0 && tolerance <= 1.0)
         {
             return Err(Error::Tolerance { tolerance });
         }

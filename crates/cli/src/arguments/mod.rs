@@ -7,7 +7,7 @@ mod shard;
 
 pub(crate) use dataset::DataSetArguments;
 pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
-pub(crate) use parameters::ParameterArguments;
+pub(crate) use parameters::{LARGEST_PARAMETER, ParameterArguments};
 pub(crate) use shard::Shard;
 
 use crate::failure::Failure;
@@ -36,6 +36,9 @@ pub(crate) struct CommonArguments {
     /// Folder for the results; it is made if it does not exist.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+    /// Also replace a data set in --out that this program did not write there. Files that are read are never replaced.
+    #[arg(long)]
+    pub overwrite: bool,
     /// Seed of random numbers, for commands that draw some; recorded by all.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,

@@ -6,6 +6,9 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use voronudge_model::Parameters;
 
+/// Largest parameter whose forces and stresses are finite numbers.
+pub(crate) const LARGEST_PARAMETER: f64 = 1e50;
+
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Model")]
 #[allow(non_snake_case, reason = "the field's symbols are the names of the flags")]
@@ -36,6 +39,11 @@ impl ParameterArguments {
         self.resolve_over(Parameters::default())
     }
 
+    /// The file that they are read from, if there is one.
+    pub fn file(&self) -> Option<&Path> {
+        self.parameters.as_deref()
+    }
+
     /// The parameters with other defaults.
     pub fn resolve_over(&self, defaults: Parameters<f64>) -> Result<Parameters<f64>, Failure> {
         let mut parameters = defaults;
@@ -55,6 +63,12 @@ impl ParameterArguments {
                         .with_hint("leave it out for the default"));
                 }
                 *slot = value;
+            }
+            if slot.abs() > LARGEST_PARAMETER {
+                return Err(Failure::new(format!(
+                    "{name} is {slot:e}, but {LARGEST_PARAMETER:e} is the most in magnitude"
+                ))
+                .with_hint("give it in units in which lengths and times of cells are about 1"));
             }
         }
         Ok(parameters)

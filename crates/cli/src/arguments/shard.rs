@@ -4,10 +4,32 @@ use serde::{Deserialize, Serialize};
 
 /// Part `part` of `of`, from one.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(try_from = "Typed")]
 pub(crate) struct Shard {
     pub part: usize,
     pub of: usize,
 }
+
+/// A part as it stands in a file.
+#[derive(Deserialize)]
+struct Typed {
+    part: usize,
+    of: usize,
+}
+
+impl TryFrom<Typed> for Shard {
+    type Error = String;
+
+    fn try_from(Typed { part, of }: Typed) -> Result<Self, String> {
+        match 1 <= part && part <= of && of <= MOST_PARTS {
+            true => Ok(Self { part, of }),
+            false => Err(format!("a shard is written 1/4, 2/4, 3/4 or 4/4, of {MOST_PARTS} at most")),
+        }
+    }
+}
+
+/// Parts that nobody has machines for.
+const MOST_PARTS: usize = 10_000;
 
 impl Shard {
     pub const WHOLE: Self = Self { part: 1, of: 1 };
@@ -29,9 +51,7 @@ impl std::str::FromStr for Shard {
 
     fn from_str(text: &str) -> Result<Self, String> {
         let parts = text.split_once('/').and_then(|(part, of)| Some((part.parse().ok()?, of.parse().ok()?)));
-        match parts {
-            Some((part, of)) if 1 <= part && part <= of => Ok(Self { part, of }),
-            _ => Err("a shard is written 1/4, 2/4, 3/4 or 4/4".into()),
-        }
+        let (part, of) = parts.unwrap_or_default();
+        Self::try_from(Typed { part, of })
     }
 }

@@ -9,7 +9,7 @@ use clap::Args;
 use serde::Serialize;
 use std::fmt::Write as _;
 use voronudge_geometry::{Domain, PeriodicBox};
-use voronudge_io::{FrameSelection, OutputDirectory};
+use voronudge_io::FrameSelection;
 use voronudge_model::Model;
 use voronudge_model::gradient_check::{GradientReport, Place, check, check_model, made_up_environment};
 use voronudge_report::infer_report::RunRecord;
@@ -59,9 +59,13 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let run = Run::begin("check-gradients", &arguments.common)?;
     let parameters = arguments.parameters.resolve()?;
     let effects = arguments.effects.resolve()?;
-    let mut out = arguments.common.out.as_ref().map(OutputDirectory::create).transpose()?;
     let given = arguments.data.dataset.is_some() || arguments.data.positions.is_some();
     let data = given.then(|| arguments.data.load()).transpose()?;
+    let inputs = data.iter().flat_map(|data| &data.inputs).map(AsRef::as_ref);
+    let mut out = match &arguments.common.out {
+        Some(_) => Some(arguments.common.output(inputs.chain(arguments.parameters.file()))?),
+        None => None,
+    };
     let mut subjects: Vec<(String, Snapshot, Domain)> = Vec::new();
     match &data {
         Some(data) => {

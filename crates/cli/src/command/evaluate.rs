@@ -116,7 +116,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?,
         None => (0..data.frames()).collect(),
     };
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out =
+        arguments.common.output(data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file()))?;
     // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
     let base = Model::chiral_voronoi(&parameters);
     let mut fields = Vec::new();
@@ -134,6 +135,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
                 .map_err(|error| Failure::new(error.to_string()).at(place()))?;
         }
         let model = effects.add_to(base.clone(), surroundings, domain)?;
+        let moving = velocities(&tessellation, &snapshot.positions, &model);
+        if moving.iter().any(|v| v.x.is_infinite() || v.y.is_infinite()) {
+            return Err(Failure::new("velocities are too large to be numbers")
+                .at(place())
+                .with_hint("give parameters in units in which lengths and times of cells are about 1"));
+        }
         if index == 0 && arguments.jacobian {
             let matrix = jacobian(&tessellation, &snapshot.positions, &model);
             if frames.len() > 1 {
@@ -142,7 +149,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             write_jacobian(&mut out, &matrix, &snapshot, &data)?;
         }
         fields.push(Fields {
-            velocities: velocities(&tessellation, &snapshot.positions, &model),
+            velocities: moving,
             areas: areas(&tessellation, &snapshot.positions),
             perimeters: perimeters(&tessellation, &snapshot.positions),
             stress: oriented(

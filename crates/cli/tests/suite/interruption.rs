@@ -9,7 +9,7 @@ use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 /// A run of many minutes, with frames close together.
-const LINE: &str = "simulate --cells 100 --time 10000 --dt 0.01 --frames 100000 --alpha 1";
+const LINE: &str = "simulate --overwrite --cells 100 --time 10000 --dt 0.01 --frames 100000 --alpha 1";
 
 fn start(line: &str, out: &Path) -> Child {
     let mut command = command();
@@ -87,4 +87,36 @@ fn an_interrupted_diagram_can_be_taken_up_but_not_by_mistake() {
     told("phase-diagram --cells 300 --time 1000 --P_0 4 4.2 3 --resume", &["\"cells\""]);
     told(&format!("{line} --shard 1/2 --resume"), &["\"shard\""]);
     assert_eq!(out.names(), [".voronudge-run"]);
+}
+
+#[test]
+fn commands_without_steps_end_at_once_and_leave_nothing() {
+    let data = Folder::new();
+    // A flat image takes a while to find no extrema in.
+    let (image, size) = (data.file("flat.png"), 6000);
+    let mut encoder = png::Encoder::new(std::fs::File::create(&image).unwrap(), size, size);
+    encoder.set_color(png::ColorType::Grayscale);
+    encoder.write_header().unwrap().write_image_data(&vec![1; (size * size) as usize]).unwrap();
+    for signal in ["-INT", "-TERM"] {
+        let parent = Folder::new();
+        let out = parent.file("results");
+        let mut import = command();
+        import.args(["import", "field"]).arg(&image).arg("--out").arg(&out);
+        let run = import.stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
+        let begun = Instant::now();
+        while !out.join(".voronudge-lock").exists() {
+            assert!(begun.elapsed() < Duration::from_secs(60));
+            sleep(Duration::from_millis(1));
+        }
+        assert!(Command::new("kill").args([signal, &run.id().to_string()]).status().unwrap().success());
+        let begun = Instant::now();
+        let output = run.wait_with_output().unwrap();
+        assert!(begun.elapsed() < Duration::from_secs(2));
+        let told = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(
+            (output.status.code(), told.as_str()),
+            (Some(130), "error: interrupted; nothing was written\n")
+        );
+        assert!(names(parent.path()).is_empty(), "{:?}", names(parent.path()));
+    }
 }

@@ -10,6 +10,8 @@ mod bad_places;
 mod channels;
 mod discoveries;
 mod evaluations;
+#[cfg(target_os = "linux")]
+mod faults;
 mod fields_of_view;
 mod flow_imports;
 mod flow_inferences;
@@ -20,6 +22,7 @@ mod inferences;
 #[cfg(unix)]
 mod interruption;
 mod layouts;
+mod limits;
 mod measured_sets;
 mod measurements;
 mod moduli;
@@ -28,6 +31,7 @@ mod phase_diagrams;
 mod phase_diffusions;
 mod program;
 mod refusal;
+mod reliability;
 mod replicates;
 mod resumption;
 mod scratch;

@@ -12,7 +12,6 @@
 //! its cells were, so that the least of Φ by itself is one of too soft a tissue. Its slope, along the ridge x̂(β), is found from
 //! differences, and stands beside Φ until the fit has moved.
 
-use super::anchors::Share;
 use super::objective::MovieObjective;
 use super::states::Place;
 use crate::Error;
@@ -35,32 +34,57 @@ pub(crate) struct Integrated {
     slope: DVector<f64>,
 }
 
-impl Integrated {
-    /// About a fit of cells that crawl, with by how many standard errors it moves the coefficients at most.
-    pub fn at(objective: &MovieObjective<'_>, parameters: &[f64]) -> Result<Self, Error> {
-        let (free, _) = objective.split(parameters);
-        let p = free.len();
+/// The ridge x̂(β) about a fit.
+struct Ridge<'a> {
+    objective: MovieObjective<'a>,
+    parameters: &'a [f64],
+    /// Independent directions of the free coefficients, a standard error long.
+    directions: DMatrix<f64>,
+    /// Derivatives of all unknowns by these.
+    unknowns: DMatrix<f64>,
+    held: Held,
+}
+
+impl<'a> Ridge<'a> {
+    fn new(objective: MovieObjective<'a>, parameters: &'a [f64]) -> Result<Self, Error> {
         let equations = objective.linearise(parameters)?;
         let covariance = invert(equations.reduced()?.information)? * objective.levels.velocity.powi(2);
-        let root = covariance.cholesky().ok_or(Error::Degenerate)?.unpack();
-        let follow = equations.following()?;
-        let held = objective.held_at_first();
-        let determinant = |step: DVector<f64>| -> Result<f64, Error> {
-            let at: Vec<f64> = parameters.iter().zip(follow(&step)).map(|(at, by)| at + by).collect();
-            let placed = objective.place(&at)?;
-            let mut equations = objective.linearise_at(&placed, &at, Share::Known)?;
-            equations.hold(&held);
-            equations.log_determinant()
-        };
-        let mut along = DVector::zeros(p);
-        for k in 0..p {
-            let step = root.column(k) * STEP;
-            along[k] = (determinant(step.clone())? - determinant(-step)?) / (2.0 * STEP);
+        Ok(Self {
+            objective,
+            parameters,
+            directions: covariance.cholesky().ok_or(Error::Degenerate)?.unpack(),
+            unknowns: equations.ridge()?,
+            held: objective.held_at_first(),
+        })
+    }
+
+    /// log det H a step of the free coefficients farther.
+    fn determinant(&self, step: &DVector<f64>) -> Result<f64, Error> {
+        let moved = &self.unknowns * step;
+        let at: Vec<f64> = self.parameters.iter().zip(&moved).map(|(at, by)| at + by).collect();
+        let mut equations = self.objective.linearise(&at)?;
+        equations.hold(&self.held);
+        equations.log_determinant()
+    }
+
+    /// Its derivative by the free coefficients.
+    fn slope(&self) -> Result<DVector<f64>, Error> {
+        let mut along = DVector::zeros(self.directions.ncols());
+        for (k, direction) in self.directions.column_iter().enumerate() {
+            let step = direction * STEP;
+            along[k] = (self.determinant(&step)? - self.determinant(&-step)?) / (2.0 * STEP);
         }
-        let slope = root.transpose().solve_upper_triangular(&along).ok_or(Error::Degenerate)?;
-        let basis: DMatrix<f64> = objective.space.basis().clone();
-        let slope = &basis * invert(basis.transpose() * &basis)? * slope;
-        Ok(Self { about: objective.space.coefficients(free), slope })
+        self.directions.tr_solve_lower_triangular(&along).ok_or(Error::Degenerate)
+    }
+}
+
+impl Integrated {
+    /// About a fit of cells that crawl.
+    pub fn at(objective: &MovieObjective<'_>, parameters: &[f64]) -> Result<Self, Error> {
+        let slope = Ridge::new(*objective, parameters)?.slope()?;
+        let basis = objective.space.basis();
+        let slope = basis * invert(basis.tr_mul(basis))? * slope;
+        Ok(Self { about: objective.space.coefficients(objective.split(parameters).0), slope })
     }
 
     /// log det H of some coefficients, but for a constant.
@@ -100,5 +124,45 @@ impl MovieObjective<'_> {
             self.space.basis().tr_mul(&DVector::from_vec(slope)) * -0.5
         };
         self.states.integrated.as_ref().map_or_else(|| DVector::zeros(self.space.dimension()), of)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::Watch;
+    use crate::tracks::follow;
+    use crate::tracks::sample::Filmed;
+    use crate::{Activity, Constraints, CrossValidation, Quantity, Request};
+    use std::ops::ControlFlow;
+
+    /// The slope is that of the determinant, and pulls towards a stiffer tissue.
+    #[test]
+    fn a_soft_tissue_yields_more() {
+        let (movie, _) =
+            Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
+        let constraints =
+            Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+        let request = Request {
+            activity: Activity::Polarity,
+            cross_validation: CrossValidation::Skipped,
+            ..Request::new(constraints)
+        };
+        let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+        let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();
+        let space = request.space().unwrap();
+        let objective = followed.objective(&movie, &request.structure, &space);
+        let ridge = Ridge::new(objective, &followed.fit.parameters).unwrap();
+        let slope = ridge.slope().unwrap();
+        let step = &ridge.directions * DVector::from_element(space.dimension(), 0.5);
+        let rise = ridge.determinant(&step).unwrap() - ridge.determinant(&-&step).unwrap();
+        let expected = 2.0 * slope.dot(&step);
+        assert!((rise - expected).abs() < 0.3 * expected.abs() + 0.5, "{rise} {expected}");
+        // Along K_P, which is where the tilt of the fit goes.
+        let stiffer = space.nearest(&[0.0, 3.6, 1.0, 0.0]);
+        let softer = space.nearest(&[0.0, 0.0, 0.0, 0.0]);
+        let along = DVector::from_vec(stiffer) - DVector::from_vec(softer);
+        assert!(slope.dot(&along) < 0.0, "{slope:?}");
+        assert!(objective.tilt().dot(&along) > 0.0);
     }
 }

@@ -258,8 +258,8 @@ impl<'a> MovieObjective<'a> {
         let nudges = of_seen.iter().sum();
         let surprise = self.weight_of_outset() * self.surprise(&placed, displacements);
         let floor = self.stiffness().of(displacements) + surprise + self.driven(&placed, parameters);
-        let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity)
-            + self.integration(free);
+        let priors =
+            self.space.penalty(&self.space.coefficients(free), self.levels.velocity) + self.integration(free);
         Ok(MovieParts { residual, nudges, floor, priors })
     }
 

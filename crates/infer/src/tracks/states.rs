@@ -153,7 +153,17 @@ impl States {
         };
         let drifts = (start.len(), drifts);
         let polarities = Polarities::default();
-        Ok(Self { drifts, instants, intervals, motions, anchors, start, polarities, own_motion: None, integrated: None })
+        Ok(Self {
+            drifts,
+            instants,
+            intervals,
+            motions,
+            anchors,
+            start,
+            polarities,
+            own_motion: None,
+            integrated: None,
+        })
     }
 
     /// The same with positions measured at another share of the way to the centroids.

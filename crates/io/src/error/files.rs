@@ -72,6 +72,24 @@ pub enum OutputFault {
     /// Writing failed.
     #[error("cannot be written: {0}")]
     Write(io::Error),
+    /// What is not needed any more cannot be removed.
+    #[error("cannot be removed: {0}")]
+    Remove(io::Error),
+    /// Another process works in the output directory.
+    #[error("is written to by {holder}")]
+    InUse {
+        /// What it says of itself.
+        holder: String,
+    },
+    /// A checkpoint or a journal is not as it was written.
+    #[error("{place} not as it was written: its checksum is another")]
+    Damaged {
+        /// Which part of it, with a verb.
+        place: String,
+    },
+    /// Results cannot be made the current ones.
+    #[error("the results cannot be put in place: {0}")]
+    Switch(io::Error),
     /// A finished file cannot be moved to its place.
     #[error("cannot be moved into place after {done} of {total} results: {source}")]
     Rename {
@@ -93,12 +111,18 @@ impl OutputFault {
             Self::InvalidName { .. } => Some("results go directly into the directory".into()),
             Self::Occupied => Some("move the folder away or choose another --out".into()),
             Self::Write(source) => Some(refusal(source)),
-            Self::Rename { done: 0, .. } => {
-                Some("the earlier results are untouched; choose another --out".into())
-            }
-            Self::Rename { .. } => {
-                Some("the directory now mixes new and earlier results; run again with another --out".into())
-            }
+            Self::Remove(source) => Some(refusal(source)),
+            Self::InUse { .. } => Some("wait until it has ended, or choose another --out".into()),
+            Self::Damaged { .. } => Some(
+                "the disk, a copy or another program has changed it; remove the folder .voronudge-run and begin again"
+                    .into(),
+            ),
+            Self::Switch(_) => Some("the earlier results are untouched; choose another --out".into()),
+            Self::Rename { .. } => Some(
+                "all results are complete in its folder .voronudge-commit; the next command that writes to or reads \
+                 this directory puts them in place"
+                    .into(),
+            ),
         }
     }
 }

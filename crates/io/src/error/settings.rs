@@ -87,6 +87,16 @@ pub enum SettingFault {
         /// The value given.
         value: f64,
     },
+    /// A length beyond the size of the image.
+    #[error("{key} is {value:e}, but the image is {} wide and {} high", size[0], size[1])]
+    BeyondImage {
+        /// Name of the setting.
+        key: &'static str,
+        /// The length given.
+        value: f64,
+        /// Width and height of the image.
+        size: [f64; 2],
+    },
     /// A width without a kind of window.
     #[error("window_width is given but window is not")]
     WidthOfNoWindow,
@@ -110,6 +120,7 @@ impl SettingFault {
     pub(super) fn hint(&self) -> Option<String> {
         let text = match self {
             Self::NotPositive { .. } => "give a positive number, in the units of the data",
+            Self::BeyondImage { .. } => "give it in units of length; a fraction of a cell is usual",
             Self::Negative { .. } => "leave it out where the noise is not known",
             Self::Unknown { .. } => "write it as the message says",
             Self::MissingBoundary { .. } => {

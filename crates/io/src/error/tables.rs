@@ -16,6 +16,12 @@ pub enum TableFault {
         /// The most that is read.
         limit: u64,
     },
+    /// More rows than can be meant.
+    #[error("has more than {limit} rows of spots")]
+    TooManyRows {
+        /// The most that are read.
+        limit: usize,
+    },
     /// A header and nothing below it.
     #[error("has a header but no data rows")]
     NoRows,
@@ -134,6 +140,7 @@ impl TableFault {
             Self::MissingColumn { example, .. } => return Some(format!("name the columns, e.g. {example}")),
             Self::Empty => "export the table again with its header line",
             Self::Gzip(_) => "the file was probably cut while it was copied; copy it again",
+            Self::TooManyRows { .. } => "split the table into several movies",
             Self::TooLong { .. } => "export fewer columns, or split the table",
             Self::NoRows => "export the table again; was the track filter empty?",
             Self::NoTracks { .. } => "link the spots to tracks before the export",

@@ -4,11 +4,12 @@ use std::io::Cursor;
 use std::path::Path;
 
 use ndarray::Array3;
-use tiff::decoder::{Decoder, DecodingResult};
+use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::{ColorType, TiffError};
 
 use super::{check_size, image_error};
 use crate::error::{Error, ImageFault};
+use crate::tracks::SIZE_LIMIT;
 
 /// The pages of a TIFF file, each a frame.
 pub(super) fn parse_tiff<T: Clone>(
@@ -21,7 +22,11 @@ pub(super) fn parse_tiff<T: Clone>(
     let broken = |page: usize| {
         move |error: TiffError| image_error(path, ImageFault::Tiff { page, detail: error.to_string() })
     };
-    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(broken(0))?;
+    // The size of pages is checked below; what is read on the way to their pixels is never more than the file.
+    let mut limits = Limits::default();
+    limits.decoding_buffer_size = usize::try_from(SIZE_LIMIT).unwrap_or(usize::MAX);
+    limits.intermediate_buffer_size = limits.intermediate_buffer_size.max(bytes.len());
+    let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(broken(0))?.with_limits(limits);
     let (mut pixels, mut first): (Vec<T>, Option<[usize; 2]>) = (Vec::new(), None);
     loop {
         let (columns, rows) = decoder.dimensions().map_err(broken(page))?;

@@ -2,10 +2,12 @@
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod arrays;
+mod corpus;
 mod datasets;
 mod flow_arrays;
 mod flow_tables;
 mod flows;
+mod folders;
 mod frames;
 mod output;
 mod settings;

@@ -18,7 +18,6 @@ use ndarray::Array2;
 use request::{ChannelArguments, ChannelRequest};
 use std::ops::ControlFlow;
 use voronudge_geometry::Domain;
-use voronudge_io::OutputDirectory;
 use voronudge_model::Model;
 use voronudge_report::channel_report::DisturbanceRecord;
 use voronudge_simulate::{
@@ -50,7 +49,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let request = arguments.channel.resolve(&arguments.parameters, arguments.common.seed)?;
     let mut frames = Frames::new(arguments.frames, &request.schedule)?;
     let mut tissue = tissue(&request, arguments.common.seed)?;
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(arguments.parameters.file())?;
     request.doubtful_step().into_iter().for_each(|warning| run.warn(warning));
     let mut progress = Progress::new(arguments.common.verbosity());
     let mut interrupted = false;

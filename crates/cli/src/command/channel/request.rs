@@ -2,6 +2,7 @@
 
 use crate::arguments::ParameterArguments;
 use crate::failure::Failure;
+use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
 use voronudge_geometry::PeriodicBox;
 use voronudge_model::Parameters;
@@ -106,6 +107,9 @@ pub(super) struct ChannelRequest {
     pub title: String,
 }
 
+/// Bins across a channel, and pieces of time, that nobody means.
+const MOST_BINS: usize = 100_000;
+
 /// Cells times steps beyond which a run is surely a mistake: weeks.
 const LARGEST_RUN: f64 = 1e13;
 
@@ -179,6 +183,14 @@ impl ChannelArguments {
             samples: self.samples,
             bins: self.bins.unwrap_or(2 * (2.0 * width / cell_size).round().max(1.0) as usize),
         };
+        if schedule.bins > MOST_BINS || schedule.samples > MOST_BINS {
+            return Err(Failure::new(format!(
+                "{} bins and {} samples, but {MOST_BINS} are the most of each",
+                schedule.bins, schedule.samples
+            ))
+            .with_hint("leave --bins and --samples out for the defaults"));
+        }
+        refuse_beyond(format!("{cells} cells"), cells as usize, OF_A_SIMULATED_CELL)?;
         let ([relaxation, per_sample], _) = schedule.steps()?;
         if (relaxation as f64 + per_sample as f64 * self.samples as f64) * cells > LARGEST_RUN {
             return Err(Failure::new("the run would take weeks").with_hint("shorten --time, or enlarge --dt"));

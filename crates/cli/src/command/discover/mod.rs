@@ -35,7 +35,7 @@ use predictions::PredictionArguments;
 use report::Found;
 use surroundings::FieldArguments;
 use voronudge_infer::{Constraints, Part, Scale};
-use voronudge_io::{DataSet, Difference, OutputDirectory};
+use voronudge_io::{DataSet, Difference};
 use voronudge_model::Effect;
 
 /// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
@@ -111,12 +111,12 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     arguments.check.possible(&arguments, &data, arguments.difference)?;
     let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
     let snapshots = &arguments.snapshots;
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(&data.inputs)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
     let raw = asked.raw(&data, &mut run)?;
     let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), &mut run)?;
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
-    let mut kept = Kept::open(&folder, ("discover", "null sets"), own, (&run, &data))?;
+    let mut kept = Kept::open(out.folder(), ("discover", "null sets"), own, (&run, &data))?;
     let searched = asked.searched(&raw, (&data, map.as_ref()), &mut kept, &mut progress);
     if kept.is_part() {
         progress.finish();
@@ -174,8 +174,8 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report)?)?;
     progress.heed().map_err(|failure| kept.failed(failure))?;
+    out.end_run();
     run.finish(Some(out), &json, &summary::summary(&report, &folder))?;
-    kept.discard()?;
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }

@@ -13,7 +13,7 @@ use clap::{Args, ValueEnum};
 use serde_json::Value;
 use std::path::{Path, PathBuf};
 use voronudge_infer::{Intercept, LinePoint};
-use voronudge_io::{FlowProfile, OutputDirectory, read_flow_profile};
+use voronudge_io::{FlowProfile, read_flow_profile};
 use voronudge_report::channel_report::ChiralityReport;
 use voronudge_simulate::measure::Estimate;
 
@@ -60,6 +60,9 @@ struct Known {
     from: Option<f64>,
 }
 
+/// Share of the flow along the channel below which there is none across.
+const NO_FLOW: f64 = 1e-9;
+
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("estimate-chirality", &arguments.common)?;
     let (table, known) = if arguments.profiles.is_dir() {
@@ -89,13 +92,19 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         area_elasticity: arguments.area_elasticity.or(known.area_elasticity).unwrap_or(0.0),
     };
     let points = points(&profile);
+    let largest = |of: fn(&LinePoint) -> f64| points.iter().map(|(_, p)| of(p).abs()).fold(0.0, f64::max);
+    let [across, along] = [largest(|p| p.x), largest(|p| p.y)];
+    if across <= NO_FLOW * along {
+        return Err(Failure::new(format!("v_x is at most {across:e} beside a v_y of up to {along:e}, so there is no flow across to compare with"))
+            .at(table.display())
+            .with_hint("are the columns of the table the right ones?"));
+    }
     let line = slope(&points, range, intercept, tissue)?.ok_or_else(|| {
         Failure::new(format!("the velocities tell no slope of v_y against v_x in {} rows", points.len()))
             .at(table.display())
             .with_hint("at least three rows are needed within --from and --to, with velocities larger than their errors")
     })?;
-    let out = arguments.common.required_out()?;
-    let mut out = OutputDirectory::create(out)?;
+    let mut out = arguments.common.output([&table])?;
     if profile.errors.is_none() {
         run.warn("the table has no errors (v_x_error, v_y_error): both velocities count alike, and the interval is from the scatter");
     }

@@ -25,6 +25,6 @@ pub(crate) fn open(page: &std::path::Path) {
         matches!(child.try_wait(), Ok(Some(status)) if !status.success())
     });
     if failed {
-        eprintln!("no browser could be started; open {} yourself", page.display());
+        crate::terminal::note(&format!("no browser could be started; open {} yourself", page.display()));
     }
 }

@@ -10,7 +10,7 @@ use crate::snapshot::{Snapshot, domain, field_of_view, y_sign};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Edge, Tessellation};
-use voronudge_io::{FieldImport, FieldLinking, FieldOptions, OutputDirectory, WantedExtrema, import_field};
+use voronudge_io::{FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
@@ -78,7 +78,7 @@ enum Link {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output([&arguments.file])?;
     let options = FieldOptions {
         scale: arguments.image.scale(),
         extrema: match arguments.extrema {

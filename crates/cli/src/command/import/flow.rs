@@ -8,7 +8,7 @@ use crate::run::Run;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
-use voronudge_io::{DataSet, FlowColumnNames, FlowOptions, FlowSummary, OutputDirectory, import_flow};
+use voronudge_io::{DataSet, FlowColumnNames, FlowOptions, FlowSummary, import_flow};
 use voronudge_report::infer_report::RunRecord;
 
 /// More grid points in a frame than the cells of any tissue need.
@@ -64,7 +64,7 @@ struct Report {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(arguments.files.iter().chain(&arguments.positions))?;
     let scale = arguments.scale;
     let is_scaled = scale.image.pixel_size.is_some() || scale.image.frame_interval.is_some();
     let options = FlowOptions {

@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use voronudge_io::{BorderCells, LabelLinking, LabelOptions, OutputDirectory, import_labels};
+use voronudge_io::{BorderCells, LabelLinking, LabelOptions, import_labels};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -53,7 +53,7 @@ enum Border {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let out = arguments.common.output([&arguments.file])?;
     let options = LabelOptions {
         scale: arguments.image.scale(),
         gap: arguments.gap,

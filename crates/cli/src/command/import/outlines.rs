@@ -9,7 +9,7 @@ use crate::failure::Failure;
 use crate::run::Run;
 use clap::Args;
 use std::path::PathBuf;
-use voronudge_io::{ColumnNames, OutlineOptions, OutputDirectory, import_outlines};
+use voronudge_io::{ColumnNames, OutlineOptions, import_outlines};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let run = Run::begin("import", &arguments.common)?;
-    let out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let out = arguments.common.output([&arguments.file])?;
     let options = OutlineOptions {
         scale: arguments.image.scale(),
         columns: ColumnNames {

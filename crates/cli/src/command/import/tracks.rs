@@ -8,7 +8,7 @@ use crate::run::Run;
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use voronudge_io::{ColumnNames, Import, ImportOptions, OutputDirectory};
+use voronudge_io::{ColumnNames, Import, ImportOptions};
 use voronudge_report::infer_report::RunRecord;
 
 #[derive(Debug, Args)]
@@ -55,7 +55,7 @@ type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
 
 pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &table.common)?;
-    let mut out = OutputDirectory::create(table.common.required_out()?)?;
+    let mut out = table.common.output([&table.file])?;
     let scale = table.scale;
     let options = ImportOptions {
         columns: ColumnNames {

@@ -24,7 +24,7 @@ use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
 use voronudge_infer::{Activity, Drives, infer, infer_tracks};
-use voronudge_io::{Difference, OutputDirectory};
+use voronudge_io::Difference;
 use voronudge_model::CellParameter;
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
@@ -118,7 +118,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     let method = arguments.method.method()?;
     arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
     let data = arguments.snapshots.data.load()?;
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(&data.inputs)?;
     let velocities = Measured::of_tracks(&arguments.snapshots, &data, arguments.difference)?;
     if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
         run.warn(format!(
@@ -150,7 +150,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
-    let mut kept = Kept::open(&folder, ("infer", "replicates"), own, (&run, &data))?;
+    let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
     let understood = arguments.latent.understand(movie.as_mut(), &mut prepared, &mut progress);
     prepared.caution(&mut run);
     let fitted = understood.and_then(|()| {
@@ -191,8 +191,8 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;
     let summary = summary::summary(&report, &folder);
     progress.heed().map_err(|failure| kept.failed(failure))?;
+    out.end_run();
     run.finish(Some(out), &json, &summary)?;
-    kept.discard()?;
     if arguments.open_report {
         browser::open(&folder.join("report.html"));
     }

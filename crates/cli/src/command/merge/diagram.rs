@@ -9,11 +9,9 @@ use crate::failure::Failure;
 use crate::run::Run;
 use std::collections::BTreeSet;
 use std::path::Path;
-use voronudge_io::OutputDirectory;
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("merge", &arguments.common)?;
-    let out = arguments.common.required_out()?;
     let scaling = arguments.scaling.resolve()?;
     let parsed = |folder: &Path| Points::parse(read(folder, FILE)?.lines(), folder.join(FILE).display());
     let parts: Vec<(&Path, Points)> = (arguments.parts.iter())
@@ -21,10 +19,10 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         .collect::<Result<_, Failure>>()?;
     let points = merged(parts)?;
     run.seed_is(points.header.request.seed);
-    let mut results = OutputDirectory::create(out)?;
+    let mut results = arguments.common.output(&arguments.parts)?;
     let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
     run.finish(Some(results), &json, &summary)?;
-    Ok(Answer::Positive)
+    Ok(points.answer())
 }
 
 /// All runs in order, if the parts belong together and none is missing or there twice.

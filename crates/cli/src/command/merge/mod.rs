@@ -38,6 +38,7 @@ const HINT: &str = "merge the parts 1/n to n/n of one run, each once";
 
 /// The lines of a part.
 fn read(folder: &Path, name: &str) -> Result<String, Failure> {
+    voronudge_io::OutputFolder::settle(folder)?;
     let path = folder.join(name);
     std::fs::read_to_string(&path).map_err(|error| {
         let failure = Failure::new(format!("{}: {error}", path.display()));

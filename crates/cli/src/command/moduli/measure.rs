@@ -61,11 +61,21 @@ impl Protocol {
     }
 }
 
+/// Replicas that nobody means.
+const MOST_REPLICAS: u64 = 1000;
+
 /// The starting positions of each replica, with their seed; at least one.
 pub(super) fn starts(arguments: &Arguments) -> Result<Vec<(u64, Start)>, Failure> {
     if arguments.replicas == 0 {
         return Err(Failure::new("--replicas is 0, but at least one is needed")
             .with_hint("leave --replicas out for a single one"));
+    }
+    if arguments.replicas > MOST_REPLICAS {
+        return Err(Failure::new(format!(
+            "--replicas is {}, but {MOST_REPLICAS} are the most",
+            arguments.replicas
+        ))
+        .with_hint("leave --replicas out for a single one"));
     }
     if arguments.replicas > 1 && !arguments.start.is_random() {
         return Err(Failure::new(format!("--replicas {} of one and the same start", arguments.replicas))

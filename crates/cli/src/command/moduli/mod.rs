@@ -9,9 +9,8 @@ use crate::command::simulate::StartArguments;
 use crate::failure::Failure;
 use crate::run::Run;
 use clap::Args;
-use voronudge_io::OutputDirectory;
 use voronudge_report::ModuliPage;
-use voronudge_simulate::recommended_time_step;
+use voronudge_simulate::{Schedule, recommended_time_step};
 
 /// Elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, beside the mean-field theory.
 ///
@@ -72,7 +71,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
                 .with_hint(format!("leave {name} out for the default")));
         }
     }
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out =
+        arguments.common.output(arguments.start.file().into_iter().chain(arguments.parameters.file()))?;
     let starts = measure::starts(&arguments)?;
     let first = &starts[0].1;
     let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();
@@ -84,6 +84,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
              out wrong by tens of per cent"
         ));
     }
+    Schedule { time: arguments.time.max(arguments.transient + arguments.average), time_step, frames: 1 }
+        .steps_per_frame()?;
     let protocol = measure::Protocol::new(&arguments, &parameters, time_step, spacing);
     let measured = measure::replicas(&starts, &parameters, &protocol, arguments.common.verbosity())?;
     report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));

@@ -12,7 +12,7 @@ use crate::snapshot::{domain_at, field_of_view};
 use clap::Args;
 use ndarray::{Array2, Array3, Axis};
 use voronudge_geometry::{Domain, FieldOfView, Vector};
-use voronudge_io::{DataSet, FrameSelection, OutputDirectory};
+use voronudge_io::{DataSet, FrameSelection};
 use voronudge_observables::{Error, Images, Plan, Recording, observe};
 use voronudge_report::Units;
 
@@ -62,7 +62,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => (0..data.frames()).collect(),
     };
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(&data.inputs)?;
     let recorded = arguments.record(&data, &frames, &place)?;
     let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;
     if recorded.velocities == Velocities::None {

@@ -14,14 +14,14 @@ pub(crate) use scaling::ScalingArguments;
 use crate::Answer;
 use crate::arguments::{CommonArguments, Shard};
 use crate::failure::Failure;
+use crate::output::NO_INPUTS;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
 use points::{Header, Points};
 use request::{GridArguments, Request};
 use std::collections::BTreeSet;
-use std::path::Path;
-use voronudge_io::{Journal, Recording};
+use voronudge_io::{Journal, OutputFolder, Recording};
 use work::{Ending, work};
 
 /// Phase diagram: velocities, order, T1 transitions and more over preferred perimeter and chirality.
@@ -46,7 +46,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("phase-diagram", &arguments.common)?;
-    let out = arguments.common.required_out()?;
+    let out = &arguments.common.claim(NO_INPUTS)?;
     let request = Request::new(&arguments.grid, arguments.common.seed)?;
     let scaling = arguments.scaling.resolve()?;
     let header = Header { request, shard: arguments.shard.unwrap_or(Shard::WHOLE) };
@@ -76,19 +76,19 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut results = journal.results()?;
     let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
     run.finish(Some(results), &json, &summary)?;
-    journal.discard()?;
-    Ok(Answer::Positive)
+    Ok(points.answer())
 }
 
 /// Begins a journal, or goes on with one of the same request.
-fn open(out: &Path, header: Header, resume: bool) -> Result<(Journal, Points), Failure> {
+fn open(folder: &OutputFolder, header: Header, resume: bool) -> Result<(Journal, Points), Failure> {
+    let out = folder.path();
     let place = || out.display().to_string();
     if Recording::find(out)?.is_some() {
         return Err(Failure::new(format!("{} holds a run of simulate that was interrupted", place()))
             .with_hint("give another --out, or remove its folder .voronudge-run"));
     }
     let Some(lines) = Journal::find(out)? else {
-        let journal = Journal::begin(out, &serde_json::to_string(&header)?)?;
+        let journal = Journal::begin(folder, &serde_json::to_string(&header)?)?;
         return Ok((journal, Points { header, records: Vec::new() }));
     };
     if !resume {
@@ -101,6 +101,6 @@ fn open(out: &Path, header: Header, resume: bool) -> Result<(Journal, Points), F
             .at(place())
             .with_hint("repeat the options of the interrupted diagram, or give another --out"));
     }
-    let (journal, _) = Journal::resume(out)?;
+    let (journal, _) = Journal::resume(folder)?;
     Ok((journal, points))
 }

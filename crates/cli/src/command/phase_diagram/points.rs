@@ -2,6 +2,7 @@
 
 use super::point::Record;
 use super::request::Request;
+use crate::Answer;
 use crate::arguments::Shard;
 use crate::failure::Failure;
 use serde::{Deserialize, Serialize};
@@ -27,7 +28,7 @@ pub(crate) struct Points {
 impl Points {
     /// Reads lines; `place` is the file they come from.
     pub fn parse<'a>(lines: impl Iterator<Item = &'a str>, place: impl Display) -> Result<Self, Failure> {
-        let unreadable = |line: usize, error: serde_json::Error| {
+        let unreadable = |line: usize, error: String| {
             Failure::new(format!("{place}, line {}: not a line of a diagram ({error})", line + 1))
                 .with_hint("another version of the program may have made it; make the diagram again")
         };
@@ -35,10 +36,19 @@ impl Points {
         let Some((_, first)) = lines.next() else {
             return Err(Failure::new(format!("{place} is empty")).with_hint("make the diagram again"));
         };
-        let header = serde_json::from_str(first).map_err(|error| unreadable(0, error))?;
-        let records =
-            lines.map(|(number, line)| serde_json::from_str(line).map_err(|error| unreadable(number, error)));
-        Ok(Self { header, records: records.collect::<Result<_, _>>()? })
+        let header: Header = serde_json::from_str(first).map_err(|error| unreadable(0, error.to_string()))?;
+        header.request.check().map_err(|failure| unreadable(0, failure.message().to_owned()))?;
+        let record = |(number, line): (usize, &str)| {
+            let record: Record =
+                serde_json::from_str(line).map_err(|error| unreadable(number, error.to_string()))?;
+            if record.point >= header.request.points() || record.replica >= header.request.replicas {
+                let fault = format!("run {} of point {}, which is none", record.replica, record.point);
+                return Err(unreadable(number, fault));
+            }
+            Ok(record)
+        };
+        let records = lines.map(record).collect::<Result<_, _>>()?;
+        Ok(Self { header, records })
     }
 
     /// The content of the file, the same whatever the order in which the runs ended.
@@ -49,6 +59,14 @@ impl Points {
             text.push('\n');
         }
         Ok(text)
+    }
+
+    /// No, if no run came to anything.
+    pub fn answer(&self) -> Answer {
+        match self.records.iter().any(|record| record.error.is_none()) || self.records.is_empty() {
+            true => Answer::Positive,
+            false => Answer::Negative,
+        }
     }
 
     /// Puts the runs in order.

@@ -1,13 +1,14 @@
 //! What a diagram is asked for.
 
-use crate::arguments::Shard;
+use crate::arguments::{LARGEST_PARAMETER, Shard};
 use crate::failure::Failure;
+use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
 use voronudge_model::Parameters;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
-use voronudge_simulate::{recommended_time_step, seed_of_run};
+use voronudge_simulate::{MOST_STEPS, recommended_time_step, seed_of_run};
 
 /// Points along an axis, and runs at each, that nobody means.
 const MOST_POINTS: usize = 1000;
@@ -112,8 +113,10 @@ impl Range {
         let &[from, to, count] = typed else {
             return Err(fault("needs three numbers".into()));
         };
-        if !from.is_finite() || !to.is_finite() {
-            return Err(fault(format!("{from} {to}: both ends must be finite")));
+        if from.abs().max(to.abs()) > LARGEST_PARAMETER || from.is_nan() || to.is_nan() {
+            return Err(fault(format!(
+                "{from:e} {to:e}: both ends must be finite, and at most {LARGEST_PARAMETER:e} in magnitude"
+            )));
         }
         if !(1.0..=MOST_POINTS as f64).contains(&count) || count.fract() != 0.0 {
             return Err(fault(format!("has a count of {count}, but it must be 1 to {MOST_POINTS}")));
@@ -212,11 +215,19 @@ impl Request {
             }
         }
         for (name, value) in [("K_A", typed.K_A), ("least-distance", typed.least_distance)] {
-            if !(value.is_finite() && value >= 0.0) {
-                return Err(Failure::new(format!("--{name} is {value}, but it must not be negative"))
-                    .with_hint(format!("leave --{name} out for the default")));
+            if !(0.0..=LARGEST_PARAMETER).contains(&value) {
+                return Err(Failure::new(format!(
+                    "--{name} is {value}, but it must be 0 to {LARGEST_PARAMETER:e}"
+                ))
+                .with_hint(format!("leave --{name} out for the default")));
             }
         }
+        let threads = rayon::current_num_threads();
+        refuse_beyond(
+            format!("{threads} runs of {} cells at a time", typed.cells),
+            typed.cells.saturating_mul(threads),
+            OF_A_SIMULATED_CELL,
+        )?;
         let mut quantities = typed.quantities.clone();
         quantities.sort();
         quantities.dedup();
@@ -227,7 +238,7 @@ impl Request {
             ))
             .with_hint("ask for fewer cells, or leave mean_square_frequency out"));
         }
-        Ok(Self {
+        let request = Self {
             version: env!("CARGO_PKG_VERSION").into(),
             preferred_perimeters: Range::new("P_0", &typed.P_0)?,
             chiralities: Range::new("alpha", &typed.alpha)?,
@@ -239,7 +250,29 @@ impl Request {
             area_elasticity: typed.K_A,
             least_distance: typed.least_distance,
             seed,
-        })
+        };
+        request.check()?;
+        Ok(request)
+    }
+
+    /// Whether the grid can be meant; also asked of one that was read from a file.
+    pub fn check(&self) -> Result<(), Failure> {
+        let counts = [self.preferred_perimeters.count, self.chiralities.count, self.replicas, self.cells];
+        if counts.contains(&0) || counts[..3].iter().any(|count| *count > MOST_POINTS) {
+            return Err(Failure::new(format!(
+                "a diagram of {} × {} points with {} runs of {} cells",
+                counts[0], counts[1], counts[2], counts[3]
+            ))
+            .with_hint(format!("take 1 to {MOST_POINTS} of each, and one cell or more")));
+        }
+        let steps = |point: usize| self.time / self.time_step(point);
+        match (0..self.points()).map(steps).find(|steps| !(1.0..=MOST_STEPS).contains(steps)) {
+            Some(steps) => {
+                let fault = voronudge_simulate::Error::TooManySteps { steps, limit: MOST_STEPS };
+                Err(Failure::from(fault))
+            }
+            None => Ok(()),
+        }
     }
 
     pub fn points(&self) -> usize {

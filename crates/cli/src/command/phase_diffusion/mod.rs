@@ -14,7 +14,7 @@ use std::path::PathBuf;
 use voronudge_infer::phase_diffusion::{
     Fluctuations, PhaseRequest, RateOrder, ReferencePlaces, phase_diffusion,
 };
-use voronudge_io::{FrameSelection, OutputDirectory};
+use voronudge_io::FrameSelection;
 
 /// Residuals of consecutive frames that correlate by more than this are not independent.
 const CORRELATED: f64 = 0.3;
@@ -62,12 +62,22 @@ enum Cause {
     Driving,
 }
 
+/// Wave vectors whose rates are fitted in one dense problem.
+const MOST_WAVE_VECTORS: usize = 1000;
+
 impl Arguments {
     fn request(&self) -> Result<PhaseRequest, Failure> {
         if self.wave_vectors == 0 {
             return Err(
                 Failure::new("--wave-vectors is 0, but at least one is needed").with_hint("12 is usual")
             );
+        }
+        if self.wave_vectors > MOST_WAVE_VECTORS {
+            return Err(Failure::new(format!(
+                "--wave-vectors is {}, but {MOST_WAVE_VECTORS} are the most",
+                self.wave_vectors
+            ))
+            .with_hint("12 is usual"));
         }
         Ok(PhaseRequest {
             wave_vectors: self.wave_vectors,
@@ -95,7 +105,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => (0..data.frames()).collect(),
     };
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
+    let mut out = arguments.common.output(&data.inputs)?;
     let tracked = TrackedPattern::new(&data, &frames, arguments.reference.as_deref())
         .map_err(|failure| failure.at(&place))?;
     let present = data.cells();

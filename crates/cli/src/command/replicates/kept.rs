@@ -8,13 +8,13 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use std::ops::ControlFlow;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use voronudge_infer::{Inference, Keeper, Known};
-use voronudge_io::{DataSet, Journal, OutputDirectory, Recording};
+use voronudge_io::{DataSet, Journal, OutputDirectory, OutputFolder, Recording};
 
 /// Keeps what fits to synthetic data come to in a journal in the output directory. There is none before the first has ended.
 pub(crate) struct Kept {
-    out: PathBuf,
+    folder: OutputFolder,
     /// What the synthetic data are called.
     name: &'static str,
     made: Made,
@@ -36,7 +36,7 @@ pub(crate) struct Kept {
 impl Kept {
     /// What is known before a run begins: by the parts that are merged, and by a run of the same request that was interrupted.
     pub fn open(
-        out: &Path,
+        folder: &OutputFolder,
         (command, name): (&str, &'static str),
         (arguments, course): (&ReplicateArguments, Course),
         (run, data): (&Run, &DataSet),
@@ -54,15 +54,15 @@ impl Kept {
             made.series = parts.series;
         }
         let (mut journal, mut written) = (None, 0);
-        if let Some(earlier) = interrupted(out, &made.header, arguments.resume)? {
+        if let Some(earlier) = interrupted(folder.path(), &made.header, arguments.resume)? {
             written = earlier.series.len();
             made.add(earlier.series);
-            journal = Some(Journal::resume(out)?.0);
+            journal = Some(Journal::resume(folder)?.0);
         }
         let is_part = arguments.shard.is_some();
-        let out = out.to_owned();
+        let folder = folder.clone();
         let (fault, rounded) = (None, None);
-        Ok(Self { out, name, made, is_part, is_merge, begun: 0, written, journal, fault, rounded })
+        Ok(Self { folder, name, made, is_part, is_merge, begun: 0, written, journal, fault, rounded })
     }
 
     /// Whether the run ends with its part of the fits.
@@ -131,8 +131,8 @@ impl Kept {
             out.path().join(FILE).display()
         );
         let json = serde_json::to_string(&self.made.header)?;
+        out.end_run();
         run.finish(Some(out), &json, &summary)?;
-        self.discard()?;
         Ok(Answer::Positive)
     }
 
@@ -141,16 +141,11 @@ impl Kept {
         made == all
     }
 
-    /// Removes the journal, once the results are in place.
-    pub fn discard(self) -> Result<(), Failure> {
-        Ok(self.journal.map_or(Ok(()), Journal::discard)?)
-    }
-
     /// Adds lines to the journal, which begins with the first.
     fn write(&mut self, line: &str) -> Result<(), Failure> {
         let journal = match self.journal.take() {
             Some(journal) => journal,
-            None => Journal::begin(&self.out, &serde_json::to_string(&self.made.header)?)?,
+            None => Journal::begin(&self.folder, &serde_json::to_string(&self.made.header)?)?,
         };
         let journal = self.journal.insert(journal);
         for at in self.written..self.begun {

@@ -10,6 +10,9 @@ use voronudge_infer::Inference;
 /// Name of a part among the results.
 pub(crate) const FILE: &str = "replicates.jsonl";
 
+/// More fits of one series than can be asked for.
+const MOST_REPLICATES: usize = 10_000;
+
 /// Largest difference of two fits, as a share of the largest coefficient, that is one of rounding.
 const ROUNDING: f64 = 1e-6;
 
@@ -140,7 +143,7 @@ impl Made {
             Line::Series { series, count, fit } => {
                 let fit = fit.iter().map(Number::value).collect();
                 let new = Series { count, fit, outcomes: BTreeMap::new() };
-                (series == self.series.len()).then(|| self.series.push(new))
+                (series == self.series.len() && count <= MOST_REPLICATES).then(|| self.series.push(new))
             }
             Line::Outcome { series, index, values } => {
                 let own = self.series.get_mut(series).filter(|own| index < own.count)?;

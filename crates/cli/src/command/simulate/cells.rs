@@ -20,6 +20,11 @@ impl OfCells {
         self.0.is_empty()
     }
 
+    /// The files of `NAME=FILE.npy`.
+    pub fn files(arguments: &[String]) -> impl Iterator<Item = &Path> {
+        arguments.iter().filter_map(|text| text.split_once('=')).map(|(_, file)| Path::new(file))
+    }
+
     /// Reads `NAME=FILE.npy` for so many cells. The parameter of the model becomes the mean of the values.
     pub fn read(
         arguments: &[String],

@@ -27,11 +27,11 @@ pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
 use surroundings::SurroundingsArguments;
-use voronudge_geometry::{Domain, FieldOfView, Tessellation};
+use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Tessellation};
 use voronudge_model::Model;
 use voronudge_report::Units;
 use voronudge_simulate::{
-    Completion, Event, Method, RunState, Schedule, Simulation, recommended_time_step, resume,
+    Completion, Event, Method, RunState, Schedule, Shear, Simulation, recommended_time_step, resume,
 };
 
 /// Simulates the chiral Voronoi model in a periodic box. The output is a data set.
@@ -89,7 +89,6 @@ enum MethodName {
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("simulate", &arguments.common)?;
-    let out = arguments.common.required_out()?.clone();
     let mut parameters = arguments.parameters.resolve()?;
     let mut effects = arguments.effects.resolve()?;
     let every = Duration::try_from_secs_f64(arguments.checkpoint).map_err(|_| {
@@ -130,6 +129,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         walls: arguments.surroundings.walls(),
         driving,
     };
+    check_shear(&request, start.cell_box)?;
     let measure_chaos = chaos::asked(arguments.lyapunov, &request)?;
     let mut simulation = Simulation::new(start.positions, domain, model)?
         .with_method(request.method)?
@@ -145,8 +145,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             request.dt
         ));
     }
+    let inputs = arguments.start.file().into_iter().chain(arguments.parameters.file());
+    let inputs = inputs.chain(OfCells::files(&arguments.cell_parameter));
+    let folder = arguments.common.claim(inputs)?;
     let (mut recorder, kept) =
-        Recorder::open(&out, &request, schedule.steps_per_frame()?, every, arguments.resume)?;
+        Recorder::open(&folder, &request, schedule.steps_per_frame()?, every, arguments.resume)?;
     let mut so_far = RunState::default();
     if let Some(Kept { run, state }) = kept {
         so_far = run;
@@ -186,9 +189,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let summary = match outcome {
         Ok(summary) => summary,
         Err(error) => {
+            progress.finish();
             // It would fail in the same way again.
-            recorder.discard()?;
-            return Err(error.into());
+            let of_run =
+                (request, start.cell_box, Units { length: start.length_unit, time: start.time_unit });
+            let told = (folder.path(), error.into());
+            return Err(outcome::keep_partial(recorder, of_run, (&simulation, &schedule), told)?);
         }
     };
     debug_assert_eq!(summary.completion, Completion::Finished);
@@ -209,9 +215,23 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
     let finished = Finished { simulation: &simulation, schedule, summary, lyapunov, steps_per_second };
     let units = Units { length: start.length_unit, time: start.time_unit };
-    outcome::finish(&run, &mut recorder, (request, start.cell_box, units), finished)?;
-    recorder.discard()?;
+    outcome::finish(&run, recorder, (request, start.cell_box, units), finished)?;
     Ok(Answer::Positive)
+}
+
+/// Refuses a shear that takes the box farther than it can be followed, before the run gets there.
+fn check_shear(request: &Request, start: PeriodicBox) -> Result<(), Failure> {
+    let strain = match request.driving.shear {
+        Some(Shear::Oscillatory { amplitude, .. }) => amplitude,
+        Some(shear) => shear.strain(request.time),
+        None => return Ok(()),
+    };
+    let lengths = start.lengths();
+    PeriodicBox::sheared(lengths, start.offset() + strain * lengths[1]).map(|_| ()).map_err(|error| {
+        Failure::from(error)
+            .at(format!("at the largest strain, {strain}"))
+            .with_hint("shorten --time, and go on from the end with --start")
+    })
 }
 
 fn interrupted(time: f64) -> Failure {

@@ -8,8 +8,9 @@ use super::surroundings::describe;
 use crate::failure::Failure;
 use crate::run::Run;
 use ndarray::Array3;
+use std::path::Path;
 use voronudge_geometry::{PeriodicBox, areas};
-use voronudge_io::{Boundary, DataSet};
+use voronudge_io::{Boundary, DataSet, OutputDirectory};
 use voronudge_model::stress;
 use voronudge_observables::{hexatic_among, shape_indices};
 use voronudge_report::Units;
@@ -27,16 +28,21 @@ pub(super) struct Finished<'a> {
 /// Measures what the frames tell, writes all results and prints the summary.
 pub(super) fn finish(
     run: &Run,
-    recorder: &mut Recorder,
+    mut recorder: Recorder,
     (request, start, units): (Request, PeriodicBox, Units),
     finished: Finished<'_>,
 ) -> Result<(), Failure> {
     let Finished { simulation, schedule, summary, lyapunov, steps_per_second } = finished;
+    if summary.mean_square_velocity.is_some_and(|square| !square.is_finite()) {
+        return Err(Failure::new("the squares of the velocities are too large to be numbers")
+            .with_hint("give parameters in units in which lengths and times of cells are about 1"));
+    }
     let spectra = match request.driving.shear {
         None => Spectra::OfManyFrames,
         Some(_) => Spectra::OfTheEnd,
     };
-    let measurements = Measurements::new(recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
+    let measurements =
+        Measurements::new(&mut recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
     let mut results = recorder.results()?;
     let mut settings = settings(simulation, &request, &schedule, &units);
     describe(&mut settings, &request, start, schedule.frame_interval());
@@ -89,6 +95,39 @@ pub(super) fn finish(
     }
     text += &format!("written to {}, figures in report.html\n", results.path().display());
     run.finish(Some(results), &json, &text)
+}
+
+/// Name of the folder with the frames of a run that failed.
+const PARTIAL: &str = "partial";
+
+/// Keeps the frames of a run that cannot come to its end as a data set of their own, and says so.
+pub(super) fn keep_partial(
+    mut recorder: Recorder,
+    (request, start, units): (Request, PeriodicBox, Units),
+    (simulation, schedule): (&Simulation, &Schedule),
+    (out, failure): (&Path, Failure),
+) -> Result<Failure, Failure> {
+    let frames = recorder.frames();
+    if frames == 0 {
+        recorder.discard()?;
+        return Ok(failure);
+    }
+    let place = out.join(PARTIAL);
+    let mut results = OutputDirectory::create(&place)?;
+    recorder.write_so_far(&mut results)?;
+    let mut settings = settings(simulation, &request, schedule, &units);
+    let interval = schedule.frame_interval();
+    describe(&mut settings, &Request { frames, ..request }, start, interval);
+    settings.save_settings(&mut results)?;
+    results.commit()?;
+    recorder.discard()?;
+    let place = place.display();
+    let hint = match failure.hint() {
+        Some(hint) => format!("{hint}; --start {place} goes on from the last of these frames"),
+        None => format!("--start {place} goes on from the last of these frames"),
+    };
+    Ok(Failure::new(format!("{}; the {frames} frames before that are kept in {place}", failure.message()))
+        .with_hint(hint))
 }
 
 /// The data set without its frames, which are written as the run goes on.

@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::path::Path;
 use std::time::{Duration, Instant};
 use voronudge_geometry::Vector;
-use voronudge_io::{OutputDirectory, Recording};
+use voronudge_io::{OutputDirectory, OutputFolder, Recording};
 use voronudge_simulate::{RunState, Simulation, State};
 
 /// A run that is being recorded.
@@ -40,12 +40,13 @@ pub(super) struct Kept {
 impl Recorder {
     /// Begins, or with `resume` goes on with, the recording of a request in an output directory.
     pub fn open(
-        out: &Path,
+        folder: &OutputFolder,
         request: &Request,
         steps_per_frame: usize,
         every: Duration,
         resume: bool,
     ) -> Result<(Self, Option<Kept>), Failure> {
+        let out = folder.path();
         let request_value = serde_json::to_value(request)?;
         let found = Recording::find(out)?;
         if found.is_some() && !resume {
@@ -55,7 +56,7 @@ impl Recorder {
         let shape = [request.frames, request.cells, 2];
         let arrays = [("positions.npy", shape), ("velocities.npy", shape)];
         let (recording, kept) = match found {
-            None => (Recording::begin(out, &arrays)?, None),
+            None => (Recording::begin(folder, &arrays)?, None),
             Some(bytes) => {
                 let (header, state) = parse(&bytes).ok_or_else(|| unreadable(out))?;
                 if let Some(name) = first_difference(&header.request, &request_value) {
@@ -63,7 +64,7 @@ impl Recorder {
                         .at(out.display())
                         .with_hint("repeat the options of the interrupted run, or give another --out"));
                 }
-                let recording = Recording::resume(out, &arrays, header.run.steps / steps_per_frame)?;
+                let recording = Recording::resume(folder, &arrays, header.run.steps / steps_per_frame)?;
                 (recording, Some(Kept { run: header.run, state }))
             }
         };
@@ -121,8 +122,18 @@ impl Recorder {
     }
 
     /// The results, with the frames among them.
-    pub fn results(&mut self) -> Result<OutputDirectory, Failure> {
+    pub fn results(self) -> Result<OutputDirectory, Failure> {
         Ok(self.recording.results()?)
+    }
+
+    /// Frames so far.
+    pub fn frames(&self) -> usize {
+        self.recording.frames()
+    }
+
+    /// Writes them as arrays of their own.
+    pub fn write_so_far(&mut self, out: &mut OutputDirectory) -> Result<(), Failure> {
+        Ok(self.recording.write_so_far(out)?)
     }
 
     /// Removes what is only needed to go on.

@@ -1,10 +1,11 @@
 //! Where the cells begin.
 
 use crate::failure::Failure;
+use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use crate::snapshot::{Snapshot, domain_at};
 use clap::Args;
 use serde::Serialize;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_io::Source;
 use voronudge_simulate::{RandomPlacement, generator, honeycomb, sort_in_space};
@@ -20,7 +21,7 @@ pub(crate) struct StartArguments {
     box_lengths: Option<Vec<f64>>,
     /// Starting positions: `random`, `honeycomb`, or the last frame of a data set.
     #[arg(long, value_name = "random|honeycomb|DATASET", default_value = "random")]
-    start: String,
+    start: PathBuf,
     /// Least distance between random positions, in mean spacings.
     #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
     least_distance: f64,
@@ -29,12 +30,17 @@ pub(crate) struct StartArguments {
 impl StartArguments {
     /// Whether positions depend on the seed.
     pub fn is_random(&self) -> bool {
-        self.start == "random"
+        self.start == Path::new("random")
+    }
+
+    /// The data set that it is read from, if it is one.
+    pub fn file(&self) -> Option<&Path> {
+        (!matches!(self.start.to_str(), Some("random" | "honeycomb"))).then_some(self.start.as_path())
     }
 
     /// The start as given.
-    pub fn name(&self) -> &str {
-        &self.start
+    pub fn name(&self) -> String {
+        self.start.display().to_string()
     }
 }
 
@@ -62,10 +68,10 @@ const LARGEST_RUN: usize = 500_000_000;
 impl Start {
     /// The starting positions, for a run that keeps a number of frames.
     pub fn of(arguments: &StartArguments, seed: u64, frames: usize) -> Result<Self, Failure> {
-        match arguments.start.as_str() {
-            "random" => random(arguments, seed, frames),
-            "honeycomb" => lattice(arguments, frames),
-            folder => from_data(arguments, frames, PathBuf::from(folder)),
+        match arguments.start.to_str() {
+            Some("random") => random(arguments, seed, frames),
+            Some("honeycomb") => lattice(arguments, frames),
+            _ => from_data(arguments, frames, arguments.start.clone()),
         }
     }
 }
@@ -92,7 +98,7 @@ fn check_size(named: &str, cells: usize, frames: usize) -> Result<(), Failure> {
         ))
         .with_hint("keep fewer frames, or run fewer cells"));
     }
-    Ok(())
+    refuse_beyond(named, cells, OF_A_SIMULATED_CELL)
 }
 
 fn random(arguments: &StartArguments, seed: u64, frames: usize) -> Result<Start, Failure> {

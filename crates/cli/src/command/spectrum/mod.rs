@@ -20,7 +20,7 @@ use frame::Solved;
 use lattice::Lattice;
 pub(crate) use report::{mean_field, named};
 use request::SelectionArguments;
-use voronudge_io::{FrameSelection, OutputDirectory};
+use voronudge_io::FrameSelection;
 
 /// Linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional points.
 ///
@@ -63,6 +63,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         Some(lattice) => (lattice.data_set(), "the honeycomb".to_owned()),
         None => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
     };
+    let mut out = arguments.common.output(&data.inputs)?;
     domain_at(&data, 0)?;
     let frames = match &arguments.frames {
         Some(selection) => {
@@ -73,7 +74,6 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if arguments.frames.is_none() && data.frames() > 1 {
         run.warn(format!("of {} frames only the first is looked at; --frames chooses others", data.frames()));
     }
-    let mut out = OutputDirectory::create(arguments.common.required_out()?)?;
     let mut progress = Progress::new(arguments.common.verbosity());
     let mut solved = Vec::new();
     for &frame in &frames {

@@ -1,0 +1,93 @@
+//! The folder that results go to, and what must not be lost there.
+
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use serde_json::Value;
+use std::fs;
+use std::path::{Path, PathBuf};
+use voronudge_io::{OutputDirectory, OutputFolder};
+
+/// Files of a data set.
+const DATA_SET: [&str; 8] = [
+    "positions.npy",
+    "velocities.npy",
+    "flow.npy",
+    "flow_x.npy",
+    "flow_y.npy",
+    "labels.npy",
+    "position_errors.npy",
+    "dataset.toml",
+];
+
+/// No files are read.
+pub(crate) const NO_INPUTS: [&Path; 0] = [];
+
+impl CommonArguments {
+    /// The output folder of a command that cannot do without, for a run that reads these files.
+    pub fn output<P: AsRef<Path>>(
+        &self,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<OutputDirectory, Failure> {
+        Ok(OutputDirectory::of(self.claim(inputs)?)?)
+    }
+
+    /// The same, for a run that writes files as it goes on.
+    pub fn claim<P: AsRef<Path>>(
+        &self,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<OutputFolder, Failure> {
+        let out = self.required_out()?;
+        if let Ok(folder) = out.canonicalize() {
+            inputs.into_iter().try_for_each(|input| refuse_input(&folder, input.as_ref()))?;
+        }
+        let folder = OutputFolder::claim(out)?;
+        if !self.overwrite {
+            refuse_measured(out)?;
+        }
+        Ok(folder)
+    }
+}
+
+/// Refuses a folder that a file of this run is read from.
+fn refuse_input(folder: &Path, input: &Path) -> Result<(), Failure> {
+    let Ok(place) = input.canonicalize() else { return Ok(()) };
+    let read_from = if place.is_dir() { Some(place.as_path()) } else { place.parent() };
+    if read_from != Some(folder) {
+        return Ok(());
+    }
+    Err(Failure::new(format!(
+        "{}: is read by this run, whose results would go to the same folder",
+        input.display()
+    ))
+    .with_hint("give an --out folder of its own"))
+}
+
+/// Refuses a folder with a data set that this program did not write there.
+fn refuse_measured(out: &Path) -> Result<(), Failure> {
+    let mut files = DATA_SET.iter().map(|name| out.join(name)).filter(|file| file.exists()).peekable();
+    if files.peek().is_none() {
+        return Ok(());
+    }
+    let read = read_by_the_last_run(out);
+    let measured = files.find(|file| read.as_ref().is_none_or(|read| read.contains(file)));
+    let Some(file) = measured else { return Ok(()) };
+    Err(Failure::new(format!(
+        "{}: was not written by this program, whose results would replace it",
+        file.display()
+    ))
+    .with_hint("give another --out, or add --overwrite if the data are not needed"))
+}
+
+/// Files in a folder that were read by the run whose report is there; `None` if there is no such report.
+fn read_by_the_last_run(out: &Path) -> Option<Vec<PathBuf>> {
+    let report: Value = serde_json::from_str(&fs::read_to_string(out.join("report.json")).ok()?).ok()?;
+    report.get("command")?.as_str()?;
+    let inputs = report.get("inputs")?.as_array()?;
+    let own = out.canonicalize().ok()?;
+    let inside = |path: &Path| {
+        let place = path.canonicalize().ok()?;
+        (place.parent() == Some(own.as_path())).then(|| out.join(place.file_name().unwrap_or_default()))
+    };
+    let paths = inputs.iter().filter_map(|input| input.get("path").and_then(Value::as_str));
+    Some(paths.filter_map(|path| inside(Path::new(path))).collect())
+}
