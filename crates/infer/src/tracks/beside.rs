@@ -54,8 +54,10 @@ impl Followed {
         space: &CoefficientSpace,
         coefficients: &[f64],
     ) -> Result<Beside, Error> {
-        let objective =
-            MovieObjective { rule: self.fit.rule.twice(), ..self.objective(movie, structure, space) };
+        // What integrating adds is known of the terms of the fit alone: beside these another that acts alike would be taken for missing.
+        let states = &States { integrated: None, ..self.fit.states.clone() };
+        let rule = self.fit.rule.twice();
+        let objective = MovieObjective { rule, states, ..self.objective(movie, structure, space) };
         let mut at = space.nearest(coefficients);
         at.extend(self.displacements());
         let placed = objective.place(&at)?;

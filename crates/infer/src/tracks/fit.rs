@@ -34,7 +34,7 @@ pub(super) const LEAST_SHARE: f64 = 0.15;
 const LOOSENINGS: usize = 5;
 const ACCEPTED_EXCESS: f64 = 2.5;
 
-/// How often what integrating over the unknowns adds is found anew.
+/// How often what integrating over the unknowns adds is found: where the first has led it is another.
 const INTEGRATIONS: usize = 2;
 
 /// Relative decrease of the objective that counts as none: at the end, and on the way.
@@ -182,7 +182,12 @@ impl<'a> Course<'a, '_> {
         }
         for _ in 0..INTEGRATIONS {
             at = self.settle(states, at, FINAL)?;
-            states.integrated = Some(Integrated::at(&self.objective(states), &at)?);
+            match Integrated::at(&self.objective(states), &at) {
+                Ok(integrated) => states.integrated = Some(integrated),
+                // Where coefficients are not determined no ridge leads away from a fit.
+                Err(Error::Degenerate | Error::Geometry { .. }) => break,
+                Err(error) => return Err(error),
+            }
         }
         Ok(at)
     }

@@ -73,11 +73,9 @@ impl MovieObjective<'_> {
         let anchors = Anchors::new(self, placed, displacements, share);
         let outset = Outset::new(self, placed, displacements, anchors.dimension);
         let drives = self.drive_rows(placed, parameters, anchors.dimension);
-        let further = anchors.dimension - self.space.dimension();
+        let tilt = self.tilt().resize_vertically(anchors.dimension, 0.0);
         let rests = Rests { residuals, anchors, outset, drives, displacements };
-        let tilt = self.tilt();
-        let of_all = tilt.resize_vertically(self.space.dimension() + further, 0.0);
-        Ok(self.equations(parameters, placed, rests)?.tilted(of_all))
+        Ok(self.equations(parameters, placed, rests)?.tilted(tilt))
     }
 
     /// The problem in β alone about a minimum whose residuals have changed by so much.

@@ -15,8 +15,7 @@ use voronudge_report::infer_report::LatentCells;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Detections")]
 pub(crate) struct LatentArguments {
-    /// Look for cells that were not detected, and for detections that are no cells, before the fit [default: true, but false where discover
-    /// searches tracks].
+    /// Look for cells that were not detected, and for detections that are no cells, before the fit [default: true].
     #[arg(long, value_name = "true|false", action = ArgAction::Set)]
     complete: Option<bool>,
     /// Share of the cells that is not detected [default: estimated].
