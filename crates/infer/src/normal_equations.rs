@@ -1,7 +1,7 @@
 //! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
 
 use crate::least_squares::{invert, within_bounds};
-use crate::linearisation::{Held, Linearisation};
+use crate::linearisation::{Eliminated, Held, Linearisation};
 use crate::quadratic::HalfSpace;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
@@ -58,15 +58,14 @@ impl Reduced {
     }
 }
 
-/// The parts of a problem in β alone.
-fn reduce(frames: &[Linearisation], priors: Priors, spring: f64) -> Result<Reduced, Error> {
+/// The problem in β alone, from its parts with the nudges eliminated.
+fn reduce(parts: &[Eliminated], priors: Priors) -> Reduced {
     let (mut information, mut gradient) = (priors.normal, priors.gradient);
-    for frame in frames {
-        let part = frame.eliminate(spring, &[])?;
-        information += part.schur;
-        gradient += part.gradient;
+    for part in parts {
+        information += &part.schur;
+        gradient += &part.gradient;
     }
-    Ok(Reduced { information, gradient })
+    Reduced { information, gradient }
 }
 
 /// The penalty of the priors, linearised about the present coefficients.
@@ -95,6 +94,12 @@ impl Priors {
         }
         sum
     }
+
+    /// With half the decrease with β of what −2 log L has beside Φ/σ_v².
+    fn tilted(mut self, tilt: &DVector<f64>, velocity: f64) -> Self {
+        self.gradient += tilt * velocity.powi(2);
+        self
+    }
 }
 
 impl NormalEquations {
@@ -118,7 +123,7 @@ impl NormalEquations {
 
     /// The same with half the decrease with β of what −2 log L has beside Φ/σ_v².
     pub fn tilted(mut self, tilt: DVector<f64>) -> Self {
-        self.priors.gradient += &tilt * self.velocity.powi(2);
+        self.priors = self.priors.tilted(&tilt, self.velocity);
         Self { tilt, ..self }
     }
 
@@ -129,9 +134,8 @@ impl NormalEquations {
 
     /// The reduced problem at other noise levels.
     pub fn reduced_at(&self, levels: NoiseLevels) -> Result<Reduced, Error> {
-        let mut priors = Priors::new(&self.space, levels.velocity, self.free.as_slice());
-        priors.gradient += &self.tilt * levels.velocity.powi(2);
-        reduce(&self.frames, priors, levels.spring())
+        let priors = Priors::new(&self.space, levels.velocity, self.free.as_slice());
+        Ok(reduce(&self.eliminated(levels.spring())?, priors.tilted(&self.tilt, levels.velocity)))
     }
 
     /// Something of each of some points for which the unknowns are eliminated, in parallel as far as memory should go.
@@ -214,10 +218,9 @@ impl NormalEquations {
         Ok(Step { step, promised })
     }
 
-    /// Derivatives of all unknowns by the free coefficients, where the nudges follow these.
-    pub fn ridge(&self) -> Result<DMatrix<f64>, Error> {
-        let parts = self.frames.iter().map(|frame| frame.eliminate(self.spring, &[]));
-        let parts = parts.collect::<Result<Vec<_>, Error>>()?;
+    /// The problem in β alone, and the derivatives of all unknowns by β where the nudges follow it.
+    pub fn ridge(&self) -> Result<(Reduced, DMatrix<f64>), Error> {
+        let parts = self.eliminated(self.spring)?;
         let p = self.free.len();
         let at = |free: &DVector<f64>| {
             let nudges = parts.iter().flat_map(|part| part.nudge_step(free));
@@ -227,7 +230,7 @@ impl NormalEquations {
         let columns: Vec<DVector<f64>> = (0..p)
             .map(|k| at(&DVector::from_fn(p, |row, _| f64::from(u8::from(row == k)))) - &still)
             .collect();
-        Ok(DMatrix::from_columns(&columns))
+        Ok((reduce(&parts, self.priors.clone()), DMatrix::from_columns(&columns)))
     }
 
     /// log det of the second derivative of Φ with respect to the nudges.
@@ -245,7 +248,12 @@ impl NormalEquations {
 
     /// The problem in β alone, with the nudges eliminated and priors included.
     pub fn reduced(&self) -> Result<Reduced, Error> {
-        reduce(&self.frames, self.priors.clone(), self.spring)
+        Ok(reduce(&self.eliminated(self.spring)?, self.priors.clone()))
+    }
+
+    /// Each part with its nudges eliminated.
+    fn eliminated(&self, spring: f64) -> Result<Vec<Eliminated>, Error> {
+        self.frames.iter().map(|frame| frame.eliminate(spring, &[])).collect()
     }
 
     /// The β at which the linearised problem would be least without the bounds that hold it back: where its constrained

@@ -135,8 +135,8 @@ fn searched(
     let explains = !selected.selected.is_empty();
     let mut ranking = growth.ranking;
     if testable && let Some(random) = RandomMotion::of(&setting, last)? {
-        ranking.put(random.ranked.clone());
-        selected.selected.extend(random.selected(&setting, last)?);
+        ranking.put(random.ranked);
+        selected.selected.extend(random.selected);
     }
     ranking.settle(&selected);
     // What single cells have of their own predicts no other cell, and what moves them at random predicts nothing.

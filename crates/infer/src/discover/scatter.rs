@@ -24,11 +24,11 @@ const NUMERICAL: &str =
 const BESIDE_POLARITY: &str =
     "beside a polarity it cannot be told from what turns and changes of contacts within an interval leave";
 
-/// The scatter of a fit, tested.
+/// What a fit says of random motion.
 pub(super) struct RandomMotion {
-    candidate: usize,
-    scatter: Option<Scatter>,
     pub ranked: Ranked,
+    /// As an effect beside the others, if it is more than chance.
+    pub selected: Option<Selected>,
 }
 
 impl RandomMotion {
@@ -36,54 +36,46 @@ impl RandomMotion {
     pub fn of(setting: &Setting<'_>, model: &Model) -> Result<Option<Self>, Error> {
         let is_it = |k: &usize| setting.candidates[*k].effect.is_random_motion();
         let Some(candidate) = setting.named(&model.added).into_iter().find(is_it) else { return Ok(None) };
+        let effect = setting.candidates[candidate].effect;
         if model.request.activity != Activity::None {
-            let ranked = untested(setting.candidates[candidate].effect, Fate::NotTestable(BESIDE_POLARITY));
-            return Ok(Some(Self { candidate, scatter: None, ranked }));
+            let ranked = untested(effect, Fate::NotTestable(BESIDE_POLARITY));
+            return Ok(Some(Self { ranked, selected: None }));
         }
-        let Some(scatter) = setting.scatter(model)? else { return Ok(None) };
+        let Some(Scatter { diffusion, interval, evidence }) = setting.scatter(model)? else {
+            return Ok(None);
+        };
         let inference = &model.inference;
         let usual = (inference.total / inference.used as f64).sqrt();
-        let evidence = scatter.evidence;
-        let plain = by_evidence(setting, candidate, (evidence, 1, p(evidence, 1)));
-        let interval = setting.movie.map_or(1.0, Movie::interval);
+        let time = setting.movie.map_or(1.0, Movie::interval);
         // Of the mean velocity over the usual interval.
-        let size = |diffusion: f64| (4.0 * diffusion / interval).sqrt() / usual;
+        let size_of = |diffusion: f64| (4.0 * diffusion / time).sqrt() / usual;
+        let (size, [least, most]) = (size_of(diffusion), interval.map(size_of));
+        let plain = by_evidence(setting, candidate, (evidence, 1, p(evidence, 1)));
         let fate = match plain.fate {
-            Fate::Explained if size(scatter.diffusion) < LEAST_SIZE => Fate::NotConfirmed(NUMERICAL),
+            Fate::Explained if size < LEAST_SIZE => Fate::NotConfirmed(NUMERICAL),
             fate => fate,
         };
-        let [least, most] = scatter.interval.map(size);
-        let ranked = Ranked {
-            size: size(scatter.diffusion),
-            interval: Some([least, most]),
-            detection_limit: most - least,
-            fate,
-            ..plain
-        };
-        Ok(Some(Self { candidate, scatter: Some(scatter), ranked }))
-    }
-
-    /// As an effect beside so many others, unless it is no more than chance.
-    pub fn selected(&self, setting: &Setting<'_>, model: &Model) -> Result<Option<Selected>, Error> {
-        let is_numerical = matches!(self.ranked.fate, Fate::NotConfirmed(_));
-        if is_numerical || self.ranked.adjusted_p >= setting.level(model.added.len()) {
-            return Ok(None);
+        let ranked =
+            Ranked { size, interval: Some([least, most]), detection_limit: most - least, fate, ..plain };
+        let is_chance = ranked.adjusted_p >= setting.level(model.added.len());
+        if matches!(fate, Fate::NotConfirmed(_)) || is_chance {
+            return Ok(Some(Self { ranked, selected: None }));
         }
-        let Some(Scatter { diffusion, interval, .. }) = self.scatter else { return Ok(None) };
-        Ok(Some(Selected {
-            effect: setting.candidates[self.candidate].effect,
+        let selected = Selected {
+            effect,
             columns: Vec::new(),
             coefficients: vec![Estimate {
                 value: diffusion,
                 standard_error: 0.5 * (interval[1] - interval[0]) / 1.96,
                 interval: interval.map(Some),
             }],
-            adjusted_p: self.ranked.adjusted_p,
+            adjusted_p: ranked.adjusted_p,
             // Every model that is fitted has it.
             share_of_excess: 0.0,
-            size: self.ranked.size,
+            size,
             class: Vec::new(),
             partial: partial(setting, model, &[])?,
-        }))
+        };
+        Ok(Some(Self { ranked, selected: Some(selected) }))
     }
 }

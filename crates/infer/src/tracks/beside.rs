@@ -54,17 +54,17 @@ impl Followed {
         space: &CoefficientSpace,
         coefficients: &[f64],
     ) -> Result<Beside, Error> {
-        // What integrating adds is known of the terms of the fit alone: beside these another that acts alike would be taken for missing.
-        let states = &States { integrated: None, ..self.fit.states.clone() };
-        let rule = self.fit.rule.twice();
-        let objective = MovieObjective { rule, states, ..self.objective(movie, structure, space) };
+        let objective =
+            MovieObjective { rule: self.fit.rule.twice(), ..self.objective(movie, structure, space) };
         let mut at = space.nearest(coefficients);
         at.extend(self.displacements());
         let placed = objective.place(&at)?;
+        // Φ by itself: what integrating adds is known of the terms of the fit alone, and beside these another that acts alike would be taken for
+        // missing.
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
         let reduced = equations.reduced()?;
         Ok(Beside {
-            value: objective.value(&at),
+            value: objective.phi(&at),
             normal: equations.frames.iter().map(|part| part.free_normal().clone()).sum(),
             components: objective.explained_components(&placed, &at),
             information: reduced.information,
@@ -135,7 +135,7 @@ impl Followed {
             MovieObjective { states: &states, ..self.objective(movie, &request.structure, space) };
         let mut at = self.fit.parameters.clone();
         at.resize(space.dimension() + 2 * states.blocks(), 0.0);
-        let equations = objective.linearise_at(&objective.place(&at)?, &at, Share::Known)?;
+        let equations = objective.linearise(&at)?;
         objective.hints_of_drives(&equations, own.polarities.drives)
     }
 

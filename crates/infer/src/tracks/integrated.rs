@@ -25,7 +25,7 @@ const STEP: f64 = 1.5;
 /// Stiffness of what is not integrated over, in units of that of a measured place.
 const HELD: f64 = 1e6;
 
-/// log det H to first order about some coefficients.
+/// log det H to first order about some free coefficients of the model.
 #[derive(Debug, Clone)]
 pub(crate) struct Integrated {
     /// Those coefficients.
@@ -48,12 +48,13 @@ struct Ridge<'a> {
 impl<'a> Ridge<'a> {
     fn new(objective: MovieObjective<'a>, parameters: &'a [f64]) -> Result<Self, Error> {
         let equations = objective.linearise(parameters)?;
-        let covariance = invert(equations.reduced()?.information)? * objective.levels.velocity.powi(2);
+        let (reduced, unknowns) = equations.ridge()?;
+        let covariance = invert(reduced.information)? * objective.levels.velocity.powi(2);
         Ok(Self {
             objective,
             parameters,
             directions: covariance.cholesky().ok_or(Error::Degenerate)?.unpack(),
-            unknowns: equations.ridge()?,
+            unknowns,
             held: objective.held_at_first(),
         })
     }
@@ -82,15 +83,7 @@ impl Integrated {
     /// About a fit of cells that crawl.
     pub fn at(objective: &MovieObjective<'_>, parameters: &[f64]) -> Result<Self, Error> {
         let slope = Ridge::new(*objective, parameters)?.slope()?;
-        let basis = objective.space.basis();
-        let slope = basis * invert(basis.tr_mul(basis))? * slope;
-        Ok(Self { about: objective.space.coefficients(objective.split(parameters).0), slope })
-    }
-
-    /// log det H of some coefficients, but for a constant.
-    fn of(&self, coefficients: &DVector<f64>) -> f64 {
-        let known = self.slope.len().min(coefficients.len());
-        (0..known).map(|k| self.slope[k] * (coefficients[k] - self.about[k])).sum()
+        Ok(Self { about: DVector::from_column_slice(objective.split(parameters).0), slope })
     }
 }
 
@@ -112,17 +105,13 @@ impl MovieObjective<'_> {
 
     /// What integrating over the unknowns adds to Φ.
     pub(super) fn integration(&self, free: &[f64]) -> f64 {
-        let of = |own: &Integrated| self.levels.velocity.powi(2) * own.of(&self.space.coefficients(free));
-        self.states.integrated.as_ref().map_or(0.0, of)
+        let of = |own: &Integrated| own.slope.dot(&(DVector::from_column_slice(free) - &own.about));
+        self.levels.velocity.powi(2) * self.states.integrated.as_ref().map_or(0.0, of)
     }
 
     /// Half of what −2 log L falls by, integrated over the unknowns, with the free coefficients.
     pub(super) fn tilt(&self) -> DVector<f64> {
-        let of = |own: &Integrated| {
-            let mut slope = own.slope.as_slice().to_vec();
-            slope.resize(self.space.basis().nrows(), 0.0);
-            self.space.basis().tr_mul(&DVector::from_vec(slope)) * -0.5
-        };
+        let of = |own: &Integrated| &own.slope * -0.5;
         self.states.integrated.as_ref().map_or_else(|| DVector::zeros(self.space.dimension()), of)
     }
 }

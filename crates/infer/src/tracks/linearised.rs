@@ -51,12 +51,12 @@ struct Rests<'a> {
 }
 
 impl MovieObjective<'_> {
-    /// The problem linearised about a point.
+    /// The problem linearised about a point, with what integrating over the unknowns adds.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
-        self.linearise_with(parameters, Share::Known)
+        Ok(self.linearise_with(parameters, Share::Known)?.tilted(self.tilt()))
     }
 
-    /// The same, perhaps with the share of the way to the centroids as a further coefficient, after all others.
+    /// Φ by itself, perhaps with the share of the way to the centroids as a further coefficient, after all others.
     pub(super) fn linearise_with(&self, parameters: &[f64], share: Share) -> Result<NormalEquations, Error> {
         self.linearise_at(&self.place(parameters)?, parameters, share)
     }
@@ -73,9 +73,7 @@ impl MovieObjective<'_> {
         let anchors = Anchors::new(self, placed, displacements, share);
         let outset = Outset::new(self, placed, displacements, anchors.dimension);
         let drives = self.drive_rows(placed, parameters, anchors.dimension);
-        let tilt = self.tilt().resize_vertically(anchors.dimension, 0.0);
-        let rests = Rests { residuals, anchors, outset, drives, displacements };
-        Ok(self.equations(parameters, placed, rests)?.tilted(tilt))
+        self.equations(parameters, placed, Rests { residuals, anchors, outset, drives, displacements })
     }
 
     /// The problem in β alone about a minimum whose residuals have changed by so much.

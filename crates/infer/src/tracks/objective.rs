@@ -64,7 +64,7 @@ pub(crate) struct MovieParts {
     pub nudges: f64,
     /// What keeps places that were not seen, and polarities.
     pub floor: f64,
-    /// Penalty of the priors, and what integrating over the unknowns adds.
+    /// Penalty of the priors.
     pub priors: f64,
 }
 
@@ -258,13 +258,17 @@ impl<'a> MovieObjective<'a> {
         let nudges = of_seen.iter().sum();
         let surprise = self.weight_of_outset() * self.surprise(&placed, displacements);
         let floor = self.stiffness().of(displacements) + surprise + self.driven(&placed, parameters);
-        let priors =
-            self.space.penalty(&self.space.coefficients(free), self.levels.velocity) + self.integration(free);
+        let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);
         Ok(MovieParts { residual, nudges, floor, priors })
     }
 
-    /// Φ; infinite where there is no tessellation.
+    /// Φ with what integrating over the unknowns adds; infinite where there is no tessellation.
     pub fn value(&self, parameters: &[f64]) -> f64 {
+        self.phi(parameters) + self.integration(self.split(parameters).0)
+    }
+
+    /// Φ by itself; infinite where there is no tessellation.
+    pub fn phi(&self, parameters: &[f64]) -> f64 {
         let Ok(parts) = self.parts(parameters) else { return f64::INFINITY };
         let value = parts.residual + self.levels.spring() * parts.nudges + parts.floor + parts.priors;
         if value.is_nan() { f64::INFINITY } else { value }

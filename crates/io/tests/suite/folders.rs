@@ -5,17 +5,9 @@ use std::path::Path;
 
 use voronudge_io::{Journal, OutputDirectory, OutputFolder, Recording, Source};
 
-use crate::{Scratch, assert_told};
+use crate::{Scratch, assert_told, names};
 
 const ARRAYS: [(&str, [usize; 3]); 1] = [("positions.npy", [2, 3, 2])];
-
-fn names(path: &Path) -> Vec<String> {
-    let entries = fs::read_dir(path).unwrap();
-    let mut names: Vec<String> =
-        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
 
 #[test]
 fn a_directory_is_claimed_once() {
@@ -166,18 +158,26 @@ fn a_run_without_a_checkpoint_leaves_nothing() {
     assert!(!path.exists());
 }
 
+/// Looks at a file with a bit of one of its first so many bytes changed, one byte after the other.
+fn for_each_byte_changed(path: &Path, count: usize, look: impl Fn()) {
+    let whole = fs::read(path).unwrap();
+    for at in 0..count {
+        let mut changed = whole.clone();
+        changed[at] ^= 1 << (at % 8);
+        fs::write(path, changed).unwrap();
+        look();
+    }
+}
+
 #[test]
 fn a_checkpoint_with_any_byte_changed_is_refused() {
     let scratch = Scratch::new();
     drop(unfinished(&scratch));
     let path = scratch.path(".voronudge-run/checkpoint");
     let whole = fs::read(&path).unwrap();
-    for at in 0..whole.len() {
-        let mut changed = whole.clone();
-        changed[at] ^= 1 << (at % 8);
-        fs::write(&path, changed).unwrap();
+    for_each_byte_changed(&path, whole.len(), || {
         assert_told(Recording::find(scratch.root()), &["checkpoint: ", "checksum"], ".voronudge-run");
-    }
+    });
     fs::write(&path, &whole[..whole.len() - 1]).unwrap();
     assert_told(Recording::find(scratch.root()), &["checkpoint: "], ".voronudge-run");
     fs::write(&path, &whole).unwrap();
@@ -192,12 +192,9 @@ fn frames_with_any_byte_changed_are_refused() {
     let whole = fs::read(&path).unwrap();
     let folder = OutputFolder::claim(scratch.root()).unwrap();
     // The second frame is not part of the checkpoint.
-    for at in 0..whole.len() - 48 {
-        let mut changed = whole.clone();
-        changed[at] ^= 1 << (at % 8);
-        fs::write(&path, changed).unwrap();
+    for_each_byte_changed(&path, whole.len() - 48, || {
         assert_told(Recording::resume(&folder, &ARRAYS, 1), &["positions.npy: ", "checksum"], "begin again");
-    }
+    });
     fs::write(&path, &whole).unwrap();
     assert_eq!(Recording::resume(&folder, &ARRAYS, 1).unwrap().frame(0, 0).unwrap(), [0.5; 6]);
 }

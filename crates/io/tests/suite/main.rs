@@ -52,6 +52,15 @@ impl Scratch {
     }
 }
 
+/// Names of all files of a folder, hidden ones too, in order.
+fn names(path: &Path) -> Vec<String> {
+    let entries = fs::read_dir(path).unwrap();
+    let mut names: Vec<String> =
+        entries.map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
+    names.sort();
+    names
+}
+
 /// Asserts that the message names the file and contains every fact, in user style, and that the
 /// hint contains the advice.
 #[track_caller]

@@ -5,14 +5,7 @@ use std::fs;
 use ndarray::{Array3, ShapeBuilder, array};
 use voronudge_io::{OutputDirectory, read_integers, read_reals};
 
-use crate::{Scratch, assert_told};
-
-fn names(path: &std::path::Path) -> Vec<String> {
-    let mut names: Vec<String> =
-        fs::read_dir(path).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap()).collect();
-    names.sort();
-    names
-}
+use crate::{Scratch, assert_told, names};
 
 #[test]
 fn results_appear_at_the_commit_and_read_back() {

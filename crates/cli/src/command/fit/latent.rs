@@ -15,9 +15,9 @@ use voronudge_report::infer_report::LatentCells;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Detections")]
 pub(crate) struct LatentArguments {
-    /// Look for cells that were not detected, and for detections that are no cells, before the fit [default: true].
-    #[arg(long, value_name = "true|false", action = ArgAction::Set)]
-    complete: Option<bool>,
+    /// Look for cells that were not detected, and for detections that are no cells, before the fit.
+    #[arg(long, value_name = "true|false", action = ArgAction::Set, default_value_t = true)]
+    complete: bool,
     /// Share of the cells that is not detected [default: estimated].
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     missed_rate: Option<f64>,
@@ -31,10 +31,8 @@ impl LatentArguments {
                 Err(Failure::new(format!("--missed-rate is {rate}, but it must lie between 0 and 1"))
                     .with_hint("it is a share of the cells, 0.03 for 3 %; leave it out and it is estimated"))
             }
-            Some(_) if self.complete == Some(false) => {
-                Err(Failure::new("--missed-rate without a search for missed cells")
-                    .with_hint("leave out --complete false, or --missed-rate"))
-            }
+            Some(_) if !self.complete => Err(Failure::new("--missed-rate without a search for missed cells")
+                .with_hint("leave out --complete false, or --missed-rate")),
             _ => Ok(()),
         }
     }
@@ -48,10 +46,9 @@ impl LatentArguments {
         prepared: &mut Prepared,
         progress: &mut Progress,
     ) -> Result<(), Error> {
-        let completes = self.complete.unwrap_or(true);
         match tracks {
             Some(tracks) => {
-                if completes {
+                if self.complete {
                     tracks.complete(&prepared.request, self.missed_rate, progress)?;
                 }
                 tracks.measure(prepared, progress)?;
@@ -59,23 +56,18 @@ impl LatentArguments {
             }
             None if prepared.velocities.flow().is_some() => {
                 prepared.measure(progress)?;
-                self.complete(completes, prepared, progress)
+                self.complete(prepared, progress)
             }
             None => {
-                self.complete(completes, prepared, progress)?;
+                self.complete(prepared, progress)?;
                 prepared.measure(progress)
             }
         }
     }
 
-    /// Completes the frames of a problem.
-    fn complete(
-        &self,
-        completes: bool,
-        prepared: &mut Prepared,
-        progress: &mut Progress,
-    ) -> Result<(), Error> {
-        if !completes {
+    /// Completes the frames of a problem, if that was not said to be needless.
+    fn complete(&self, prepared: &mut Prepared, progress: &mut Progress) -> Result<(), Error> {
+        if !self.complete {
             return Ok(());
         }
         let completion =
