@@ -15,7 +15,7 @@ use faer::sparse::linalg::cholesky::{
     factorize_symbolic_cholesky,
 };
 use faer::{Conj, MatMut, Par, Side};
-use std::sync::Arc;
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Solutions are few and quick.
 const SEQUENTIAL: Par = Par::Seq;
@@ -23,6 +23,26 @@ const SEQUENTIAL: Par = Par::Seq;
 /// Entries of a factor from which on it is worth while to share its dense blocks out to several tasks, and into how many.
 const LARGE: usize = 40_000_000;
 const TASKS: usize = 2;
+
+/// Memory of factors that are gone, for those to come: a page that is new to a process costs more than what is done with it.
+static SPARE: Mutex<Vec<Vec<f64>>> = Mutex::new(Vec::new());
+
+/// Pieces of it that are kept at most.
+const SPARES: usize = 4;
+
+/// Zeros, so many; `None` if there is no memory for them.
+fn zeros(count: usize) -> Option<Vec<f64>> {
+    let mut spares = SPARE.lock().unwrap_or_else(PoisonError::into_inner);
+    let large_enough = |(_, spare): &(usize, &Vec<f64>)| spare.capacity() >= count;
+    let least = spares.iter().enumerate().filter(large_enough).min_by_key(|(_, spare)| spare.capacity());
+    let found = least.map(|(k, _)| k).map(|k| spares.swap_remove(k));
+    drop(spares);
+    let mut zeros = found.unwrap_or_default();
+    zeros.clear();
+    zeros.try_reserve_exact(count).ok()?;
+    zeros.resize(count, 0.0);
+    Some(zeros)
+}
 
 /// The fill-reducing order of a sparsity pattern: reusable for matrices that differ in their values only.
 #[derive(Debug, Clone)]
@@ -90,9 +110,7 @@ impl CholeskyPattern {
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<Cholesky, Error> {
         let out_of_memory = || Error::OutOfMemory { order: matrix.order() };
         let (symbolic, tasks) = (&self.symbolic, self.tasks());
-        let mut values = Vec::new();
-        values.try_reserve_exact(symbolic.len_val()).map_err(|_| out_of_memory())?;
-        values.resize(symbolic.len_val(), 0.0);
+        let mut values = zeros(symbolic.len_val()).ok_or_else(out_of_memory)?;
         let room = symbolic.factorize_numeric_llt_scratch::<f64>(tasks, Default::default());
         let mut scratch = MemBuffer::try_new(room).map_err(|_| out_of_memory())?;
         let outcome = symbolic.factorize_numeric_llt(
@@ -117,6 +135,17 @@ pub struct Cholesky {
     symbolic: Arc<SymbolicCholesky<usize>>,
     /// Entries of L, in the arrangement that the symbolic part states.
     values: Vec<f64>,
+}
+
+impl Drop for Cholesky {
+    fn drop(&mut self) {
+        let mut spares = SPARE.lock().unwrap_or_else(PoisonError::into_inner);
+        spares.push(std::mem::take(&mut self.values));
+        if spares.len() > SPARES {
+            let least = (0..spares.len()).min_by_key(|k| spares[*k].capacity());
+            least.map(|k| spares.swap_remove(k));
+        }
+    }
 }
 
 impl Cholesky {

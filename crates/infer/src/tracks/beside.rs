@@ -3,6 +3,7 @@
 use super::anchors::Share;
 use super::driven::HintsOfDrives;
 use super::inference::Followed;
+use super::look::Seen;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -118,7 +119,7 @@ impl Followed {
         let placed = objective.place(&at)?;
         let components = objective.explained_components(&placed, &at);
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
-        objective.hint(&equations, components, request.noise)
+        Seen { objective, equations: &equations, components, known: request.noise }.hint()
     }
 
     /// By how much −2 log L would fall, to first order, with each drive of polarities that a fit with polarities lacks.

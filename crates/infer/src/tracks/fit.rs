@@ -2,6 +2,7 @@
 
 use super::begun::Begun;
 use super::integrated::Integrated;
+use super::look::Seen;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -142,7 +143,7 @@ impl<'a> Course<'a, '_> {
     /// Fit and noise levels in turn; the problem is linearised at the end.
     fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
         let mut start = (at, None);
-        let (mut last, mut looked) = (None, None);
+        let (mut last, mut look) = (None, None);
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
@@ -152,8 +153,9 @@ impl<'a> Course<'a, '_> {
                 Some(_) => {
                     let placed = objective.place(&parameters)?;
                     let components = objective.explained_components(&placed, &parameters);
-                    let likely = objective.likely(&equations, components, self.request.noise, looked)?;
-                    looked = Some(likely.looked);
+                    let known = self.request.noise;
+                    let likely = Seen { objective, equations: &equations, components, known }.likely(look)?;
+                    look = Some(likely.look);
                     let free = objective.free_share(&placed, &parameters, likely.memory.speed);
                     // What is expected depends on how free it is: the mean of both does not swing.
                     let free = (free * likely.memory.free).sqrt();

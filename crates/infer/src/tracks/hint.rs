@@ -1,9 +1,8 @@
 //! Whether it is worth while to fit polarities, or their alignment: likelihoods of a few, about a fit without.
 
-use super::likely::{RATIO, TIMES};
-use super::objective::MovieObjective;
-use crate::normal_equations::NormalEquations;
-use crate::{Error, KnownNoise};
+use super::likely::{Place, RATIO, TIMES};
+use super::look::Seen;
+use crate::Error;
 
 /// x and log σ_v²/σ_p² of polarities that are tried before any is fitted.
 const HINTS_OF_TIMES: [f64; 2] = [0.05, 0.5];
@@ -15,17 +14,12 @@ const HINTS_OF_ALIGNMENT: [f64; 3] = [0.03, 0.1, 0.3];
 const MORE_TIMES: [f64; 2] = [1.0, 3.0];
 const MORE_NEWS: [f64; 3] = [1.0, 3.0, 9.0];
 
-impl MovieObjective<'_> {
+impl Seen<'_> {
     /// By how much −2 log L falls at most from no polarity to one of a few, or from none that aligns, at the present k.
-    pub(super) fn hint(
-        &self,
-        equations: &NormalEquations,
-        components: f64,
-        known: KnownNoise,
-    ) -> Result<f64, Error> {
-        let log_k = self.levels.spring().ln();
-        if let Some(memory) = self.memory.filter(|_| self.states.polarities.align()) {
-            let ratio = (self.levels.velocity / memory.speed).powi(2);
+    pub fn hint(&self) -> Result<f64, Error> {
+        let (objective, equations) = (&self.objective, self.equations);
+        if let Some(memory) = objective.memory.filter(|_| objective.states.polarities.align()) {
+            let own = self.place(memory);
             // x and what is new in an interval, as multiples of those of polarities that do not align.
             let tried = HINTS_OF_ALIGNMENT
                 .iter()
@@ -33,13 +27,14 @@ impl MovieObjective<'_> {
             let points: Vec<(f64, f64, f64)> = std::iter::once((0.0, 1.0, 1.0)).chain(tried).collect();
             let values = equations.each(&points, |(alignment, x, news)| {
                 let times = (memory.times * x).clamp(TIMES[0], TIMES[1]);
-                self.likelihood(equations, components, known, [log_k, times, ratio * x / news, *alignment])
+                self.likelihood(Place { times, ratio: own.ratio * x / news, alignment: *alignment, ..own })
             })?;
             let criteria = values.iter().map(|own| own.criterion);
             return Ok(values[0].criterion - criteria.fold(f64::INFINITY, f64::min));
         }
+        let log_k = objective.levels.spring().ln();
         let at = |times: f64, ratio: f64| -> Result<f64, Error> {
-            Ok(self.likelihood(equations, components, known, [log_k, times, ratio.exp(), 0.0])?.criterion)
+            Ok(self.likelihood(Place { log_k, times, ratio: ratio.exp(), alignment: 0.0 })?.criterion)
         };
         let tried = HINTS_OF_TIMES.iter().flat_map(|times| HINTS_OF_RATIO.map(|ratio| (*times, ratio)));
         let points: Vec<(f64, f64)> = std::iter::once((HINTS_OF_TIMES[0], RATIO[1])).chain(tried).collect();

@@ -2,6 +2,7 @@
 
 use super::fit::{Fit, fit};
 use super::held_out::{AsMeasured, HeldOut, MeanVelocities, cross_validate};
+use super::look::Seen;
 use super::movie::Movie;
 use super::objective::{MovieObjective, Placed};
 use super::present::Dynamics;
@@ -161,7 +162,8 @@ pub(crate) fn follow(
         used,
         total,
     };
-    tracked.polarity = objective.polarity(&equations, components, request.noise, displacements)?;
+    let seen = Seen { objective, equations: &equations, components, known: request.noise };
+    tracked.polarity = seen.polarity(displacements)?;
     Ok((inference, Followed { tracked, held_out: held_out.map(|held_out| held_out.folds), fit: found }))
 }
 

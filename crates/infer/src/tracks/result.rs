@@ -1,6 +1,6 @@
 //! What the fit of a movie answers beyond parameters.
 
-use super::likely::Polarity;
+use super::polarity::Polarity;
 use super::present::Dynamics;
 use voronudge_geometry::Vector;
 

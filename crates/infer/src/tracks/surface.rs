@@ -76,7 +76,7 @@ impl Surface {
     /// The inverse of the bend without what is held, at least a little upwards along its own axes.
     fn inverse(&self, held: [bool; UNKNOWNS]) -> Matrix {
         let mut bend = self.bend;
-        for k in (0..3).filter(|k| held[*k]) {
+        for k in (0..UNKNOWNS).filter(|k| held[*k]) {
             bend.fill_row(k, 0.0);
             bend.fill_column(k, 0.0);
         }
@@ -84,7 +84,7 @@ impl Surface {
         let largest = axes.eigenvalues.amax().max(f64::MIN_POSITIVE);
         let inverse = axes.eigenvalues.map(|bend| 1.0 / bend.abs().max(FLAT * largest));
         let mut inverse = axes.eigenvectors * Matrix::from_diagonal(&inverse) * axes.eigenvectors.transpose();
-        for k in (0..3).filter(|k| held[*k]) {
+        for k in (0..UNKNOWNS).filter(|k| held[*k]) {
             inverse.fill_row(k, 0.0);
             inverse.fill_column(k, 0.0);
         }
