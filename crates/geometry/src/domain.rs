@@ -25,6 +25,12 @@ pub struct PeriodicBox {
 /// Sides whose squares and products are numbers of full precision.
 const SIDES: RangeInclusive<f64> = 1e-100..=1e100;
 
+/// Largest shear of a box, in its widths: the offset is then known to 10⁻⁷ widths.
+const MOST_WIDTHS: f64 = 1e9;
+
+/// Widths of the box that its shear, and cells along it, may run on. Images of cells that went up a few boxes stay countable until the next offset is taken.
+const RUNNING_ON: f64 = 0.25 * MOST_BOXES;
+
 impl PeriodicBox {
     /// A rectangular box with sides `[L_x, L_y]`.
     ///
@@ -49,6 +55,38 @@ impl PeriodicBox {
             return Err(Error::BoxOffset { offset, limit });
         }
         Ok(Self { lengths, offset })
+    }
+
+    /// The same box after a simple shear by `strain`. Beyond 4096 widths its offset is less by a multiple of as many, which makes the
+    /// same lattice.
+    ///
+    /// # Errors
+    /// [`Error::BoxOffset`] if the strain is not finite or moves the box by more widths than an offset can resolve.
+    pub fn after_shear(&self, strain: f64) -> Result<Self, Error> {
+        let offset = self.sheared_to(strain);
+        let limit = MOST_WIDTHS * self.lengths[0];
+        // NaN is no offset either.
+        if !offset.is_finite() || offset.abs() > limit {
+            return Err(Error::BoxOffset { offset, limit });
+        }
+        Self::sheared(self.lengths, offset % (0.5 * MOST_BOXES * self.lengths[0]))
+    }
+
+    /// Whether cells may run on across the boundary of this box while it is sheared by `strain`: up to 2048 widths. Beyond they have to be
+    /// put back into the box, or their images were more than can be counted.
+    pub fn runs_on(&self, strain: f64) -> bool {
+        self.sheared_to(strain).abs() <= RUNNING_ON * self.lengths[0]
+    }
+
+    /// Where a cell goes on from that must not run on: in the box if it is above, below, or very far beside it, else where it is.
+    pub fn brought_back(&self, r: Vector<f64>) -> Vector<f64> {
+        let [column, row] = self.image(r);
+        // Along the shear cells are carried anyway.
+        if row == 0 && f64::from(column).abs() <= RUNNING_ON { r } else { self.wrap(r) }
+    }
+
+    fn sheared_to(&self, strain: f64) -> f64 {
+        self.offset + strain * self.lengths[1]
     }
 
     /// Side lengths `[L_x, L_y]`.
@@ -135,6 +173,21 @@ mod tests {
             let w = cell.wrap(r);
             assert!((0.0..3.0).contains(&w.x) && (0.0..2.0).contains(&w.y), "{w}");
             assert!((r - w - cell.translation(cell.image(r))).norm() < 1e-14);
+        }
+    }
+
+    #[test]
+    fn any_shear_makes_a_box_of_the_same_lattice() {
+        let cell = PeriodicBox::sheared([3.0, 2.0], 0.7).unwrap();
+        for strain in [0.0, 1.3, -2000.0, 6143.0, 6145.0, -1e4, 123_456.5, -1e8] {
+            let sheared = cell.after_shear(strain).unwrap();
+            let widths = (0.7 + 2.0 * strain - sheared.offset()) / 3.0;
+            assert!((widths - widths.round()).abs() < 1e-7, "{strain}: {widths}");
+            assert_eq!(widths.round() == 0.0, (0.7 + 2.0 * strain).abs() < 3.0 * 4096.0, "{strain}");
+        }
+        assert!(cell.runs_on(3000.0) && !cell.runs_on(3200.0) && !cell.runs_on(f64::NAN));
+        for strain in [f64::NAN, f64::INFINITY, 2e9] {
+            assert!(matches!(cell.after_shear(strain), Err(Error::BoxOffset { .. })));
         }
     }
 

@@ -2,6 +2,7 @@
 
 use crate::raster::{Edge, smooth};
 use crate::{Error, Vector};
+use rayon::prelude::*;
 
 /// Which extrema are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -66,6 +67,11 @@ pub fn extrema(values: &[f64], size: [usize; 2], search: &ExtremumSearch) -> Res
     };
     let mut heights = smooth(values, size, search.smoothing, search.edge)?;
     heights.iter_mut().for_each(|height| *height *= sign);
+    let [low, high] = [f64::min, f64::max].map(|which| heights.iter().copied().reduce(which).unwrap_or(0.0));
+    // No maximum stands out by more than the whole field does.
+    if high - low < search.prominence {
+        return Ok(Vec::new());
+    }
     let field = Heights { heights, size, edge: search.edge };
     let mut peaks = field.peaks();
     peaks.retain(|peak| peak.prominence >= search.prominence && !field.is_at_edge(peak));
@@ -109,7 +115,8 @@ impl Heights {
     /// Every maximum with its prominence, by the union of what lies above a level that sinks.
     fn peaks(&self) -> Vec<Peak> {
         let mut order: Vec<usize> = (0..self.heights.len()).collect();
-        order.sort_by(|&a, &b| self.heights[b].total_cmp(&self.heights[a]).then(a.cmp(&b)));
+        // The tie is broken, so the order is the same however it is found.
+        order.par_sort_unstable_by(|&a, &b| self.heights[b].total_cmp(&self.heights[a]).then(a.cmp(&b)));
         let lowest = order.last().map_or(0.0, |&pixel| self.heights[pixel]);
         let mut peaks: Vec<Peak> = Vec::new();
         let mut summit_of = vec![NONE; self.heights.len()];
@@ -194,6 +201,11 @@ impl Heights {
     /// The eight neighbours of a pixel that are there.
     fn around(&self, pixel: usize) -> [Option<usize>; 8] {
         const STEPS: [[isize; 2]; 8] = [[-1, -1], [0, -1], [1, -1], [-1, 0], [1, 0], [-1, 1], [0, 1], [1, 1]];
+        let [columns, rows] = self.size;
+        let (column, row) = (pixel % columns, pixel / columns);
+        if column > 0 && row > 0 && column + 1 < columns && row + 1 < rows {
+            return STEPS.map(|[dx, dy]| pixel.checked_add_signed(dy * columns as isize + dx));
+        }
         STEPS.map(|step| self.stepped(pixel, step))
     }
 

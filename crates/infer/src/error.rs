@@ -131,7 +131,10 @@ impl Error {
             Self::NothingToFit => Some("leave at least one of K_A, K_P, P_0, alpha free"),
             Self::Constraint(_) => Some("check --fix, --bounds and --prior; K_P must not be held at zero"),
             Self::Spread(_) => Some("leave --vary out, or give velocities of fewer cells"),
-            Self::Degenerate => Some("fix one of the parameters, for example K_A, or give more cells"),
+            Self::Degenerate => Some(
+                "these cells do not tell all parameters apart, as where all areas or perimeters are alike, or few cells count: fix one of \
+                 the parameters, for example K_A, or give more cells or frames",
+            ),
             Self::Algebra(voronudge_linalg::Error::OutOfMemory { .. }) => Some("give fewer cells or frames"),
             Self::Algebra(_) => Some(
                 "cells that all but coincide, velocities far out of line, or noise levels far from the scatter of the data can do this: \

@@ -2,9 +2,10 @@
 
 use crate::coefficients::parameters;
 use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
+use crate::curvature;
 use crate::doubts::examine;
 use crate::estimates::Fitted;
-use crate::least_squares::{self, residuals_as_measured};
+use crate::least_squares::{self, residuals_as_measured, within_bounds};
 use crate::noisy_fit::{at_limit, fit, go_on};
 use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Nudged, Objective};
@@ -13,7 +14,8 @@ use crate::search::Watch;
 use crate::spread::{self, Differing};
 use crate::{
     CoefficientSpace, CrossValidation, Direction, Doubt, Error, Estimate, Examination, FrameResult,
-    Inference, KnownNoise, Nmse, NoiseLevels, Observation, ParameterEstimates, Progress, Request, Status,
+    Inference, KnownNoise, Method, Nmse, NoiseLevels, Observation, ParameterEstimates, Progress, Request,
+    Status,
 };
 use nalgebra::DVector;
 use std::ops::ControlFlow;
@@ -105,7 +107,14 @@ pub fn infer(
             space.covariance(&least_squares::invert(&reduced.information / (variance * excess))?);
         spreads = differing.spreads_beside(&coefficients, &covariance);
     }
-    let estimated = estimates(&equations, reduced, &space, request, free, variance * excess)?;
+    // Where the search ended, and cells are alike, it is known what the curvature of the forces did to the coefficients.
+    let bias = match (&request.method, &differing) {
+        (Method::Search { .. }, None) => {
+            Some(curvature::bias(&objective, &found.parameters, &equations, &reduced)?)
+        }
+        _ => None,
+    };
+    let estimated = estimates(&equations, reduced, &space, request, free, variance * excess, bias.as_ref())?;
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
         let squares = |frame| residuals_as_measured(frame, structure, coefficients.as_slice());
@@ -177,7 +186,8 @@ pub(crate) struct Estimates {
     pub directions: Vec<Direction>,
 }
 
-/// Estimates at β from the linearised problem about it, reduced to the coefficients, with σ_v² as the fit bears it out.
+/// Estimates at β from the linearised problem about it, reduced to the coefficients, with σ_v² as the fit bears it out; a known bias of
+/// β is taken off.
 pub(crate) fn estimates(
     equations: &NormalEquations,
     reduced: Reduced,
@@ -185,10 +195,16 @@ pub(crate) fn estimates(
     request: &Request,
     free: &[f64],
     variance: f64,
+    bias: Option<&DVector<f64>>,
 ) -> Result<Estimates, Error> {
-    let centre = equations.unbounded(&reduced)?;
-    let information = reduced.information / variance;
-    let fitted = Fitted { space, constraints: &request.constraints, free, information: &information, centre };
+    let mut centre = equations.unbounded(&reduced)?;
+    let mut free = DVector::from_column_slice(free);
+    if let Some(bias) = bias {
+        centre -= bias;
+        free = within_bounds(space, centre.clone(), reduced.information.clone())?;
+    }
+    let (constraints, information) = (&request.constraints, reduced.information / variance);
+    let fitted = Fitted { space, constraints, free: free.as_slice(), information: &information, centre };
     Ok(Estimates {
         parameters: fitted.estimates()?,
         effects: fitted.effects()?,

@@ -15,6 +15,7 @@ mod background;
 mod coefficients;
 mod constraints;
 mod cross_validation;
+mod curvature;
 mod curve;
 pub mod diagnostics;
 pub mod discover;

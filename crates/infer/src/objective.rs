@@ -254,7 +254,7 @@ impl<'a> Objective<'a> {
     }
 
     /// Stiffness that keeps cells that were not seen where they were put.
-    fn floor(&self) -> f64 {
+    pub fn floor(&self) -> f64 {
         (self.levels.velocity / WHEREABOUTS).powi(2)
     }
 

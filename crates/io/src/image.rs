@@ -15,7 +15,7 @@ use crate::memory::machine_memory;
 use crate::tracks::SIZE_LIMIT;
 
 /// Memory that an image takes while it is read and searched, in 8 bytes for each pixel.
-const COPIES: u64 = 4;
+const COPIES: u64 = 6;
 
 /// Labels (frames, rows, columns), 0 for background; one image is one frame.
 pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Array3<i64>, Error> {

@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 
 use crate::digest::sha256;
 use crate::error::{Error, FileFault};
+use crate::memory::machine_memory;
 
 /// A file that went into a result, for the record.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -41,6 +42,11 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
     }
     if !metadata.is_file() {
         return Err(failure(FileFault::NotRegular));
+    }
+    // The bytes, and what is made of them.
+    let (bytes, limit) = (metadata.len(), machine_memory().map_or(u64::MAX, |memory| memory / 2));
+    if bytes > limit {
+        return Err(failure(FileFault::BeyondMemory { bytes, limit }));
     }
     fs::read(path).map_err(|source| failure(file_fault(source)))
 }

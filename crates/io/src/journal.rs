@@ -43,6 +43,8 @@ pub struct Journal {
     path: PathBuf,
     /// Lines so far.
     lines: usize,
+    /// Whether a line could not be written: what came after it would be numbered as that one.
+    broken: bool,
     run: RunFolder,
 }
 
@@ -56,7 +58,7 @@ impl Journal {
         let path = run.path().join(JOURNAL);
         let file =
             File::create(&path).map_err(|source| output_error(&path, OutputFault::NotWritable(source)))?;
-        let mut journal = Self { file, path, lines: 0, run };
+        let mut journal = Self { file, path, lines: 0, broken: false, run };
         journal.append(first)?;
         Ok(journal)
     }
@@ -89,7 +91,7 @@ impl Journal {
             Ok(file)
         };
         let file = open().map_err(failure)?;
-        Ok((Self { file, path, lines: lines.len(), run }, lines))
+        Ok((Self { file, path, lines: lines.len(), broken: false, run }, lines))
     }
 
     /// Appends a line, without its end, which must not have another inside.
@@ -102,7 +104,10 @@ impl Journal {
             file.write_all(text.as_bytes())?;
             file.sync_data()
         };
-        write(&mut self.file).map_err(|source| output_error(&self.path, OutputFault::Write(source)))?;
+        let earlier = || Err(std::io::Error::other("an earlier line could not be written"));
+        let written = if self.broken { earlier() } else { write(&mut self.file) };
+        self.broken = written.is_err();
+        written.map_err(|source| output_error(&self.path, OutputFault::Write(source)))?;
         self.lines += 1;
         Ok(())
     }

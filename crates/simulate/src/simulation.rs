@@ -12,7 +12,8 @@ use voronudge_model::{HalfEdgeForces, Model};
 
 /// Cells in a periodic box that move under a model: `dr_i/dt = v_i(r)`, and what [`Driving`] adds.
 ///
-/// Positions are unwrapped: they run on across the boundary of the box. Velocities and tessellation always belong to the
+/// Positions are unwrapped: they run on across the boundary of the box, unless its shear goes beyond
+/// [`PeriodicBox::runs_on`]. Velocities and tessellation always belong to the
 /// current positions. All arrays are kept from step to step.
 #[derive(Debug, Clone)]
 pub struct Simulation {
@@ -159,6 +160,7 @@ impl Simulation {
         }
         self.now.set_polarities(&driving.first_headings(self.now.positions.len()));
         self.driving = driving;
+        self.put_back()?;
         self.settle()?;
         Ok(self)
     }
@@ -341,9 +343,28 @@ impl Simulation {
     }
 
     fn domain_at(&self, time: f64) -> Result<Domain, voronudge_geometry::Error> {
-        let lengths = self.cell_box.lengths();
-        let strain = self.driving.shear.map_or(0.0, |shear| shear.strain(time));
-        let offset = self.cell_box.offset() + strain * lengths[1];
-        Ok(Domain::Periodic(PeriodicBox::sheared(lengths, offset)?))
+        Ok(Domain::Periodic(self.cell_box.after_shear(self.strain(time))?))
+    }
+
+    fn strain(&self, time: f64) -> f64 {
+        self.driving.shear.map_or(0.0, |shear| shear.strain(time))
+    }
+
+    /// Puts cells back into a box that was sheared too far for them to run on, and says whether there were any outside.
+    fn put_back(&mut self) -> Result<bool, Error> {
+        let time = self.now.time;
+        if self.cell_box.runs_on(self.strain(time)) {
+            return Ok(false);
+        }
+        let domain = self.domain_at(time).map_err(|source| Error::Tessellation { time, source })?;
+        let mut any = false;
+        if let Domain::Periodic(cell_box) = domain {
+            for r in &mut self.now.positions {
+                let back = cell_box.brought_back(*r);
+                any |= back != *r;
+                *r = back;
+            }
+        }
+        Ok(any)
     }
 }

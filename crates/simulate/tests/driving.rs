@@ -43,6 +43,45 @@ fn inert_cells_are_carried_by_the_shear() {
     }
 }
 
+/// A box that was sheared by thousands of its widths is one of a small offset, and cells flow in it as in that one.
+#[test]
+fn shear_goes_on_however_far_it_went() {
+    let parameters = Parameters { chirality: 1.0, ..Parameters::default() };
+    let start = tissue(36, 3, &parameters);
+    let (positions, model) = (start.positions().to_vec(), start.model().clone());
+    let driving = Driving { shear: Some(Shear::Steady { rate: 2.0 }), ..Driving::default() };
+    // The second offset of a pair is that of the first less whole widths, so strains add to it alike.
+    for (far, near) in [(2047.9, -0.1), (-4096.1, -0.1), (8191.75, -0.25), (4095.5, -0.5)] {
+        let from = |widths: f64| {
+            let domain = Domain::Periodic(PeriodicBox::sheared([6.0; 2], 6.0 * widths).unwrap());
+            Simulation::new(positions.clone(), domain, model.clone()).unwrap().with_driving(driving).unwrap()
+        };
+        let (mut far, mut near) = (from(far), from(near));
+        advance(&mut far, 100, 0.005);
+        advance(&mut near, 100, 0.005);
+        let Domain::Periodic(there) = near.tessellation().domain() else { panic!("the box is periodic") };
+        let apart = far.positions().iter().zip(near.positions()).map(|(a, b)| there.shortest(a - b).norm());
+        let worst = apart.fold(0.0, f64::max);
+        assert!(worst < 1e-7, "{worst}");
+        assert_eq!(
+            *far.tessellation(),
+            Tessellation::new(far.positions(), far.tessellation().domain()).unwrap()
+        );
+    }
+    let strained =
+        start.with_driving(Driving { shear: Some(Shear::Step { strain: 1e6 }), ..driving }).unwrap();
+    let place = |r: &Vector<f64>| Vector::new(r.x + (1e6 * r.y).rem_euclid(6.0), r.y);
+    let same = Simulation::new(
+        positions.iter().map(place).collect(),
+        Domain::Periodic(PeriodicBox::new([6.0; 2]).unwrap()),
+        model,
+    )
+    .unwrap();
+    for (v, of_same) in strained.velocities().iter().zip(same.velocities()) {
+        assert!((v - of_same).norm() < 1e-6, "{v} {of_same}");
+    }
+}
+
 /// The flow of a sheared tissue does not depend on which image of a cell is followed.
 #[test]
 fn images_flow_alike_under_shear() {

@@ -155,7 +155,7 @@ fn slices(size: Size) -> Result<Made, Box<dyn Error>> {
         found: vec![
             format!("The slices are least at (in brackets the fit, its 95 % interval; the truth) {}.", sentences.join(", ")),
             format!(
-                "The minimum is the fit, to {} of the intervals: parameters and nudges are fitted together, so nothing is left to gain.",
+                "The minimum is the fit, to {} of the intervals, before what curvature does to estimates is taken off them: parameters and nudges are fitted together, so nothing is left to gain.",
                 share(farthest)
             ),
             format!(

@@ -1,6 +1,7 @@
 //! Statistical studies: longer than tests, with tables for the documentation.
 
 mod channel;
+mod coverage;
 mod discover;
 mod doubts;
 pub(crate) mod flows;
@@ -27,7 +28,7 @@ pub struct Arguments {
     /// Number of seeds.
     #[arg(long, visible_alias = "sets", default_value_t = 10)]
     seeds: u64,
-    /// Only tissues of this many cells (nada, discover, spectrum, spreads).
+    /// Only tissues of this many cells (nada, coverage, discover, spectrum, spreads).
     #[arg(long)]
     cells: Option<usize>,
     /// Folder for figures (nada).
@@ -36,7 +37,7 @@ pub struct Arguments {
     /// Only this part (discover).
     #[arg(long, value_enum)]
     part: Option<discover::Part>,
-    /// Only settings whose name contains one of these (discover, spreads).
+    /// Only settings whose name contains one of these (coverage, discover, spreads).
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Noise levels are estimated, not given (discover).
@@ -90,7 +91,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Recovery => recovery::run(arguments.seeds),
         Study::Nada => nada::run(arguments.seeds, arguments.cells, arguments.figures.as_deref()),
         Study::Noise => noise::levels(arguments.seeds),
-        Study::Coverage => noise::coverage(arguments.seeds),
+        Study::Coverage => coverage::run(arguments.seeds, arguments.cells, &arguments.only),
         Study::Doubts => doubts::run(arguments.seeds),
         Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Velocities => phases::velocities(),

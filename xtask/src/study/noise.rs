@@ -1,10 +1,10 @@
-//! Noise levels from one snapshot by restricted maximum likelihood, and whether intervals cover.
+//! Noise levels from one snapshot by restricted maximum likelihood.
 
 use super::seeds::{on_one_core_each, quartiles};
 use crate::Outcome;
 use claims::{Noise, Tissue};
 use std::ops::ControlFlow;
-use voronudge_infer::{CrossValidation, KnownNoise, Quantity, Request, infer};
+use voronudge_infer::{CrossValidation, KnownNoise, Request, infer};
 
 const CELLS: usize = 100;
 
@@ -43,42 +43,6 @@ pub fn levels(seeds: u64) -> Outcome {
                 column(1),
                 column(2),
                 column(3)
-            );
-        }
-    }
-    Ok(())
-}
-
-/// How often 95 % intervals contain the truth, at σ_r 2 % and σ_v 10 %.
-pub fn coverage(seeds: u64) -> Outcome {
-    let noise = Noise { position: 0.02, velocity: 0.1 };
-    println!("| K_A | noise | K_P α | P_0 | α | K_P | K_A |\n|---|---|---|---|---|---|---|");
-    for (name, held) in [("held", true), ("free", false)] {
-        let given = KnownNoise { position: Some(noise.position), velocity: Some(noise.velocity) };
-        for (levels, known) in [("estimated", KnownNoise::default()), ("given", given)] {
-            let covered = on_one_core_each(seeds, |seed| {
-                let tissue = Tissue::new(CELLS, seed)?;
-                let mut request = tissue.request(known);
-                request.cross_validation = CrossValidation::Skipped;
-                if !held {
-                    request.constraints.fixed.clear();
-                }
-                let frames = [tissue.measured(noise, seed)?];
-                let fit = infer(&frames, &request, &mut |_| ControlFlow::Continue(()))?;
-                Ok(Quantity::ALL.map(|quantity| fit.parameters.get(quantity).covers(tissue.truth(quantity))))
-            })?;
-            let share = |quantity: Quantity| {
-                let index = Quantity::ALL.iter().position(|q| *q == quantity).unwrap_or(0);
-                let count = covered.iter().filter(|row| row[index]).count();
-                format!("{:.3}", count as f64 / covered.len() as f64)
-            };
-            println!(
-                "| {name} | {levels} | {} | {} | {} | {} | {} |",
-                share(Quantity::ChiralCoefficient),
-                share(Quantity::PreferredPerimeter),
-                share(Quantity::Chirality),
-                share(Quantity::PerimeterElasticity),
-                if held { "–".into() } else { share(Quantity::AreaElasticity) }
             );
         }
     }

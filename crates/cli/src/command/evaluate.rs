@@ -5,6 +5,7 @@ use crate::arguments::{
     ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ParameterArguments, environment,
 };
 use crate::failure::Failure;
+use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain_at, field_of_view, labels, to_array, to_scalars};
 use clap::Args;
@@ -116,6 +117,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?,
         None => (0..data.frames()).collect(),
     };
+    let (cells, count) = (data.cells(), frames.len());
+    refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
     let mut out =
         arguments.common.output(data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file()))?;
     // Files with y down show the mirror image: inside, y is up, and so is the sense of α.

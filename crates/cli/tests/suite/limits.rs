@@ -28,6 +28,8 @@ fn more_cells_than_there_is_memory_for_are_refused() {
     assert_refused("phase-diagram --cells 499999999999 --P_0 4 4 1 --alpha 0 0 1", &[], &memory);
     assert_refused("simulate --cells 18446744073709551615", &[], &["more positions than"]);
     assert_refused("simulate --frames 18446744073709551615", &[], &["more positions than"]);
+    let modes = "spectrum --lattice 400 400 --dense-limit 9000000 --P_0 3.7";
+    assert_refused(modes, &[], &["all modes of 160000 cells", "about 5.734e3 GB", "the machine has"]);
 }
 
 #[test]
@@ -40,6 +42,27 @@ fn more_steps_than_anybody_waits_for_are_refused() {
 }
 
 #[test]
+fn data_that_there_is_no_memory_for_are_refused() {
+    let folder = Folder::new();
+    // As long as one of very many cells, without anything on the disk.
+    let whole = folder.write("whole.npy", npy("<f8", "False", "(1099511627776, 2)", &[]));
+    fs::OpenOptions::new().append(true).open(&whole).unwrap().set_len(1 << 43).unwrap();
+    assert_refused(
+        "evaluate --open --positions",
+        &[&whole],
+        &["8796093022208 bytes", "the machine has memory for"],
+    );
+    // A fit takes thousands of times the memory of what is fitted.
+    let body: Vec<u8> = (0..4_000_000).flat_map(|k| f64::from(k).to_le_bytes()).collect();
+    let fitted = folder.write("fitted.npy", npy("<f8", "False", "(2000000, 2)", &body));
+    let line = format!("infer --open --velocities {} --positions", fitted.display());
+    if voronudge_io::machine_memory().is_some_and(|memory| memory < 150_000_000_000) {
+        let facts = ["a fit of 2000000 cells in 1 frame", "about 1.800e2 GB", "fitted.npy"];
+        assert_refused(&line, &[&fitted], &facts);
+    }
+}
+
+#[test]
 fn counts_that_nobody_means_are_refused() {
     assert_refused("channel --preset ht1080 --bins 4294967296", &[], &["4294967296 bins"]);
     assert_refused("moduli --cells 20 --replicas 18446744073709551615", &[], &["--replicas is"]);
@@ -49,8 +72,8 @@ fn counts_that_nobody_means_are_refused() {
     for side in ["1e-200", "1e200"] {
         assert_refused(&format!("simulate --cells 10 --box {side} {side}"), &[], &["box side x", "1e-100"]);
     }
-    let rate = "simulate --cells 20 --shear-rate 1000 --time 1000";
-    assert_refused(rate, &[], &["largest strain, 1000000", "shear offset"]);
+    let rate = "simulate --cells 20 --shear-rate 1e7 --time 1000";
+    assert_refused(rate, &[], &["largest strain, 10000000000", "shear offset"]);
 }
 
 #[test]

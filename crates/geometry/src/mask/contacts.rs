@@ -36,7 +36,16 @@ impl Mask<'_> {
     fn grown(&self, reach: usize) -> (Vec<i64>, Vec<usize>) {
         let mut owner = self.labels.to_vec();
         let mut distance = vec![0; owner.len()];
-        let mut queue: VecDeque<usize> = (0..owner.len()).filter(|&index| owner[index] != 0).collect();
+        if reach == 0 {
+            return (owner, distance);
+        }
+        // Pixels within a cell have nothing to grow into.
+        let is_rim = |index: usize| {
+            let (column, row) = ((index % self.columns) as isize, (index / self.columns) as isize);
+            SIDES.iter().any(|[dx, dy]| self.at(column + dx, row + dy) == 0)
+        };
+        let mut queue: VecDeque<usize> =
+            (0..owner.len()).filter(|&index| owner[index] != 0 && is_rim(index)).collect();
         while let Some(index) = queue.pop_front() {
             if distance[index] == reach {
                 continue;

@@ -36,6 +36,42 @@ pub struct MaskedCell {
     pub pieces: usize,
 }
 
+/// Pixels of one cell in a row, from one column to before another.
+struct Run {
+    label: i64,
+    row: usize,
+    begin: usize,
+    end: usize,
+}
+
+/// The label of each connected piece of some runs, which are in order.
+fn pieces(runs: &[Run]) -> Vec<i64> {
+    // Each run points to an earlier one of its piece, or to itself.
+    let mut earlier: Vec<usize> = (0..runs.len()).collect();
+    fn first(earlier: &mut [usize], mut run: usize) -> usize {
+        while earlier[run] != run {
+            earlier[run] = earlier[earlier[run]];
+            run = earlier[run];
+        }
+        run
+    }
+    let mut above = 0;
+    for (index, run) in runs.iter().enumerate() {
+        // Runs of the row above that end before this begins, corners counted, meet none that follows.
+        while runs[above].row + 1 < run.row || (runs[above].row + 1 == run.row && runs[above].end < run.begin)
+        {
+            above += 1;
+        }
+        let meets = |other: &&Run| other.row + 1 == run.row && other.begin <= run.end;
+        let met = runs[above..].iter().take_while(meets).enumerate();
+        for (offset, _) in met.filter(|(_, other)| other.label == run.label) {
+            let (a, b) = (first(&mut earlier, above + offset), first(&mut earlier, index));
+            earlier[a.max(b)] = a.min(b);
+        }
+    }
+    runs.iter().enumerate().filter(|(index, _)| earlier[*index] == *index).map(|(_, run)| run.label).collect()
+}
+
 impl<'a> Mask<'a> {
     /// A label image of some columns and rows.
     ///
@@ -84,26 +120,30 @@ impl<'a> Mask<'a> {
     /// ```
     pub fn cells(&self) -> Vec<MaskedCell> {
         let mut cells: BTreeMap<i64, MaskedCell> = BTreeMap::new();
-        for (index, &label) in self.labels.iter().enumerate().filter(|&(_, &label)| label != 0) {
-            let (column, row) = (index % self.columns, index / self.columns);
-            let cell = cells.entry(label).or_insert(MaskedCell {
-                label,
+        let runs = self.runs();
+        for run in &runs {
+            let cell = cells.entry(run.label).or_insert(MaskedCell {
+                label: run.label,
                 centroid: Vector::zeros(),
                 area: 0.0,
                 perimeter: 0.0,
                 at_border: false,
                 pieces: 0,
             });
-            cell.area += 1.0;
-            cell.centroid += Vector::new(column as f64 + 0.5, row as f64 + 0.5);
-            cell.at_border |= column == 0 || row == 0 || column + 1 == self.columns || row + 1 == self.rows;
+            let (length, row) = ((run.end - run.begin) as f64, run.row as f64);
+            cell.area += length;
+            // Halves of whole numbers: nothing is rounded.
+            let middle = 0.5 * (run.begin + run.end) as f64;
+            cell.centroid += Vector::new(middle, row + 0.5) * length;
+            cell.at_border |=
+                run.begin == 0 || run.row == 0 || run.end == self.columns || run.row + 1 == self.rows;
         }
         for (label, perimeter) in self.perimeters() {
             if let Some(cell) = cells.get_mut(&label) {
                 cell.perimeter = perimeter;
             }
         }
-        for label in self.pieces() {
+        for label in pieces(&runs) {
             if let Some(cell) = cells.get_mut(&label) {
                 cell.pieces += 1;
             }
@@ -111,32 +151,20 @@ impl<'a> Mask<'a> {
         cells.into_values().map(|cell| MaskedCell { centroid: cell.centroid / cell.area, ..cell }).collect()
     }
 
-    /// The label of each connected piece.
-    fn pieces(&self) -> Vec<i64> {
-        let mut seen = vec![false; self.labels.len()];
-        let (mut found, mut stack) = (Vec::new(), Vec::new());
-        for first in 0..self.labels.len() {
-            let label = self.labels[first];
-            if label == 0 || seen[first] {
-                continue;
-            }
-            found.push(label);
-            seen[first] = true;
-            stack.push(first);
-            while let Some(index) = stack.pop() {
-                let (column, row) = ((index % self.columns) as isize, (index / self.columns) as isize);
-                for (dx, dy) in (-1..=1).flat_map(|dy| (-1..=1).map(move |dx| (dx, dy))) {
-                    if self.at(column + dx, row + dy) == label {
-                        let next = (row + dy) as usize * self.columns + (column + dx) as usize;
-                        if !seen[next] {
-                            seen[next] = true;
-                            stack.push(next);
-                        }
-                    }
+    /// Pixels of one cell that follow each other in a row, row after row.
+    fn runs(&self) -> Vec<Run> {
+        let mut runs: Vec<Run> = Vec::new();
+        for (row, labels) in self.labels.chunks_exact(self.columns).enumerate() {
+            let mut begin = 0;
+            for some in labels.chunk_by(|a, b| a == b) {
+                let end = begin + some.len();
+                if some[0] != 0 {
+                    runs.push(Run { label: some[0], row, begin, end });
                 }
+                begin = end;
             }
         }
-        found
+        runs
     }
 
     /// The sides of pixels between two labels, or a label and the background, as straight segments: the outlines of the cells.

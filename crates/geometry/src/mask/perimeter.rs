@@ -19,16 +19,33 @@ impl Mask<'_> {
 
     /// Adds a weight for each change of label along the lines of one direction.
     fn cross(&self, [dx, dy]: [isize; 2], weight: f64, perimeters: &mut BTreeMap<i64, f64>) {
-        // Lines begin up to a step outside, where everything is background.
-        for row in -dy..self.rows as isize {
-            for column in -dx.max(0)..self.columns as isize - dx.min(0) {
-                let (from, to) = (self.at(column, row), self.at(column + dx, row + dy));
-                if from != to {
-                    for label in [from, to].into_iter().filter(|&label| label != 0) {
-                        *perimeters.entry(label).or_insert(0.0) += weight;
-                    }
+        let mut meet = |from: i64, to: i64| {
+            if from != to {
+                for label in [from, to].into_iter().filter(|&label| label != 0) {
+                    *perimeters.entry(label).or_insert(0.0) += weight;
                 }
             }
+        };
+        let (columns, rows) = (self.columns as isize, self.rows as isize);
+        // Lines begin up to a step outside, where everything is background.
+        for row in -dy..rows {
+            let (begin, end) = (-dx.max(0), columns - dx.min(0));
+            // Where both ends of the step are inside.
+            let within = match (-dx).max(0)..columns - dx.max(0) {
+                within if row >= 0 && row + dy < rows && !within.is_empty() => within,
+                _ => begin..begin,
+            };
+            let at = |column: isize| (self.at(column, row), self.at(column + dx, row + dy));
+            (begin..within.start).map(at).for_each(|(from, to)| meet(from, to));
+            if !within.is_empty() {
+                let part = |row: isize, shift: isize| {
+                    let first = (row * columns + within.start + shift) as usize;
+                    &self.labels[first..first + within.len()]
+                };
+                let pairs = part(row, 0).iter().zip(part(row + dy, dx));
+                pairs.for_each(|(&from, &to)| meet(from, to));
+            }
+            (within.end..end).map(at).for_each(|(from, to)| meet(from, to));
         }
     }
 }

@@ -1,5 +1,7 @@
 use super::*;
 use crate::Outline;
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64Mcg;
 use std::f64::consts::PI;
 
 const SIDE: usize = 90;
@@ -136,4 +138,36 @@ fn outlines_are_merged_into_segments() {
     let segments = Mask::new(&labels, [SIDE, SIDE]).unwrap().outlines();
     assert_eq!(segments.len(), 4);
     assert_eq!(segments.iter().map(|[a, b]| (b - a).norm()).sum::<f64>(), 80.0);
+}
+
+/// Pieces counted by filling each from one of its pixels.
+#[test]
+fn pieces_are_those_of_a_flood() {
+    let mut random = Pcg64Mcg::seed_from_u64(5);
+    for _ in 0..200 {
+        let size = [random.random_range(1..14), random.random_range(1..14)];
+        let labels: Vec<i64> = (0..size[0] * size[1]).map(|_| random.random_range(0..3)).collect();
+        let cells = Mask::new(&labels, size).unwrap().cells();
+        let mut left = labels.clone();
+        let mut pieces = std::collections::BTreeMap::new();
+        for first in 0..left.len() {
+            let label = left[first];
+            if label != 0 {
+                *pieces.entry(label).or_insert(0) += 1;
+                let mut stack = vec![first];
+                while let Some(index) = stack.pop() {
+                    left[index] = 0;
+                    let near = |other: &usize| {
+                        (other % size[0]).abs_diff(index % size[0]) <= 1
+                            && (other / size[0]).abs_diff(index / size[0]) <= 1
+                    };
+                    stack.extend((0..left.len()).filter(|other| left[*other] == label && near(other)));
+                }
+            }
+        }
+        assert_eq!(
+            cells.iter().map(|cell| (cell.label, cell.pieces)).collect::<Vec<_>>(),
+            pieces.into_iter().collect::<Vec<_>>()
+        );
+    }
 }

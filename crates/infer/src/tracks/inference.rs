@@ -97,7 +97,7 @@ pub(crate) fn follow(
     let equations = objective.linearise(&found.parameters)?;
     let reduced = equations.reduced()?;
     let variance_of_fit = variance * (value / expected).max(1.0);
-    let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit)?;
+    let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit, None)?;
     let held_out = match request.cross_validation {
         CrossValidation::Done => cross_validate(&measured, &found.parameters, watch)?,
         CrossValidation::Skipped => None,

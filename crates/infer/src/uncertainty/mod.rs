@@ -66,7 +66,7 @@ impl<'a> Point<'a> {
         Ok(refine(&self.objective(&space), start, STEPS)?.value * self.unit)
     }
 
-    /// Values around the estimate of a quantity, ascending.
+    /// Values around that of a quantity where Φ is least, ascending. The estimate is off from there by the bias that was taken off.
     fn range(&self, quantity: Quantity, points: usize) -> Result<Vec<f64>, Error> {
         let estimate = self.result.parameters.get(quantity);
         if !estimate.value.is_finite() {
@@ -75,21 +75,17 @@ impl<'a> Point<'a> {
         if estimate.standard_error == 0.0 || points < 3 {
             return Err(Error::Constraint("a parameter that is held has no profile"));
         }
-        let (mut low, mut high) = (
-            estimate.value - REACH * estimate.standard_error,
-            estimate.value + REACH * estimate.standard_error,
-        );
+        let value = quantity.of(self.result.coefficients.as_slice());
+        let reach = REACH * estimate.standard_error;
+        let (mut low, mut high) = (value - reach, value + reach);
         // A bound ends the range; a long tail extends it.
         if let [Some(lower), _] = estimate.interval {
-            low =
-                if lower == estimate.value { lower } else { low.min(lower - 0.3 * (estimate.value - lower)) };
+            let tail = estimate.value - lower;
+            low = if tail == 0.0 { lower } else { low.min(value - 1.3 * tail) };
         }
         if let [_, Some(upper)] = estimate.interval {
-            high = if upper == estimate.value {
-                upper
-            } else {
-                high.max(upper + 0.3 * (upper - estimate.value))
-            };
+            let tail = upper - estimate.value;
+            high = if tail == 0.0 { upper } else { high.max(value + 1.3 * tail) };
         }
         Ok((0..points).map(|k| low + (high - low) * k as f64 / (points - 1) as f64).collect())
     }

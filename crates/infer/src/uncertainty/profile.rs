@@ -37,7 +37,7 @@ pub fn profile(
     let best = point.result.objective / point.result.excess();
     let least = heights.iter().copied().fold(best, f64::min);
     let mut curve: Vec<(f64, f64)> = values.into_iter().zip(heights.iter().map(|h| h - least)).collect();
-    curve.push((result.parameters.get(quantity).value, best - least));
+    curve.push((quantity.of(result.coefficients.as_slice()), best - least));
     curve.sort_by(|a, b| a.0.total_cmp(&b.0));
     curve.dedup_by(|a, b| a.0 == b.0);
     Ok(Profile { quantity, interval: crossings(&curve), points: curve })

@@ -18,6 +18,14 @@ pub enum FileFault {
     /// A pipe or a device, whose length cannot be known beforehand.
     #[error("is not a regular file")]
     NotRegular,
+    /// Longer than what there is memory for.
+    #[error("has {bytes} bytes, but the machine has memory for {limit} of an input")]
+    BeyondMemory {
+        /// Its length.
+        bytes: u64,
+        /// The most that is read.
+        limit: u64,
+    },
     /// The operating system refused.
     #[error("cannot be read: {0}")]
     Read(io::Error),
@@ -35,6 +43,7 @@ impl FileFault {
             Self::NotAFolder => {
                 Some("to give a single array, use --positions FILE with --box or --open".into())
             }
+            Self::BeyondMemory { .. } => Some("give fewer frames or cells in one file".into()),
             Self::NotRegular => Some("write the data to a file first".into()),
             Self::Read(source) if source.kind() == io::ErrorKind::PermissionDenied => {
                 Some("you have no permission to read it".into())

@@ -2,6 +2,7 @@
 
 use std::fs;
 use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
 
 use ndarray::{Array2, Array3};
 use voronudge_geometry::Edge;
@@ -121,18 +122,32 @@ fn mutate(whole: &[u8], random: &mut Random) -> Vec<u8> {
     bytes
 }
 
-/// Reads so many mutations of a file. A panic fails the test; what is told must name the file and be of one line.
+/// Times as many mutations as usual: `VORONUDGE_EXECUTIONS=10` makes some hundred thousand.
+fn times() -> usize {
+    std::env::var("VORONUDGE_EXECUTIONS").map_or(1, |count| count.parse().unwrap())
+}
+
+/// Longest that reading any file may take.
+const LONGEST: Duration = Duration::from_secs(20);
+
+/// Reads so many mutations of a file. A panic fails the test, and so does a file that takes very long; what is told must come with advice.
 fn assert_survives(seed: u64, whole: &[u8], path: &Path, count: usize, read: impl Fn() -> Result<(), Error>) {
     fs::write(path, whole).unwrap();
     read().unwrap();
-    let (mut random, mut refused) = (Random(seed), 0);
+    let (mut random, mut refused, mut longest) = (Random(seed), 0, Duration::ZERO);
+    let count = count * times();
     for _ in 0..count {
         fs::write(path, mutate(whole, &mut random)).unwrap();
+        let begun = Instant::now();
         if let Err(error) = read() {
             refused += 1;
             assert!(error.hint().is_some(), "{error}");
         }
+        longest = longest.max(begun.elapsed());
     }
+    let name = path.file_name().unwrap_or_default().display();
+    println!("{name}: {refused} of {count} refused, the longest took {longest:?}");
+    assert!(longest < LONGEST, "{name}: {longest:?}");
     assert!(refused > count / 10, "{}: only {refused} of {count} refused", path.display());
 }
 

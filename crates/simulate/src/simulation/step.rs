@@ -55,6 +55,9 @@ impl Simulation {
         }
         self.now.time += time_step;
         self.now.steps += 1;
+        if self.put_back()? {
+            return self.settle();
+        }
         self.settle_drive();
         Ok(())
     }

@@ -50,10 +50,10 @@ impl CheckArguments {
             return Err(Failure::new(text).with_hint("give tracked cells").at(file.display()));
         }
         if data.frames() < 4 {
-            let text = format!(
-                "--check: {} frames, but a comparison with simulations takes four at least",
-                data.frames()
-            );
+            let count = data.frames();
+            let frames = if count == 1 { "frame" } else { "frames" };
+            let text =
+                format!("--check: {count} {frames}, but a comparison with simulations takes four at least");
             return Err(Failure::new(text).with_hint("give a longer movie").at(file.display()));
         }
         Ok(())

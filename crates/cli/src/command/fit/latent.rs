@@ -29,7 +29,10 @@ impl LatentArguments {
         match self.missed_rate {
             Some(rate) if !(rate > 0.0 && rate < 1.0) => {
                 Err(Failure::new(format!("--missed-rate is {rate}, but it must lie between 0 and 1"))
-                    .with_hint("it is a share of the cells, 0.03 for 3 %; leave it out and it is estimated"))
+                    .with_hint(match rate {
+                        0.0 => "where no cell was missed, say --complete false instead",
+                        _ => "it is a share of the cells, 0.03 for 3 %; leave it out and it is estimated",
+                    }))
             }
             Some(_) if !self.complete => Err(Failure::new("--missed-rate without a search for missed cells")
                 .with_hint("leave out --complete false, or --missed-rate")),

@@ -4,6 +4,7 @@ use super::arguments::{MeanToRemove, SnapshotArguments};
 use super::measured::Measured;
 use super::{flow, measurement, scaling};
 use crate::failure::Failure;
+use crate::memory::refuse_fit_beyond;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, domain};
 use voronudge_geometry::{Domain, PeriodicBox, Vector, Visibility, areas};
@@ -110,6 +111,9 @@ impl Prepared {
                 let place = format!("{}, frame {}", file.display(), self.frames[frame]);
                 Failure::from(source).at(place)
             }
+            Error::Degenerate | Error::Algebra(_) => {
+                Failure::from(error).at(format!("{}, {}", file.display(), told_frames(&self.frames)))
+            }
             other => faulty_data(other, &self.velocities, arguments),
         }
     }
@@ -117,6 +121,15 @@ impl Prepared {
 
 /// No vector.
 const NOWHERE: Vector<f64> = Vector::new(f64::NAN, f64::NAN);
+
+/// Which frames, in words.
+fn told_frames(frames: &[usize]) -> String {
+    match frames {
+        [] => "no frame".into(),
+        [one] => format!("frame {one}"),
+        [first, .., last] => format!("{} frames from {first} to {last}", frames.len()),
+    }
+}
 
 /// A fault of the data as a whole.
 fn faulty_data(error: Error, velocities: &Measured, arguments: &SnapshotArguments) -> Failure {
@@ -144,6 +157,13 @@ impl Question<'_> {
     ) -> Result<Prepared, Failure> {
         let Self { arguments, data, .. } = self;
         let domain = domain(data)?;
+        let present = |frame: &usize| {
+            let places = data.positions.index_axis(ndarray::Axis(0), *frame);
+            places.column(0).iter().filter(|x| x.is_finite()).count()
+        };
+        let followed = matches!(velocities, Measured::Tracks(_));
+        refuse_fit_beyond(&frames.iter().map(present).collect::<Vec<_>>(), followed)
+            .map_err(|failure| failure.at(arguments.data.positions_file().display()))?;
         let mut snapshots = Vec::new();
         let mut observations = Vec::new();
         for &frame in &frames {

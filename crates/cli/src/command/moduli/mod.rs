@@ -7,6 +7,7 @@ use crate::Answer;
 use crate::arguments::{CommonArguments, ParameterArguments};
 use crate::command::simulate::StartArguments;
 use crate::failure::Failure;
+use crate::memory::{OF_A_STRAINED_CELL, refuse_beyond};
 use crate::run::Run;
 use clap::Args;
 use voronudge_report::ModuliPage;
@@ -75,6 +76,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         arguments.common.output(arguments.start.file().into_iter().chain(arguments.parameters.file()))?;
     let starts = measure::starts(&arguments)?;
     let first = &starts[0].1;
+    let cells = first.positions.len();
+    refuse_beyond(format!("moduli of {cells} cells"), cells, OF_A_STRAINED_CELL)?;
     let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();
     let advised = recommended_time_step(&parameters, spacing);
     let time_step = arguments.dt.unwrap_or(advised);

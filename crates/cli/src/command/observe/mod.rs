@@ -7,6 +7,7 @@ use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments};
 use crate::command::fit::{MeanToRemove, check_largest_area};
 use crate::failure::Failure;
+use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
 use crate::run::Run;
 use crate::snapshot::{domain_at, field_of_view};
 use clap::Args;
@@ -62,6 +63,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => (0..data.frames()).collect(),
     };
+    let (cells, count) = (data.cells(), frames.len());
+    refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
     let mut out = arguments.common.output(&data.inputs)?;
     let recorded = arguments.record(&data, &frames, &place)?;
     let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;

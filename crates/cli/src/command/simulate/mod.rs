@@ -219,15 +219,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     Ok(Answer::Positive)
 }
 
-/// Refuses a shear that takes the box farther than it can be followed, before the run gets there.
+/// Refuses a shear that takes the box farther than numbers can follow, before the run gets there.
 fn check_shear(request: &Request, start: PeriodicBox) -> Result<(), Failure> {
     let strain = match request.driving.shear {
         Some(Shear::Oscillatory { amplitude, .. }) => amplitude,
         Some(shear) => shear.strain(request.time),
         None => return Ok(()),
     };
-    let lengths = start.lengths();
-    PeriodicBox::sheared(lengths, start.offset() + strain * lengths[1]).map(|_| ()).map_err(|error| {
+    start.after_shear(strain).map(|_| ()).map_err(|error| {
         Failure::from(error)
             .at(format!("at the largest strain, {strain}"))
             .with_hint("shorten --time, and go on from the end with --start")

@@ -45,7 +45,7 @@ pub(super) fn finish(
         Measurements::new(&mut recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
     let mut results = recorder.results()?;
     let mut settings = settings(simulation, &request, &schedule, &units);
-    describe(&mut settings, &request, start, schedule.frame_interval());
+    describe(&mut settings, &request, start, schedule.frame_interval())?;
     settings.save_settings(&mut results)?;
     measurements.write(&mut results)?;
     let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
@@ -117,7 +117,7 @@ pub(super) fn keep_partial(
     recorder.write_so_far(&mut results)?;
     let mut settings = settings(simulation, &request, schedule, &units);
     let interval = schedule.frame_interval();
-    describe(&mut settings, &Request { frames, ..request }, start, interval);
+    describe(&mut settings, &Request { frames, ..request }, start, interval)?;
     settings.save_settings(&mut results)?;
     results.commit()?;
     recorder.discard()?;

@@ -69,21 +69,28 @@ impl SurroundingsArguments {
 }
 
 /// Tells in a data set without its frames what is around the cells in each of them.
-pub(super) fn describe(data: &mut DataSet, request: &Request, from: PeriodicBox, interval: f64) {
+pub(super) fn describe(
+    data: &mut DataSet,
+    request: &Request,
+    from: PeriodicBox,
+    interval: f64,
+) -> Result<(), Failure> {
     data.walls = request.walls.map(|walls| match walls {
         Walls::X => WalledSides::X,
         Walls::Both => WalledSides::Both,
     });
     let shear = request.driving.shear;
     if shear.is_none() && from.offset() == 0.0 {
-        return;
+        return Ok(());
     }
-    let height = from.lengths()[1];
     let strain = |frame: usize| shear.map_or(0.0, |shear| shear.strain((frame + 1) as f64 * interval));
-    data.box_offset = Some((0..request.frames).map(|frame| from.offset() + strain(frame) * height).collect());
+    let offset = |frame| from.after_shear(strain(frame)).map(|cell_box| cell_box.offset());
+    data.box_offset = Some((0..request.frames).map(offset).collect::<Result<_, _>>()?);
+    data.unwrapped &= (0..request.frames).all(|frame| from.runs_on(strain(frame)));
     // One offset for each frame: the frames themselves are on disk already.
     let (one, cells) = (data.positions.index_axis(Axis(0), 0).to_owned(), data.cells());
     if let Some(all) = one.broadcast((request.frames, cells, 2)) {
         data.positions = all.to_owned();
     }
+    Ok(())
 }

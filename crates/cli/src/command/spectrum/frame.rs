@@ -4,13 +4,14 @@ use super::request::ModeRequest;
 use super::search::compute;
 use crate::arguments::{ChosenEffects, environment};
 use crate::failure::Failure;
+use crate::memory::{OF_A_CELL_WITH_MODES, refuse_beyond};
 use crate::progress::Progress;
 use crate::snapshot::{Snapshot, domain_at, field_of_view, labels};
 use std::sync::Arc;
 use voronudge_geometry::{Certificate, Tessellation};
 use voronudge_io::DataSet;
 use voronudge_model::{Model, Parameters, velocities};
-use voronudge_spectrum::{LinearProblem, Modes, Scope, TransitionDistance};
+use voronudge_spectrum::{LinearProblem, Modes, Scope, Selection, TransitionDistance, dense_memory};
 
 /// Sides shorter than this share of the cell size are near a T1 transition.
 pub(super) const SHORT_SIDE: f64 = 0.01;
@@ -56,6 +57,15 @@ impl Solved {
         let model = effects.add_to(Model::chiral_voronoi(parameters), surroundings, domain)?;
         let problem = LinearProblem::new(&tessellation, positions, &model, |cell| view.counts(cell));
         let problem = Arc::new(problem.map_err(|error| in_file_numbers(&snapshot, error))?);
+        let (cells, dense) = (problem.cells().len(), request.request.dense_limit);
+        match request.request.selection {
+            Selection::All if cells <= dense => {
+                refuse_beyond(format!("all modes of {cells} cells"), 1, dense_memory(cells) as usize)?;
+            }
+            // More than the limit is refused with better advice.
+            Selection::All => {}
+            _ => refuse_beyond(format!("modes of {cells} cells"), cells, OF_A_CELL_WITH_MODES)?,
+        }
         let modes = compute(&problem, request.request, progress)?;
         let all = velocities(&tessellation, positions, &model);
         let squares: f64 = problem.cells().iter().map(|&cell| all[cell].norm_squared()).sum();
