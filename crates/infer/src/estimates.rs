@@ -13,6 +13,9 @@ const SIZES: [f64; 4] = [1.0, 3.722, 1.0, 1.0];
 /// Distance from a bound, in standard errors, that is rounding.
 const ROUNDING: f64 = 1e-9;
 
+/// The same for the end of an interval, which is the end of a search.
+const ROUNDING_OF_ENDS: f64 = 1e-5;
+
 /// The quadratic about a fit.
 pub(crate) struct Fitted<'a> {
     pub space: &'a CoefficientSpace,
@@ -63,7 +66,7 @@ impl Fitted<'_> {
             match self.constraints.bounds.get(&quantity).and_then(|bounds| bounds.iter().find(stopped)) {
                 None => Estimate { value, standard_error, interval: ends },
                 Some(&bound) => {
-                    let near = |end: &f64| (end - bound).abs() <= ROUNDING * standard_error;
+                    let near = |end: &f64| (end - bound).abs() <= ROUNDING_OF_ENDS * standard_error;
                     let ends = ends.map(|end| if end.as_ref().is_some_and(near) { Some(bound) } else { end });
                     Estimate { value: bound, standard_error, interval: ends }
                 }

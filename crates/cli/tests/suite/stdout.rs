@@ -25,7 +25,9 @@ fn json_on_stdout_is_the_report() {
             let outcome = succeed(&format!("{line} --format json {verbosity}"), &paths);
             let report = fs::read_to_string(out.file("report.json")).unwrap();
             assert_eq!(outcome.stdout.trim_end(), report.trim_end(), "{line}");
-            assert_eq!(outcome.stderr, "", "{line}");
+            // A busy machine takes so long that progress is told.
+            let tells = |own: &str| verbosity.is_empty() && own.contains(" elapsed");
+            assert!(outcome.stderr.lines().all(tells), "{line}: {}", outcome.stderr);
             serde_json::from_str::<serde_json::Value>(&outcome.stdout).unwrap();
         }
     }

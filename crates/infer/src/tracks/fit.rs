@@ -2,7 +2,8 @@
 
 use super::begun::Begun;
 use super::integrated::Integrated;
-use super::look::Seen;
+use super::likely::held;
+use super::look::{Look, Seen};
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -52,6 +53,8 @@ pub(super) struct Fit {
     pub parameters: Vec<f64>,
     pub levels: NoiseLevels,
     pub memory: Option<Memory>,
+    /// How the likelihood of levels and memory bends there.
+    pub look: Option<Look>,
     pub naive: Vec<f64>,
     pub value: f64,
     pub status: Status,
@@ -75,6 +78,8 @@ pub(super) struct Course<'a, 'w> {
     pub(super) rule: Rule,
     levels: NoiseLevels,
     pub(super) memory: Option<Memory>,
+    /// What was seen of the likelihood of levels and memory at the end of a settled fit.
+    pub(super) look: Option<Look>,
     value: f64,
     status: Status,
     steps: u64,
@@ -97,8 +102,8 @@ pub(super) fn fit(
     states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
     let at = course.integrate(&mut states, at)?;
     let (at, error) = course.finish(&states, at)?;
-    let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
-    Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })
+    let Course { rule, levels, memory, look, value, status, steps, trace, .. } = course;
+    Ok(Fit { states, rule, parameters: at, levels, memory, look, naive, value, status, steps, trace, error })
 }
 
 impl<'a, 'w> Course<'a, 'w> {
@@ -110,7 +115,7 @@ impl<'a, 'w> Course<'a, 'w> {
         (rule, levels, memory): (Rule, NoiseLevels, Option<Memory>),
     ) -> Self {
         let (value, status, steps, trace) = (f64::INFINITY, Status::StepLimit, 0, Vec::new());
-        Self { movie, request, space, watch, rule, levels, memory, value, status, steps, trace }
+        Self { movie, request, space, watch, rule, levels, memory, look: None, value, status, steps, trace }
     }
 }
 
@@ -143,7 +148,9 @@ impl<'a> Course<'a, '_> {
     /// Fit and noise levels in turn; the problem is linearised at the end.
     fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
         let mut start = (at, None);
-        let (mut last, mut look) = (None, None);
+        let mut last = None;
+        let held = held(&self.request.noise, states.polarities.align());
+        let mut look = self.look.filter(|_| how.resumes).and_then(|own| own.of_another(held));
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
@@ -174,6 +181,7 @@ impl<'a> Course<'a, '_> {
                 break;
             }
         }
+        self.look = look.filter(|_| how.resumes);
         Ok(start)
     }
 

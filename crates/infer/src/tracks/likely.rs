@@ -4,7 +4,7 @@ use super::look::{Look, Seen};
 use super::memory::Memory;
 use super::surface::{Matrix, Point};
 use crate::noise::{LARGEST_POSITION_NOISE, Likelihood, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
-use crate::{Error, NoiseLevels};
+use crate::{Error, KnownNoise, NoiseLevels, NoiseSource};
 
 /// x and log σ_v²/σ_p²: at least and at most.
 pub(super) const TIMES: [f64; 2] = [1e-4, 20.0];
@@ -91,6 +91,11 @@ pub(super) struct Likely {
     pub look: Look,
 }
 
+/// Which of the unknowns are not to be found.
+pub(super) fn held(known: &KnownNoise, align: bool) -> [bool; 4] {
+    [known.source() == NoiseSource::Given, false, false, !align]
+}
+
 impl Seen<'_> {
     /// The present levels and memory.
     pub fn place(&self, memory: Memory) -> Place {
@@ -104,7 +109,7 @@ impl Seen<'_> {
 
     /// Whether both noise levels were given.
     pub fn is_given(&self) -> bool {
-        self.known.position.is_some() && self.known.velocity.is_some()
+        self.known.source() == NoiseSource::Given
     }
 
     /// Noise levels and memory of greatest restricted likelihood near the present ones: one step of Newton's method.
@@ -115,7 +120,7 @@ impl Seen<'_> {
         let present = self.place(memory);
         let spaced = Spaced::about(present.log_k, present.ratio.ln(), memory, align);
         let look = self.look(&spaced, earlier)?;
-        let held = [self.is_given(), false, false, !align];
+        let held = held(&known, align);
         let step = look.criterion.newton(held);
         let (step, Likelihood { criterion, variance }) = self.stepped(&spaced, &look, step)?;
         let Place { log_k, times, ratio, alignment } = spaced.at(step);

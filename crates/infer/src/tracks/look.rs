@@ -20,14 +20,22 @@ pub(super) struct Seen<'a> {
 /// What was seen about a point, in units of the spacings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
-    /// The point.
-    at: Point,
+    /// The point; none if it is of another linearised problem.
+    at: Option<Point>,
     /// −2 log L there.
     pub least: f64,
     /// −2 log L
     pub criterion: Surface,
     /// log σ_v²
     pub log_variance: Surface,
+}
+
+impl Look {
+    /// For another fit of the same cells: how the likelihood bends, and nothing of where it was seen. `None` if all that is not held is not
+    /// so well known that the likelihood is that of a normal distribution.
+    pub fn of_another(self, held: [bool; 4]) -> Option<Self> {
+        self.criterion.is_sharp(held).then_some(Self { at: None, ..self })
+    }
 }
 
 impl Seen<'_> {
@@ -44,12 +52,14 @@ impl Seen<'_> {
         let (criterion, log_variance) = match earlier {
             None => (Surface::new(&criteria), Surface::new(&variances)),
             Some(earlier) => (
-                Surface::again(&criteria, earlier.criterion.bend)
-                    .updated(&earlier.criterion, at - earlier.at),
+                match (Surface::again(&criteria, earlier.criterion.bend), earlier.at) {
+                    (own, Some(before)) => own.updated(&earlier.criterion, at - before),
+                    (own, None) => own,
+                },
                 Surface::again(&variances, earlier.log_variance.bend),
             ),
         };
-        Ok(Look { at, least: criteria[0], criterion, log_variance })
+        Ok(Look { at: Some(at), least: criteria[0], criterion, log_variance })
     }
 
     /// At some points; those that differ in an alignment alone that is none are one.

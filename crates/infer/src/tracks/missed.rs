@@ -10,7 +10,8 @@ use super::movie::{Movie, Sighting, Track};
 use super::neighbours::Motion;
 use super::states::{Instant, instants};
 use crate::{
-    Change, ChangeKind, CompletedFrame, Completion, Error, Observation, Origin, Progress, Request, complete,
+    Change, ChangeKind, CompletedFrame, Completion, Error, KnownNoise, Observation, Origin, Progress,
+    Request, complete,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -68,7 +69,9 @@ pub fn complete_tracks(
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<(Movie, Latent), Error> {
     let motions: Vec<Motion<'_>> = (0..movie.frames() - 1).map(|frame| Motion::new(movie, frame)).collect();
-    let completion = complete(&snapshots(movie)?, request, missed_rate, observe)?;
+    // How far the dynamics scatter is no error of a mean velocity, in which there is all that moves cells beside the model.
+    let request = Request { noise: KnownNoise { velocity: None, ..request.noise }, ..request.clone() };
+    let completion = complete(&snapshots(movie)?, &request, missed_rate, observe)?;
     // Of two frames, the first; a snapshot of these is half-way to the second.
     let (centre, aside) = if movie.frames() < FRAMES { (0, 0.5) } else { (FRAMES / 2, 0.0) };
     let of_frame = |(index, frame): (usize, &CompletedFrame)| {
@@ -315,5 +318,19 @@ mod tests {
             p.chiral_coefficient
         );
         assert!(p.preferred_perimeter.covers(TRUTH[0]), "{:?}", p.preferred_perimeter);
+    }
+
+    /// Cells that crawl are not taken for the neighbours of others that nobody saw, how little the dynamics scatter by may be stated.
+    #[test]
+    fn cells_that_crawl_hide_no_others() {
+        let (movie, _) =
+            Filmed { size: [64, 5], step: 0.1, error: 0.01, seed: 3 }.movie_of_crawling(0.5, 1.0);
+        let constraints =
+            Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+        let noise = KnownNoise { position: Some(0.01), velocity: Some(0.02) };
+        let request = Request { noise, ..Request::new(constraints) };
+        let (completed, _) =
+            complete_tracks(&movie, &request, None, &mut |_| ControlFlow::Continue(())).unwrap();
+        assert_eq!(completed.tracks.len(), movie.tracks.len());
     }
 }

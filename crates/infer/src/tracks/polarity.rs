@@ -5,7 +5,7 @@ use super::likely::{
     LASTING, LESS_LIKELY, Likely, Place, QUANTILE, RATIO, TIMES, alignment_of, of_alignment, of_times,
     times_of,
 };
-use super::look::Seen;
+use super::look::{Look, Seen};
 use super::memory::{Memory, NONE};
 use super::objective::MovieObjective;
 use super::states::States;
@@ -80,11 +80,11 @@ impl MovieObjective<'_> {
 }
 
 impl Seen<'_> {
-    /// The polarity of the cells at a fit, about which the problem is linearised.
-    pub fn polarity(&self, displacements: &[f64]) -> Result<Option<Polarity>, Error> {
+    /// The polarity of the cells at a fit, about which the problem is linearised, and how its likelihood bends there.
+    pub fn polarity(&self, displacements: &[f64]) -> Result<Option<(Polarity, Look)>, Error> {
         let objective = &self.objective;
         let Some(memory) = objective.memory else { return Ok(None) };
-        let Likely { covariance, of_variance: (of_variance, further), .. } = self.likely(None)?;
+        let Likely { covariance, look, of_variance: (of_variance, further), .. } = self.likely(None)?;
         let interval = objective.movie.interval();
         let root_mean_square = |memory: Memory| -> Result<f64, Error> {
             Ok(memory.root_mean_square() * objective.states.polarities.mean_variance(memory)?.sqrt())
@@ -110,7 +110,7 @@ impl Seen<'_> {
         let [contact_inhibition, velocity_alignment] =
             objective.drives_found(self.equations, objective.drives(displacements))?;
         let [slowest, fastest] = [-error, error].map(|aside| (log_times + aside).exp() - LASTING);
-        Ok(Some(Polarity {
+        let polarity = Polarity {
             speed: own,
             speed_interval,
             rate: memory.times / interval,
@@ -122,7 +122,8 @@ impl Seen<'_> {
             velocity_alignment,
             evidence_of_memory: fitted.evidence_of_memory()?.min(evidence),
             evidence,
-        }))
+        };
+        Ok(Some((polarity, look)))
     }
 }
 

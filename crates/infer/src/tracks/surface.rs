@@ -73,6 +73,17 @@ impl Surface {
         Self { bend, ..self }
     }
 
+    /// Whether it rises by more than a standard deviation within three quarters of a spacing along all axes of what is not held, if it is −2 log of a likelihood.
+    pub fn is_sharp(&self, held: [bool; UNKNOWNS]) -> bool {
+        let mut bend = self.bend;
+        for k in (0..UNKNOWNS).filter(|k| held[*k]) {
+            bend.fill_row(k, 0.0);
+            bend.fill_column(k, 0.0);
+            bend[(k, k)] = 2.0 * SHARP;
+        }
+        bend.symmetric_eigenvalues().min() > SHARP
+    }
+
     /// The inverse of the bend without what is held, at least a little upwards along its own axes.
     fn inverse(&self, held: [bool; UNKNOWNS]) -> Matrix {
         let mut bend = self.bend;
@@ -102,6 +113,9 @@ impl Surface {
         self.inverse(held) * 2.0
     }
 }
+
+/// The second derivative of −2 log L where a standard deviation is three quarters of a spacing.
+const SHARP: f64 = 3.5;
 
 /// Bends less than this share of the largest count as that.
 const FLAT: f64 = 1e-4;

@@ -112,13 +112,13 @@ pub(super) struct PositionNoise {
 }
 
 impl PositionNoise {
-    /// As it is in the fit of the base model.
-    pub fn new(prepared: &Prepared, before: &Fitted, units: &Units) -> Self {
-        let sigma = before.inference.noise.position * prepared.scale.length;
+    /// As it is in the fit of the last model: what an effect explains is no error of positions.
+    pub fn new(prepared: &Prepared, after: &Fitted, units: &Units) -> Self {
+        let sigma = after.inference.noise.position * prepared.scale.length;
         Self {
             level: format!("{} {}", significant(sigma, 3), unit_text(&units.length)),
-            estimated: before.inference.noise_source == NoiseSource::Estimated,
-            share: before.budget.position_noise,
+            estimated: after.inference.noise_source == NoiseSource::Estimated,
+            share: after.budget.position_noise,
         }
     }
 

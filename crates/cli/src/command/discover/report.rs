@@ -54,7 +54,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         models: fits,
         description: discovery.description.as_ref().map(|described| description(prepared, described)),
         selected: discovery.selected.iter().map(|one| effects::selected(one, prepared, &units)).collect(),
-        ranking: findings.ahead_of(ranking, &PositionNoise::new(prepared, &discovery.before, &units)),
+        ranking: findings.ahead_of(ranking, &PositionNoise::new(prepared, &discovery.after, &units)),
         measurement,
         unexplained: unexplained(prepared, &discovery.after),
         noise_budget: BeforeAfter {
