@@ -21,16 +21,18 @@ impl Seen<'_> {
         if let Some(memory) = objective.memory.filter(|_| objective.states.polarities.align()) {
             let own = self.place(memory);
             // x and what is new in an interval, as multiples of those of polarities that do not align.
-            let tried = HINTS_OF_ALIGNMENT
-                .iter()
-                .flat_map(|own| MORE_TIMES.iter().flat_map(move |x| MORE_NEWS.map(|news| (*own, *x, news))));
-            let points: Vec<(f64, f64, f64)> = std::iter::once((0.0, 1.0, 1.0)).chain(tried).collect();
-            let values = equations.each(&points, |(alignment, x, news)| {
+            let at = |(alignment, x, news): &(f64, f64, f64)| -> Result<f64, Error> {
                 let times = (memory.times * x).clamp(TIMES[0], TIMES[1]);
-                self.likelihood(Place { times, ratio: own.ratio * x / news, alignment: *alignment, ..own })
-            })?;
-            let criteria = values.iter().map(|own| own.criterion);
-            return Ok(values[0].criterion - criteria.fold(f64::INFINITY, f64::min));
+                let place = Place { times, ratio: own.ratio * x / news, alignment: *alignment, ..own };
+                Ok(self.likelihood(place)?.criterion)
+            };
+            let first = HINTS_OF_ALIGNMENT.map(|alignment| (alignment, 1.0, MORE_NEWS[1]));
+            let mut values = equations.each(&[&[(0.0, 1.0, 1.0)], &first[..]].concat(), at)?;
+            let best = (0..first.len()).min_by(|a, b| values[a + 1].total_cmp(&values[b + 1])).unwrap_or(0);
+            let others = MORE_TIMES.iter().flat_map(|x| MORE_NEWS.map(|news| (first[best].0, *x, news)));
+            let others: Vec<_> = others.filter(|own| *own != first[best]).collect();
+            values.extend(equations.each(&others, at)?);
+            return Ok(values[0] - values.iter().copied().fold(f64::INFINITY, f64::min));
         }
         let log_k = objective.levels.spring().ln();
         let at = |times: f64, ratio: f64| -> Result<f64, Error> {

@@ -28,6 +28,9 @@ pub(super) const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
 const SHORTER: f64 = 0.3;
 const SHORTENINGS: usize = 4;
 
+/// A decrease of −2 log L that is none.
+const NO_GAIN: f64 = 0.01;
+
 /// Noise levels and memory, as the likelihood is a function of them.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Place {
@@ -143,11 +146,15 @@ impl Seen<'_> {
         })
     }
 
-    /// A step, made shorter as long as it leads to less likely levels, with the likelihood at its end.
+    /// A step, made shorter as long as it leads to less likely levels, with the likelihood at its end; none where it would hardly
+    /// lead to likelier ones.
     fn stepped(&self, spaced: &Spaced, look: &Look, mut step: Point) -> Result<(Point, Likelihood), Error> {
+        if -0.5 * look.criterion.slope.dot(&step) < NO_GAIN {
+            return Ok((Point::zeros(), look.here));
+        }
         let mut reached = self.likelihood(spaced.at(step))?;
         for shorter in 1..=SHORTENINGS {
-            if reached.criterion <= look.least {
+            if reached.criterion <= look.here.criterion {
                 break;
             }
             step *= if shorter == SHORTENINGS { 0.0 } else { SHORTER };

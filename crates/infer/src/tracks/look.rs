@@ -22,8 +22,8 @@ pub(super) struct Seen<'a> {
 pub(super) struct Look {
     /// The point; none if it is of another linearised problem.
     at: Option<Point>,
-    /// −2 log L there.
-    pub least: f64,
+    /// The likelihood there.
+    pub here: Likelihood,
     /// −2 log L
     pub criterion: Surface,
     /// log σ_v²
@@ -59,7 +59,7 @@ impl Seen<'_> {
                 Surface::again(&variances, earlier.log_variance.bend),
             ),
         };
-        Ok(Look { at: Some(at), least: criteria[0], criterion, log_variance })
+        Ok(Look { at: Some(at), here: values[0], criterion, log_variance })
     }
 
     /// At some points; those that differ in an alignment alone that is none are one.
