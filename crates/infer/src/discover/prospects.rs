@@ -21,6 +21,18 @@ pub(super) fn of(
         _ => prospects(setting.frames, request, inference)?,
     };
     let Some(mut found) = found else { return Ok(None) };
+    let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added).effects;
+    for prospect in &mut found.designs {
+        let of = |own: &Selected| -> Vec<f64> {
+            let is_it = |candidate: &usize| setting.candidates[*candidate].effect.id == own.effect.id;
+            let place = model.added.iter().position(is_it).map(|k| &places[k]);
+            match place.filter(|place| place.len() == own.coefficients.len()) {
+                Some(place) => place.iter().map(|k| prospect.effects[k - BASE]).collect(),
+                None => vec![f64::NAN; own.coefficients.len()],
+            }
+        };
+        prospect.effects = selected.iter().flat_map(of).collect();
+    }
     for own in selected {
         for other in own.class.iter().filter(|other| other.id != own.effect.id) {
             // What cannot be told apart at all has no information to speak of.

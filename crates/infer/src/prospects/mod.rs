@@ -58,7 +58,8 @@ pub struct Prospect {
     pub design: Design,
     /// Standard error of each quantity of [`Quantity::ALL`] as a share of the present one; NaN for those that are held.
     pub parameters: [f64; Quantity::ALL.len()],
-    /// The same of the coefficients of effects, in the order of the structure.
+    /// The same of the coefficients of effects, in the order of the structure; of a search, of those of the effects that were added, one after
+    /// the other, NaN of what has no column.
     pub effects: Vec<f64>,
 }
 
