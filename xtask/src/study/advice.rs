@@ -4,7 +4,7 @@
 //! Cases take turns: velocities of cells in one to three frames, and tracks over four to six. Numbers of cells, parameters and errors are drawn.
 //! The program is run as a user would; besides what it advises, one more measurement is made in each case, another one from case to case.
 
-use super::measured::Program;
+use super::Program;
 use super::seeds::on_cores;
 use crate::Outcome;
 use claims::measured::{MeasuredSet, Truth, Velocities};

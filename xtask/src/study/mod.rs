@@ -16,6 +16,9 @@ mod seeds;
 mod spectrum;
 mod spreads;
 
+pub(crate) use measured::Program;
+pub(crate) use seeds::{on_cores, quartiles};
+
 use crate::Outcome;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
