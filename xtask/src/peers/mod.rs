@@ -6,7 +6,7 @@ mod set;
 mod table;
 
 use crate::Outcome;
-use crate::study::{Program, on_cores};
+use crate::study::Program;
 use clap::Args;
 use serde_json::Value;
 use set::{BASE, CANDIDATES, KINDS, Set};
@@ -46,21 +46,33 @@ pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
     let program = Program::new(None, &format!("--complete false --effects {}", CANDIDATES.join(",")))?;
     let names = set::names()?;
     let each = 2 * KINDS.len() as u64;
-    let found = on_cores(1, arguments.seeds * each, |task| {
-        let (kind, lacks) = (KINDS[(task % each / 2) as usize], task % 2 == 1);
-        let set = Set::new(kind, task / each, lacks)?;
-        let folder = folder.join(task.to_string());
-        set.write(&folder)?;
-        let mut all = vec![ours(&set, &names, &program, &folder)?];
-        let [before, after] = least_squares::fit(&set, &names)?;
-        all.push(Found::new(&set, &names, Method::LeastSquares, Some([before, after]))?);
-        if has_rival {
-            all.extend(rival(&set, &names, (&arguments.python, &script), &folder)?);
+    let sets = (0..arguments.seeds * each)
+        .map(|task| {
+            let kind = KINDS[(task % each / 2) as usize];
+            let (set, folder) = (Set::new(kind, task / each, task % 2 == 1)?, folder.join(task.to_string()));
+            set.write(&folder)?;
+            Ok((kind.name, set, folder))
+        })
+        .collect::<Result<Vec<_>, Box<dyn Error>>>()?;
+    if has_rival {
+        let folders = sets.iter().map(|(_, _, folder)| folder);
+        let status = Command::new(&arguments.python).arg(script).args(folders).status()?;
+        if !status.success() {
+            return Err("the script of the rival failed".into());
         }
-        all.iter().for_each(|own| eprintln!("{} {task}: {own}", kind.name));
-        Ok(all.into_iter().map(|own| (kind.name, own)).collect::<Vec<_>>())
-    })?;
-    table::print(&found.into_iter().flatten().collect::<Vec<_>>());
+    }
+    let mut found = Vec::new();
+    for (kind, set, folder) in &sets {
+        let mut all = vec![ours(set, &names, &program, folder)?];
+        let [before, after] = least_squares::fit(set, &names)?;
+        all.push(Found::new(set, &names, Method::LeastSquares, Some([before, after]))?);
+        if has_rival {
+            all.extend(rival(set, &names, folder)?);
+        }
+        all.iter().for_each(|own| eprintln!("{kind} {}: {own}", folder.display()));
+        found.extend(all.into_iter().map(|own| (*kind, own)));
+    }
+    table::print(&found);
     if !has_rival {
         println!("\nThe package StochasticForceInference was not run.");
     }
@@ -92,16 +104,7 @@ fn before_or_after(report: &Value, which: &str, names: &[&str]) -> Result<Vec<f6
 }
 
 /// What the rival finds, by both of its estimators.
-fn rival(
-    set: &Set,
-    names: &[&str],
-    (python, script): (&Path, &Path),
-    folder: &Path,
-) -> Result<Vec<Found>, Box<dyn Error>> {
-    let output = Command::new(python).arg(script).arg(folder).output()?;
-    if !output.status.success() {
-        return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
-    }
+fn rival(set: &Set, names: &[&str], folder: &Path) -> Result<Vec<Found>, Box<dyn Error>> {
     let found: Value = serde_json::from_slice(&std::fs::read(folder.join("rival.json"))?)?;
     let coefficients =
         |own: &Value| -> Option<Vec<f64>> { own.as_array()?.iter().map(Value::as_f64).collect() };

@@ -12,7 +12,7 @@ use voronudge_model::{Column, Effect, Environment, Model, Parameters, Structure,
 use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator};
 
 /// Cells of a set, frames that are fitted, and frames after these that nobody fits.
-const CELLS: usize = 100;
+const CELLS: usize = 36;
 const FITTED: usize = 10;
 const HELD_OUT: usize = 5;
 /// Mean distance that a cell moves from frame to frame, root mean square.
@@ -23,6 +23,8 @@ const SHARE: f64 = 0.15;
 const SETTLING: [f64; 2] = [10.0, 1.0];
 const STEP: f64 = 0.005;
 const STEPS: usize = 20;
+/// Places for the neighbours of a cell; no cell has more.
+const SLOTS: usize = 12;
 
 /// Candidates that all methods have, by the names of the catalogue.
 pub const CANDIDATES: [&str; 7] = [
@@ -153,16 +155,16 @@ impl Set {
         let tessellations: Vec<Tessellation> =
             self.measured.iter().map(|r| Tessellation::new(r, domain)).collect::<Result<_, _>>()?;
         let of = |frame: usize, cell: usize| tessellations[frame].ring(cell).collect::<Vec<_>>();
-        let most =
-            (0..frames).flat_map(|f| (0..cells).map(move |c| (f, c))).map(|(f, c)| of(f, c).len()).max();
-        let most = most.unwrap_or(0);
         let positions = Array3::from_shape_fn((frames, cells, 2), |(f, c, axis)| self.measured[f][c][axis]);
         // The neighbours in the order of the ring, the last one again where there are fewer, then the vectors to their images.
-        let mut rings = Array4::zeros((frames, cells, most, 3));
+        let mut rings = Array4::zeros((frames, cells, SLOTS, 3));
         for frame in 0..frames {
             for cell in 0..cells {
                 let ring = of(frame, cell);
-                for slot in 0..most {
+                if ring.len() > SLOTS {
+                    return Err("a cell has too many neighbours".into());
+                }
+                for slot in 0..SLOTS {
                     let h = ring[slot.min(ring.len() - 1)];
                     let other = tessellations[frame].neighbour(h);
                     let apart = self.measured[frame][other] - self.measured[frame][cell];

@@ -28,6 +28,7 @@ from SFI.statefunc.nodes.leaf import BaseLeaf  # noqa: E402
 from SFI.trajectory import time_series_extra  # noqa: E402
 
 BASE = 4
+HOW = ["linear", "parametric"]
 
 
 def turned(f):
@@ -49,31 +50,27 @@ def corners(x, ring, image, following):
     return centre / double[..., None] + x[:, None, :]
 
 
-def sides(v):
+def shapes(v):
+    """Perimeters and areas of polygons, and what they and the squares of the sides change by with each vertex."""
     along = jnp.roll(v, -1, axis=1) - v
     square = jnp.sum(along * along, axis=-1)
-    return jnp.where(square > 0, jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
-
-
-def perimeters(v):
-    return jnp.sum(sides(v), axis=1)
-
-
-def areas(v):
-    # About the first vertex of the polygon.
-    w = v - v[:, :1, :]
-    u = jnp.roll(w, -1, axis=1)
-    return 0.5 * jnp.sum(w[..., 0] * u[..., 1] - w[..., 1] * u[..., 0], axis=1)
+    length = jnp.where(square > 0, jnp.sqrt(jnp.where(square > 0, square, 1.0)), 0.0)
+    unit = along / jnp.where(square > 0, length, 1.0)[..., None]
+    after, before = jnp.roll(v, -1, axis=1), jnp.roll(v, 1, axis=1)
+    area = 0.5 * jnp.sum(v[..., 0] * after[..., 1] - v[..., 1] * after[..., 0], axis=1)
+    dp = jnp.roll(unit, 1, axis=1) - unit
+    da = -0.5 * turned(after - before)
+    dl = jnp.roll(along, 1, axis=1) - along
+    return jnp.sum(length, axis=1), area, dp, da, dl
 
 
 def columns(x, extras):
     ring = extras["ring"].astype(int)
     following = extras["following"].astype(int)
     v, back = jax.vjp(lambda x: corners(x, ring, extras["image"], following), x)
-    dp = jax.grad(lambda v: jnp.sum(perimeters(v)))(v)
-    da = jax.grad(lambda v: jnp.sum(areas(v)))(v)
-    dl = jax.grad(lambda v: 0.5 * jnp.sum(sides(v) ** 2))(v)
-    p, a = perimeters(v)[:, None, None], areas(v)[:, None, None]
+    # About the cells, so that areas keep their digits.
+    p, a, dp, da, dl = shapes(v - x[:, None, :])
+    p, a = p[:, None, None], a[:, None, None]
     z = extras["neighbours"][:, None, None]
     forces = [
         -(a - 1) * da,
@@ -87,16 +84,16 @@ def columns(x, extras):
         (z - 6) * dp,
         -dl,
     ]
-    fields = [back(force)[0] for force in forces]
-    drift = [jnp.broadcast_to(jnp.eye(2)[axis], x.shape) for axis in range(2)]
+    fields = jax.vmap(lambda force: back(force)[0])(jnp.stack(forces))
+    drift = jnp.broadcast_to(jnp.eye(2)[:, None, :], (2, *x.shape))
     # The order of columns.npy: base, drift, the others.
-    return jnp.stack(fields[:BASE] + drift + fields[BASE:], axis=-1)
+    return jnp.moveaxis(jnp.concatenate([fields[:BASE], drift, fields[BASE:]]), 0, -1)
 
 
 def basis(chosen):
     """Some columns as a basis of all cells together."""
     leaf = BaseLeaf(
-        func=lambda x, extras: columns(x, extras)[..., jnp.asarray(chosen)],
+        func=lambda x, extras: columns(x, extras)[..., np.asarray(chosen)],
         rank=1,
         dim=2,
         n_features=len(chosen),
@@ -151,7 +148,7 @@ def judge(folder):
     found = {"version": __version__, "difference": float((np.abs(mine - exact).max(axis=(0, 1, 2)) / size).max())}
     wrapped = {key: time_series_extra(value) for key, value in extras.items()}
     data = TrajectoryCollection.from_arrays(X=x, dt=float(np.load(folder / "interval.npy")[0]), extras_global=wrapped)
-    for how in ["linear", "parametric"]:
+    for how in HOW:
         begun = time.time()
         try:
             before = fit(data, list(range(BASE)), how)
@@ -168,6 +165,7 @@ def judge(folder):
             found[how] = {"error": f"{type(error).__name__}: {error}"[:300]}
         found[how]["seconds"] = time.time() - begun
     (folder / "rival.json").write_text(json.dumps(found, indent=1))
+    print(folder.name, json.dumps({how: found[how].get("error", "ok") for how in HOW}), file=sys.stderr, flush=True)
 
 
 if __name__ == "__main__":

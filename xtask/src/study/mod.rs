@@ -17,7 +17,7 @@ mod spectrum;
 mod spreads;
 
 pub(crate) use measured::Program;
-pub(crate) use seeds::{on_cores, quartiles};
+pub(crate) use seeds::quartiles;
 
 use crate::Outcome;
 use clap::{Args, ValueEnum};

@@ -89,6 +89,7 @@ pub(super) fn coefficients(discovery: &Discovery, prepared: &Prepared, units: &U
             let unit = if name == "D_r" { RATE } else { selected.effect.unit };
             let factor = factor(unit, &prepared.scale);
             Coefficient {
+                effect: selected.effect.id,
                 name: format!("{} {name}", selected.effect.id).trim_end().to_owned(),
                 value: estimate.value * factor,
                 standard_error: estimate.standard_error * factor,

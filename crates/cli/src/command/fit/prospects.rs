@@ -8,11 +8,13 @@ use voronudge_report::Units;
 use voronudge_report::infer_report::{AmbiguityReport, DESIGNS, ProspectOf, ProspectsReport};
 use voronudge_report::numbers::significant;
 
-/// A standard error above this share of the value leaves its sign open.
+/// A standard error above this share of the value hardly tells its sign.
 const SIGN: f64 = 0.5;
 
 /// A coefficient of an effect, in the units of the data.
 pub(crate) struct Coefficient {
+    /// The effect.
+    pub effect: &'static str,
     pub name: String,
     pub value: f64,
     pub standard_error: f64,
@@ -24,8 +26,9 @@ struct Uncertain {
     name: String,
     /// How it is spoken of.
     spoken: String,
-    /// Standard error relative to the size.
+    /// Standard error relative to the size, and to what if not to the value.
     relative: f64,
+    beside: &'static str,
     /// Standard errors as shares of the present one, by name of the measurement.
     shares: BTreeMap<String, f64>,
 }
@@ -54,9 +57,10 @@ pub(crate) fn report(
         let in_units = factor(scale, quantity);
         let (name, unit) = (quantity.name().to_owned(), unit(quantity, units));
         // Ratios follow from the others; what is small beside K_P does little, however large its error beside itself.
-        let usual = match quantity {
-            Quantity::PreferredPerimeter => estimate.value.abs(),
-            _ => estimate.value.abs().max(size),
+        let own = estimate.value.abs();
+        let (usual, beside) = match quantity {
+            Quantity::AreaElasticity | Quantity::ChiralCoefficient if size > own => (size, " of K_P"),
+            _ => (own, ""),
         };
         if quantity != Quantity::Chirality {
             let relative = estimate.standard_error / usual;
@@ -64,29 +68,41 @@ pub(crate) fn report(
                 name: name.clone(),
                 spoken: symbol(quantity).into(),
                 relative,
+                beside,
                 shares: shares.clone(),
             });
         }
         let (value, error) = (estimate.value * in_units, estimate.standard_error * in_units);
         quantities.push(prospect((name, unit), (value, error), &shares));
     }
-    let mut of_effects = Vec::new();
+    let mut of_effects: Vec<(&str, Uncertain)> = Vec::new();
     for (k, own) in effects.iter().enumerate() {
         let shares = shares(&|prospect| prospect.effects.get(k).copied().unwrap_or(f64::NAN));
         if shares.is_empty() {
             continue;
         }
         let (name, relative) = (own.name.clone(), own.standard_error / own.value.abs());
-        of_effects.push(Uncertain {
+        let uncertain = Uncertain {
             name: name.clone(),
             spoken: name.clone(),
             relative,
+            beside: "",
             shares: shares.clone(),
-        });
+        };
+        // An effect is as certain as its most certain coefficient.
+        match of_effects.last_mut() {
+            Some((effect, last)) if *effect == own.effect => {
+                if relative < last.relative {
+                    *last = uncertain;
+                }
+            }
+            _ => of_effects.push((own.effect, uncertain)),
+        }
         quantities.push(prospect((name, own.unit.clone()), (own.value, own.standard_error), &shares));
     }
     let open: Vec<Uncertain> = prospects.ambiguities.iter().map(of_ambiguity).collect();
     // What was found matters more than parameters, and what it is more than how large.
+    let of_effects = of_effects.into_iter().map(|(_, own)| own).collect();
     let first = [open, of_effects, uncertain].into_iter().find(|all| !all.is_empty()).unwrap_or_default();
     let least = first
         .into_iter()
@@ -129,10 +145,9 @@ fn words(own: &Uncertain) -> String {
         .filter(|(name, _)| *name != best)
         .filter_map(|(name, words)| Some(format!("{words} {}", significant(*own.shares.get(*name)?, 2))))
         .collect();
-    let known = match own.relative {
-        relative if relative < SIGN => format!("known to {} %", significant(100.0 * relative, 2)),
-        relative => format!("hardly known (standard error {} of its size)", significant(relative, 2)),
-    };
+    let percent = significant(100.0 * own.relative, 2);
+    let known =
+        format!("{} to {percent} %{}", if own.relative < SIGN { "known" } else { "known only" }, own.beside);
     let mut best = spoken(&best).to_owned();
     best[..1].make_ascii_uppercase();
     format!(
@@ -151,6 +166,7 @@ fn of_ambiguity(own: &Ambiguity) -> Uncertain {
         name: format!("{} or {}", own.effect, own.other),
         spoken: format!("{} beside {}", own.effect, own.other),
         relative: 1.0 / own.separation,
+        beside: "",
         shares: shares.collect(),
     }
 }
@@ -170,7 +186,7 @@ mod tests {
 
     fn uncertain(relative: f64, shares: &[(&str, f64)]) -> Uncertain {
         let shares = shares.iter().map(|(name, share)| ((*name).to_owned(), *share)).collect();
-        Uncertain { name: "K_A".into(), spoken: "K_A".into(), relative, shares }
+        Uncertain { name: "K_A".into(), spoken: "K_A".into(), relative, beside: " of K_P", shares }
     }
 
     #[test]
@@ -180,7 +196,7 @@ mod tests {
         let told = words(&uncertain(0.3, &shares));
         assert_eq!(
             told,
-            "Half the error of positions would bring the standard error of K_A, known to 30 %, to 0.42 of what it is \
+            "Half the error of positions would bring the standard error of K_A, known to 30 % of K_P, to 0.42 of what it is \
              (twice the frames 0.71, twice the field of view 0.71)."
         );
         let alike = [("twice_the_field", 0.5), ("twice_the_frames", 0.5)];
