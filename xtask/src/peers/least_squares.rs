@@ -55,8 +55,9 @@ fn parts(set: &Set) -> Result<Vec<Part>, Box<dyn Error>> {
     let p = set.truth.len();
     let part = |interval: usize| {
         let mut part = Part { normal: DMatrix::zeros(p, p), mixed: DVector::zeros(p), squares: 0.0 };
-        for cell in 0..set.measured[interval].len() {
-            let v = (set.measured[interval + 1][cell] - set.measured[interval][cell]) / set.interval;
+        let ends = set.measured[interval].iter().zip(&set.measured[interval + 1]);
+        for (cell, (from, to)) in ends.enumerate() {
+            let v = (to - from) / set.interval;
             let x: Vec<Vector<f64>> =
                 (0..p).map(|k| (columns[interval][k][cell] + columns[interval + 1][k][cell]) * 0.5).collect();
             for i in 0..p {

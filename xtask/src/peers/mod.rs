@@ -29,6 +29,9 @@ pub struct Arguments {
     /// The Python that has the package StochasticForceInference.
     #[arg(long, value_name = "FILE", default_value = "python3")]
     python: PathBuf,
+    /// Also by the estimator of the package that models errors of positions, which takes minutes for each set.
+    #[arg(long)]
+    parametric: bool,
     /// Folder for the sets, the fits and the table.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
@@ -56,7 +59,11 @@ pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
         .collect::<Result<Vec<_>, Box<dyn Error>>>()?;
     if has_rival {
         let folders = sets.iter().map(|(_, _, folder)| folder);
-        let status = Command::new(&arguments.python).arg(script).args(folders).status()?;
+        let status = Command::new(&arguments.python)
+            .arg(script)
+            .args(arguments.parametric.then_some("--parametric"))
+            .args(folders)
+            .status()?;
         if !status.success() {
             return Err("the script of the rival failed".into());
         }
@@ -113,5 +120,6 @@ fn rival(set: &Set, names: &[&str], folder: &Path) -> Result<Vec<Found>, Box<dyn
         let both = coefficients(&own["before"]).zip(coefficients(&own["after"]));
         Found::new(set, names, method, both.map(|(before, after)| [before, after]))
     };
-    [(Method::RivalLinear, "linear"), (Method::RivalParametric, "parametric")].into_iter().map(of).collect()
+    let tried = Method::OF_RIVAL.into_iter().filter(|(_, name)| found.get(*name).is_some());
+    tried.map(of).collect()
 }

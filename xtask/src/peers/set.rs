@@ -12,11 +12,9 @@ use voronudge_model::{Column, Effect, Environment, Model, Parameters, Structure,
 use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator};
 
 /// Cells of a set, frames that are fitted, and frames after these that nobody fits.
-const CELLS: usize = 36;
+const CELLS: usize = 64;
 const FITTED: usize = 10;
 const HELD_OUT: usize = 5;
-/// Mean distance that a cell moves from frame to frame, root mean square.
-const MOVED: f64 = 0.05;
 /// Root mean square velocity of an effect, of that of the tissue without it.
 const SHARE: f64 = 0.15;
 /// Time before the first frame, and after the onset of an effect, in 1/K_P; steps of the integration, and those between frames.
@@ -45,6 +43,8 @@ pub const BASE: [&str; 4] = ["K_A", "K_P P_0", "K_P", "K_P alpha"];
 #[derive(Debug, Clone, Copy)]
 pub struct Kind {
     pub name: &'static str,
+    /// How far the model moves a cell from frame to frame, root mean square.
+    pub moved: f64,
     /// σ_r
     pub noise: f64,
     /// Standard deviation of what a coordinate moves at random in an interval.
@@ -52,10 +52,11 @@ pub struct Kind {
 }
 
 /// The kinds of sets.
-pub const KINDS: [Kind; 3] = [
-    Kind { name: "sharp, scattering", noise: 0.003, scatter: 0.01 },
-    Kind { name: "blurred, scattering", noise: 0.02, scatter: 0.01 },
-    Kind { name: "blurred, not scattering", noise: 0.02, scatter: 0.0 },
+pub const KINDS: [Kind; 4] = [
+    Kind { name: "short steps, scattering as much", moved: 0.02, noise: 0.002, scatter: 0.02 },
+    Kind { name: "sharp, scattering", moved: 0.05, noise: 0.003, scatter: 0.01 },
+    Kind { name: "blurred, scattering", moved: 0.05, noise: 0.02, scatter: 0.01 },
+    Kind { name: "blurred, not scattering", moved: 0.05, noise: 0.02, scatter: 0.0 },
 ];
 
 /// A movie with its truth.
@@ -108,7 +109,7 @@ impl Set {
             tissue = Simulation::new(tissue.positions().to_vec(), domain, model)?;
             settle(&mut tissue, SETTLING[1])?;
         }
-        let interval = MOVED / root_mean_square(tissue.velocities());
+        let interval = kind.moved / root_mean_square(tissue.velocities());
         let diffusion = kind.scatter.powi(2) / (2.0 * interval);
         tissue = tissue.with_driving(Driving { diffusion, seed, ..Driving::default() })?;
         let mut frames = vec![tissue.positions().to_vec()];

@@ -10,18 +10,25 @@ use std::fmt;
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Method {
     Ours,
-    RivalLinear,
+    RivalRobust,
+    RivalClean,
     RivalParametric,
     LeastSquares,
 }
 
 impl Method {
-    const ALL: [Self; 4] = [Self::Ours, Self::RivalLinear, Self::RivalParametric, Self::LeastSquares];
+    const ALL: [Self; 5] =
+        [Self::Ours, Self::RivalRobust, Self::RivalClean, Self::RivalParametric, Self::LeastSquares];
+
+    /// Those of the rival, with their names in what its script writes.
+    pub const OF_RIVAL: [(Self, &str); 3] =
+        [(Self::RivalRobust, "robust"), (Self::RivalClean, "clean"), (Self::RivalParametric, "parametric")];
 
     fn name(self) -> &'static str {
         match self {
             Self::Ours => "voronudge discover",
-            Self::RivalLinear => "SFI, linear estimator, PASTIS",
+            Self::RivalRobust => "SFI, linear, robust, PASTIS",
+            Self::RivalClean => "SFI, linear, for clean data, PASTIS",
             Self::RivalParametric => "SFI, errors modelled, PASTIS",
             Self::LeastSquares => "least squares, cross-validated",
         }
@@ -117,7 +124,7 @@ pub fn print(all: &[(&str, Found)]) {
                 let told: Vec<&Told> = own.iter().filter_map(|own| own.told.as_ref()).collect();
                 let median = |of: &dyn Fn(&Told) -> f64| {
                     let [_, middle, _] = quartiles(told.iter().map(|told| of(told)).collect());
-                    format!("{:.2}", 100.0 * middle)
+                    if middle > 10.0 { "> 1000".into() } else { format!("{:.2}", 100.0 * middle) }
                 };
                 println!(
                     "| {} | {} | {} of {} | {} | {} | {} | {} | {} |",
