@@ -4,6 +4,7 @@ mod check;
 mod figures;
 mod fixtures;
 mod oracle;
+mod peers;
 mod program;
 mod soak;
 mod study;
@@ -30,6 +31,8 @@ enum Command {
     },
     /// Make figures of the paper anew, and the page of them.
     Figures(figures::Arguments),
+    /// Compare the program with what else one might use on the same movies, and print tables.
+    Peers(peers::Arguments),
     /// Kill runs of the program at random moments, take them up again, and compare with runs that were left alone.
     Soak(soak::Arguments),
     /// Run a statistical study and print its table.
@@ -50,6 +53,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Check { only } => check::run(&root, &only),
         Command::Figures(arguments) => figures::run(&root, &arguments),
+        Command::Peers(arguments) => peers::run(&root, &arguments),
         Command::Soak(arguments) => soak::run(&root, &arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),

@@ -28,7 +28,35 @@ pub(crate) struct Fitted<'a> {
     pub centre: DVector<f64>,
 }
 
+/// Standard errors to first order, bounds apart; zero of what is held.
+pub(crate) struct StandardErrors {
+    /// Of each quantity of [`Quantity::ALL`].
+    pub parameters: [f64; Quantity::ALL.len()],
+    /// Of the coefficients of effects.
+    pub effects: Vec<f64>,
+}
+
 impl Fitted<'_> {
+    /// Standard errors alone.
+    pub fn standard_errors(&self) -> Result<StandardErrors, Error> {
+        let free = crate::least_squares::invert(self.information.clone())?;
+        let covariance = self.space.covariance(&free);
+        let effects = self.space.base_dimension()..self.free.len();
+        Ok(StandardErrors {
+            parameters: Quantity::ALL.map(|quantity| self.standard_error(quantity, &covariance)),
+            effects: effects.map(|k| free[(k, k)].max(0.0).sqrt()).collect(),
+        })
+    }
+
+    /// That of a quantity, from the covariance of the coefficients.
+    fn standard_error(&self, quantity: Quantity, covariance: &Matrix4<f64>) -> f64 {
+        if self.held(quantity) {
+            return 0.0;
+        }
+        let gradient = quantity.gradient(self.space.coefficients(self.free).as_slice());
+        (gradient.transpose() * covariance * gradient).sum().max(0.0).sqrt()
+    }
+
     /// Parameters with likelihood-ratio intervals. Ratios have Fieller's, which need not be symmetric nor bounded; bounds
     /// shorten intervals to what they leave.
     pub fn estimates(&self) -> Result<ParameterEstimates, Error> {
@@ -47,8 +75,6 @@ impl Fitted<'_> {
             if self.held(quantity) {
                 return Estimate { value, standard_error: 0.0, interval: [Some(value); 2] };
             }
-            let gradient = quantity.gradient(c.as_slice());
-            let variance = (gradient.transpose() * covariance * gradient).sum();
             let interval = if quantity.is_ratio() {
                 let ratio = Ratio {
                     numerator: coefficient(quantity.coefficient()),
@@ -60,7 +86,7 @@ impl Fitted<'_> {
                 quadratic.linear_interval(&coefficient(quantity.coefficient()), &bounds, CHI_SQUARED_95)
             };
             let Interval { lower, upper } = interval.unwrap_or(Interval { lower: None, upper: None });
-            let standard_error = variance.max(0.0).sqrt();
+            let standard_error = self.standard_error(quantity, &covariance);
             let ends = [lower, upper];
             let stopped = |bound: &&f64| (value - **bound).abs() <= ROUNDING * standard_error;
             match self.constraints.bounds.get(&quantity).and_then(|bounds| bounds.iter().find(stopped)) {
@@ -84,7 +110,8 @@ impl Fitted<'_> {
     /// Coefficients of effects, which no bound restricts.
     pub fn effects(&self) -> Result<Vec<Estimate>, Error> {
         let quadratic = Quadratic::new(self.centre.clone(), self.information)?;
-        let covariance = crate::least_squares::invert(self.information.clone())?;
+        let errors = self.standard_errors()?.effects;
+        let base = self.space.base_dimension();
         let estimate = |k: usize| {
             let function = Functional {
                 constant: 0.0,
@@ -92,13 +119,9 @@ impl Fitted<'_> {
             };
             let interval = quadratic.linear_interval(&function, &self.space.half_spaces(), CHI_SQUARED_95);
             let Interval { lower, upper } = interval.unwrap_or(Interval { lower: None, upper: None });
-            Estimate {
-                value: self.free[k],
-                standard_error: covariance[(k, k)].max(0.0).sqrt(),
-                interval: [lower, upper],
-            }
+            Estimate { value: self.free[k], standard_error: errors[k - base], interval: [lower, upper] }
         };
-        Ok((self.space.base_dimension()..self.free.len()).map(estimate).collect())
+        Ok((base..self.free.len()).map(estimate).collect())
     }
 
     /// Whether a quantity has one value throughout the space.

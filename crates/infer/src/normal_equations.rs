@@ -157,6 +157,11 @@ impl NormalEquations {
         self.frames.iter_mut().for_each(|frame| frame.hold(held.clone()));
     }
 
+    /// The information of the priors, in units of 1/σ_v².
+    pub fn of_priors(&self) -> &DMatrix<f64> {
+        &self.priors.normal
+    }
+
     /// Number of free coefficients.
     pub fn dimension(&self) -> usize {
         self.free.len()

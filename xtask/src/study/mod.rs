@@ -1,5 +1,6 @@
 //! Statistical studies: longer than tests, with tables for the documentation.
 
+mod advice;
 mod channel;
 mod coverage;
 mod discover;
@@ -14,6 +15,9 @@ mod recovery;
 mod seeds;
 mod spectrum;
 mod spreads;
+
+pub(crate) use measured::Program;
+pub(crate) use seeds::quartiles;
 
 use crate::Outcome;
 use clap::{Args, ValueEnum};
@@ -37,7 +41,7 @@ pub struct Arguments {
     /// Only this part (discover).
     #[arg(long, value_enum)]
     part: Option<discover::Part>,
-    /// Only settings whose name contains one of these (coverage, discover, spreads).
+    /// Only settings whose name contains one of these (advice, coverage, discover, spreads).
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Noise levels are estimated, not given (discover).
@@ -83,6 +87,8 @@ enum Study {
     Measured,
     /// Cells that differ in a parameter.
     Spreads,
+    /// What to measure next: foreseen, and done.
+    Advice,
 }
 
 /// Runs a study.
@@ -105,6 +111,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let searching = arguments.measured.discover;
             spreads::run(arguments.seeds, arguments.cells, &arguments.only, searching)
         }
+        Study::Advice => advice::run(arguments.seeds, &arguments.only),
         Study::Discover => discover::run(&arguments.plan()),
     }
 }

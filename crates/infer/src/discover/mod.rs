@@ -19,6 +19,7 @@ mod heterogeneity;
 mod lineup;
 mod measurement;
 mod null_data;
+mod prospects;
 mod ranking;
 mod resilience;
 mod result;
@@ -149,6 +150,7 @@ fn searched(
     let left = verdict::Left::new(&setting, last, &after);
     let explained = explains.then_some(selected.largest_share).or(only_scatters.then_some(1.0));
     let verdict = verdict::decide(testable, explained, &left, proven);
+    let prospects = prospects::of(&setting, last, &selected.selected).ok().flatten();
     Ok(Discovery {
         verdict,
         before,
@@ -162,6 +164,7 @@ fn searched(
         gain,
         likelihood_gain,
         null_sets,
+        prospects,
     })
 }
 

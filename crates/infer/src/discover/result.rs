@@ -2,7 +2,7 @@
 
 use crate::cross_validation::Folds;
 use crate::diagnostics::Diagnostics;
-use crate::{Doubt, Estimate, Inference, Progress, Request, Tracked};
+use crate::{Doubt, Estimate, Inference, Progress, Prospects, Request, Tracked};
 use std::ops::ControlFlow;
 use voronudge_model::{Column, Effect};
 
@@ -236,6 +236,8 @@ pub struct Discovery {
     pub single_p: f64,
     /// Synthetic data without an effect.
     pub null_sets: NullSets,
+    /// What would be known of the last model, and could be told apart, if more, or better, had been measured.
+    pub prospects: Option<Prospects>,
 }
 
 impl Discovery {

@@ -303,7 +303,7 @@ impl Setting<'_> {
     }
 
     /// The coefficients of a fitted model for one with candidates added, zero for those that are new.
-    fn coefficients_of(&self, from: &Model, added: &[usize]) -> Vec<f64> {
+    pub(super) fn coefficients_of(&self, from: &Model, added: &[usize]) -> Vec<f64> {
         let base = &self.search.fit.structure;
         let [before, after] = [&from.added, added].map(|own| added_places(base, self.candidates, own));
         let mut coefficients = vec![0.0; after.structure.dimension()];

@@ -155,7 +155,7 @@ impl Followed {
         Some(at)
     }
 
-    fn displacements(&self) -> &[f64] {
+    pub(super) fn displacements(&self) -> &[f64] {
         let count = 2 * self.fit.states.blocks();
         &self.fit.parameters[self.fit.parameters.len() - count..]
     }

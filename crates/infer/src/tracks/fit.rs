@@ -30,7 +30,12 @@ const FALL: f64 = 0.4;
 
 /// Least error of the dynamics over the usual interval, in units of that of a position. Less would change no parameter, but hold cells so
 /// stiffly to the model that a fit cannot get past changes of neighbours.
-pub(super) const LEAST_SHARE: f64 = 0.15;
+const LEAST_SHARE: f64 = 0.15;
+
+/// The least error of the dynamics, as that of a mean velocity over an interval, for some error of a position.
+pub(super) fn least_scatter(position: f64, interval: f64) -> f64 {
+    LEAST_SHARE * position / interval
+}
 
 /// How often the error of the dynamics is raised to what a fit leaves, and by how many standard deviations that may exceed what is expected.
 const LOOSENINGS: usize = 5;
@@ -283,7 +288,7 @@ impl<'a> Course<'a, '_> {
     fn tightened(&self, wanted: NoiseLevels, how: Settling) -> NoiseLevels {
         let least = match self.request.noise.velocity {
             Some(_) => 0.0,
-            None => LEAST_SHARE * wanted.position / self.movie.interval(),
+            None => least_scatter(wanted.position, self.movie.interval()),
         };
         let fallen = FALL * self.levels.velocity;
         let most = if how.tightens && self.memory.is_some() { fallen } else { f64::INFINITY };

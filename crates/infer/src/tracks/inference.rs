@@ -41,7 +41,8 @@ pub fn infer_tracks(
     request: &Request,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<(Inference, Tracked), Error> {
-    let (inference, followed) = follow(movie, request, None, &mut Watch { observe })?;
+    let (inference, mut followed) = follow(movie, request, None, &mut Watch { observe })?;
+    followed.tracked.prospects = followed.prospects(movie, request, &inference).ok();
     Ok((inference, followed.tracked))
 }
 
@@ -271,6 +272,7 @@ fn tracked(objective: &MovieObjective<'_>, found: &Fit) -> Tracked {
             error: found.error,
         },
         polarity: None,
+        prospects: None,
         dynamics: Dynamics { rule: found.rule, memory: found.memory, levels: found.levels },
     }
 }

@@ -159,7 +159,12 @@ impl<'a> MovieObjective<'a> {
     }
 
     /// The velocity of each cell of an interval that is not the model's: of its polarity and of the stage, or of a straight way between both ends.
-    fn beside(&self, interval: usize, ends: [&[Vector<f64>]; 2], displacements: &[f64]) -> Vec<Vector<f64>> {
+    pub(super) fn beside(
+        &self,
+        interval: usize,
+        ends: [&[Vector<f64>]; 2],
+        displacements: &[f64],
+    ) -> Vec<Vector<f64>> {
         let between = &self.states.intervals[interval];
         let (span, drift) = (self.span(interval), self.drift(interval, displacements));
         let of_cell = |(number, own): (usize, &[u32; 2])| match between.led[number] {

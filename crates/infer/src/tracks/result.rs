@@ -2,6 +2,7 @@
 
 use super::polarity::Polarity;
 use super::present::Dynamics;
+use crate::Prospects;
 use voronudge_geometry::Vector;
 
 /// How the motion between frames is integrated.
@@ -26,6 +27,8 @@ pub struct Tracked {
     pub integration: Integration,
     /// Polarity of the cells, if it was asked for.
     pub polarity: Option<Polarity>,
+    /// What would be known if more, or better, had been measured; none where that was not asked.
+    pub prospects: Option<Prospects>,
     /// What went on between frames, for those that come.
     pub(crate) dynamics: Dynamics,
 }

@@ -34,6 +34,14 @@ impl Rule {
         }
     }
 
+    /// The same for half the time.
+    pub fn half(self) -> Self {
+        match self {
+            Self::Trapezoid => self,
+            Self::RungeKutta(steps) => Self::RungeKutta(steps.div_ceil(2)),
+        }
+    }
+
     /// The same with twice the steps.
     pub fn twice(self) -> Self {
         Self::RungeKutta(2 * self.steps())

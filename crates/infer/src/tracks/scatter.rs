@@ -1,11 +1,11 @@
 //! How far cells are moved at random, anew at every moment: what the dynamics scatter by.
 //!
 //! What the model leaves of a displacement has the variance σ_v² T h in each component, which is 2Dh of cells that diffuse. A fit always has such a
-//! scatter, because it holds no cell more stiffly to the model than errors of positions are worth (see [`LEAST_SHARE`]). What speaks
+//! scatter, because it holds no cell more stiffly to the model than errors of positions are worth (see [`least_scatter`]). What speaks
 //! for a scatter is by how much −2 log L falls from the least that a fit has to the likeliest one, positions with errors in either case.
 
 use super::anchors::Share;
-use super::fit::LEAST_SHARE;
+use super::fit::least_scatter;
 use super::inference::Followed;
 use super::likely::LESS_LIKELY;
 use super::movie::Movie;
@@ -94,7 +94,7 @@ impl Followed {
         let restricted = Restricted { equations, components, known: request.noise, held: None };
         let own = OfSpring { restricted, fitted: objective.levels.spring().ln() };
         let interval = movie.interval();
-        let least = 2.0 * (LEAST_SHARE / interval).ln();
+        let least = 2.0 * least_scatter(1.0, interval).ln();
         let log_k = own.likeliest()?.max(least);
         let Likelihood { criterion, variance } = own.at(log_k)?;
         let evidence = (own.at(least)?.criterion - criterion).max(0.0);

@@ -24,7 +24,9 @@ use serde::Serialize;
 
 use crate::before_after::BeforeAfter;
 use crate::error::ReportError;
-use crate::infer_report::{CellCounts, FlowGrid, GivenConstraints, Measurement, Quantity, RunRecord};
+use crate::infer_report::{
+    CellCounts, FlowGrid, GivenConstraints, Measurement, ProspectsReport, Quantity, RunRecord,
+};
 use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`DiscoverReport`].
@@ -56,6 +58,8 @@ pub struct DiscoverReport {
     pub caveat: String,
     /// What to measure next, in a sentence; empty if there is nothing to advise.
     pub measure_next: String,
+    /// What would be known of the last model if more, or better, had been measured; `null` where that is not computed.
+    pub prospects: Option<ProspectsReport>,
     /// The base model and the model with the selected effects, at the top level of the file.
     #[serde(flatten)]
     pub models: BeforeAfter<ModelFit>,

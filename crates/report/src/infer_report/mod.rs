@@ -9,6 +9,7 @@ mod implied;
 mod latent;
 mod measured;
 mod measurement;
+mod prospects;
 mod spreads;
 mod tracks;
 mod uncertainty;
@@ -20,6 +21,7 @@ pub use implied::ImpliedByMeanField;
 pub use latent::LatentCells;
 pub use measured::{MeasuredPositions, MeasuredWindow, MeasurementSource, PositionKind, TriedWindow};
 pub use measurement::{Measurement, RegionSource, SeenRegion};
+pub use prospects::{AmbiguityReport, DESIGNS, ProspectOf, ProspectsReport};
 pub use spreads::SpreadReport;
 pub use tracks::TracksReport;
 pub use uncertainty::{BootstrapResult, EigenDirection, LandscapeResult, ProfileResult};
@@ -103,6 +105,8 @@ pub struct InferReport {
     pub nudge: Nudge,
     /// Principal axes of the covariance of the coefficients, stiffest first.
     pub identifiability: Vec<EigenDirection>,
+    /// What would be known if more, or better, had been measured; `null` where that is not computed.
+    pub prospects: Option<ProspectsReport>,
     /// Profile likelihoods, where asked for.
     pub profiles: Vec<ProfileResult>,
     /// Slices of the landscape, where asked for.

@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::parameter_table::{TableRow, activity_rows, parameter_rows};
+use super::prospects::ProspectsView;
 use super::spreads::SpreadView;
 use super::uncertainty::{Known, Uncertainty};
 use super::words::{data, fit_status, mean_removed, noise_source, warnings};
@@ -72,6 +73,7 @@ impl InferPage<'_> {
             is_finding: report.verdict.kind.is_finding(),
             cell_size: cell_size(report),
             known: Known::new(report, &rows, self.uncertainty),
+            prospects: ProspectsView::new(report.prospects.as_ref()),
             parameters: rows.iter().chain(&of_activity).map(TableRow::new).collect(),
             error_figure: self.error_figure(),
             trace_figure: self.trace_figure(),
@@ -192,6 +194,7 @@ struct Context<'a> {
     is_finding: bool,
     cell_size: String,
     known: Known,
+    prospects: Option<ProspectsView>,
     parameters: Vec<TableRow>,
     error_figure: Figure,
     trace_figure: Figure,

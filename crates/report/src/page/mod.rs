@@ -9,6 +9,7 @@ mod infer;
 mod moduli;
 mod parameter_table;
 mod phase_diagram;
+mod prospects;
 mod sections;
 mod simulate;
 mod spectrum;

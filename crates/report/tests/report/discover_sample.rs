@@ -121,6 +121,7 @@ pub fn attributed() -> DiscoverReport {
         measure_next: "A density that changes without a change of place: the same tissue after some hours of \
                        proliferation."
             .into(),
+        prospects: infer.prospects,
         models: BeforeAfter { before, after },
         description: Some(DescriptionFit {
             effect: "smooth_field".into(),
@@ -233,6 +234,7 @@ fn unextended(mut report: DiscoverReport) -> DiscoverReport {
     report.forecast = None;
     report.check = None;
     report.selected.clear();
+    report.prospects = None;
     for candidate in &mut report.ranking {
         if candidate.statistic > 6.0 {
             if candidate.status != CandidateStatus::Description {

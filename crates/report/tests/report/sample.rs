@@ -3,11 +3,12 @@
 use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
-    ActivityReport, BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus, FlowGrid,
-    FlowWindow, GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells,
+    ActivityReport, AmbiguityReport, BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus,
+    FlowGrid, FlowWindow, GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells,
     MeanRemoved, MeasuredPositions, MeasuredWindow, Measurement, MeasurementSource, NaiveParameters, Nmse,
-    Noise, NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, Quantity, RegionSource,
-    RunRecord, SeenRegion, SpreadReport, Transitions, TriedWindow, Verdict, VerdictKind,
+    Noise, NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, ProspectOf,
+    ProspectsReport, Quantity, RegionSource, RunRecord, SeenRegion, SpreadReport, Transitions, TriedWindow,
+    Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -242,6 +243,7 @@ pub fn report() -> InferReport {
             direction(12.0, [0.15, -0.95, -0.26, -0.02]),
             direction(0.04, [0.99, 0.15, 0.05, 0.0]),
         ],
+        prospects: Some(prospects()),
         profiles: Vec::new(),
         landscapes: Vec::new(),
         bootstrap: None,
@@ -262,9 +264,38 @@ pub fn report() -> InferReport {
     }
 }
 
+/// What would be known with other measurements.
+pub fn prospects() -> ProspectsReport {
+    let expected = |now: f64, shares: [f64; 3]| {
+        let names = ["twice_the_frames", "half_the_position_noise", "twice_the_field"];
+        names.into_iter().zip(shares).map(|(name, share)| (name.to_owned(), share * now)).collect()
+    };
+    let quantity = |name: &str, value: f64, error: f64, unit: &str| ProspectOf {
+        name: name.into(),
+        value,
+        standard_error: error,
+        unit: unit.into(),
+        expected: expected(error, [0.71, 0.55, 0.66]),
+    };
+    ProspectsReport {
+        words: "Half the error of positions would bring the standard error of K_P, known to 14 %, to 0.55 of what it is.".into(),
+        least_certain: Some("K_P".into()),
+        recommended: Some("half_the_position_noise".into()),
+        share: Some(0.55),
+        quantities: vec![quantity("K_P", 0.021, 0.0029, "1/min"), quantity("K_P_alpha", 0.0714, 0.0016, "1/min")],
+        ambiguities: vec![AmbiguityReport {
+            effect: "density_gradient".into(),
+            other: "p0_gradient".into(),
+            separation: 1.1,
+            expected: expected(1.1, [1.4, 1.9, 1.5]),
+        }],
+    }
+}
+
 /// A report in which nothing is known.
 pub fn degenerate_report() -> InferReport {
     let mut report = report();
+    report.prospects = None;
     report.run.warnings = vec!["only 2 cells <script>alert(1)</script> were usable".into()];
     report.cells = CellCounts { frames: vec![0], used: 2, left_out: BTreeMap::new() };
     for parameter in

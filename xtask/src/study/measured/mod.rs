@@ -16,7 +16,7 @@ use claims::measured::{CLASSES, Class};
 use clap::Args;
 use record::Records;
 use std::path::PathBuf;
-use trial::Program;
+pub(crate) use trial::Program;
 
 /// How the study of data as they are measured is made.
 #[derive(Debug, Args)]

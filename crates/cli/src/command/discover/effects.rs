@@ -2,6 +2,7 @@
 
 use super::sentences::{listed, percent, probability, told_apart_by};
 use crate::command::fit::Prepared;
+use crate::command::fit::prospects::Coefficient;
 use voronudge_infer::discover::{Discovery, Fate, Ranked, Selected};
 use voronudge_infer::{Estimate, Scale};
 use voronudge_model::effect::{Effect, Kind, Unit};
@@ -78,6 +79,26 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
         }
         _ => (1..=count).map(|number| number.to_string()).collect(),
     }
+}
+
+/// The coefficients of the effects that were added, with their standard errors, in the units of the data.
+pub(super) fn coefficients(discovery: &Discovery, prepared: &Prepared, units: &Units) -> Vec<Coefficient> {
+    let of = |selected: &Selected| -> Vec<Coefficient> {
+        let names = coefficient_names(selected, prepared);
+        let of_one = |(name, estimate): (&String, &Estimate)| {
+            let unit = if name == "D_r" { RATE } else { selected.effect.unit };
+            let factor = factor(unit, &prepared.scale);
+            Coefficient {
+                effect: selected.effect.id,
+                name: format!("{} {name}", selected.effect.id).trim_end().to_owned(),
+                value: estimate.value * factor,
+                standard_error: estimate.standard_error * factor,
+                unit: units.powers(unit.length.into(), unit.time.into()),
+            }
+        };
+        names.iter().zip(&selected.coefficients).map(of_one).collect()
+    };
+    discovery.selected.iter().flat_map(of).collect()
 }
 
 /// An effect that was added.

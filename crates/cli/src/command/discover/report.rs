@@ -4,7 +4,7 @@ use super::checks::Compared;
 use super::measured::{Findings, PositionNoise};
 use super::sentences::probability;
 use super::{effects, sentences};
-use crate::command::fit::{OrderedField, Prepared, outcome};
+use crate::command::fit::{OrderedField, Prepared, outcome, prospects};
 use crate::run::Run;
 use voronudge_infer::diagnostics::Kind;
 use voronudge_infer::discover::{
@@ -41,6 +41,11 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         before: model_fit(prepared, &discovery.before, &units),
         after: model_fit(prepared, &discovery.after, &units),
     };
+    let foreseen = discovery.prospects.as_ref().map(|foreseen| {
+        let coefficients = effects::coefficients(discovery, prepared, &units);
+        prospects::report(prepared, &discovery.after.inference, foreseen, &coefficients, &units)
+    });
+    let measure_next = sentences::measure_next(discovery, search, prepared, &findings);
     DiscoverReport {
         run: run.record(Some(data)),
         length_scale: Quantity { value: prepared.scale.length, unit: units.length.clone() },
@@ -50,7 +55,11 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         verdict: verdict(discovery.verdict),
         sentence: sentences::sentence(discovery, prepared, &findings),
         caveat: sentences::caveat(discovery, search),
-        measure_next: sentences::measure_next(discovery, search, prepared, &findings),
+        measure_next: [foreseen.as_ref().map_or("", |own| own.words.as_str()), &measure_next]
+            .join(" ")
+            .trim()
+            .to_owned(),
+        prospects: foreseen,
         models: fits,
         description: discovery.description.as_ref().map(|described| description(prepared, described)),
         selected: discovery.selected.iter().map(|one| effects::selected(one, prepared, &units)).collect(),

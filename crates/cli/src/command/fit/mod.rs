@@ -5,7 +5,7 @@
 //! | `arguments`, `constraints`, `flow`, `search` | options: which data, what is known of the parameters, velocities on a grid, how long to search |
 //! | `measured`, `measurement`, `prepare`, `scaling` | from the data set to the problem in scaled units, and back |
 //! | `tracks` | tracks as a movie, and what came of them |
-//! | `outcome`, `implied`, `words` | a fitted model as reports tell it |
+//! | `outcome`, `implied`, `prospects`, `words` | a fitted model as reports tell it |
 //! | `arrays`, `views`, `browser` | arrays, frames to be drawn, the page on the screen |
 
 mod arguments;
@@ -19,6 +19,7 @@ mod measured;
 pub(crate) mod measurement;
 pub(crate) mod outcome;
 mod prepare;
+pub(crate) mod prospects;
 pub(crate) mod scaling;
 mod search;
 pub(crate) mod spreads;

@@ -23,7 +23,7 @@ use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
-use voronudge_infer::{Activity, Drives, infer, infer_tracks};
+use voronudge_infer::{Activity, Drives, infer, infer_tracks, prospects};
 use voronudge_io::Difference;
 use voronudge_model::CellParameter;
 
@@ -182,10 +182,14 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     if let Some((tracks, tracked)) = &tracked {
         tracks.write(&mut out, "", &data, &prepared, tracked)?;
     }
+    let foreseen = match &tracked {
+        Some((_, tracked)) => tracked.prospects.clone(),
+        None => prospects(&prepared.observations, &prepared.request, &result).ok().flatten(),
+    };
     let told = tracked.map(|(tracks, tracked)| {
         (tracks.report(&prepared, &result, &tracked), activity::report(&data, &prepared, &tracked))
     });
-    let report = report::report(&run, &data, &prepared, &result, &answers, told);
+    let report = report::report((&run, &data), &prepared, &result, (&answers, foreseen.as_ref()), told);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;

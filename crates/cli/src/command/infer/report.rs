@@ -4,20 +4,19 @@ use super::questions::Answers;
 use super::verdict::verdict;
 use super::{answers, spreads};
 use crate::command::fit::scaling::factor;
-use crate::command::fit::{OrderedField, Prepared, implied, outcome};
+use crate::command::fit::{OrderedField, Prepared, implied, outcome, prospects};
 use crate::run::Run;
-use voronudge_infer::{Inference, NoiseSource, Quantity as What};
+use voronudge_infer::{Inference, NoiseSource, Prospects, Quantity as What};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{
     ActivityReport, InferReport, Measurement, NaiveParameters, Nmse, Quantity, TracksReport,
 };
 
 pub(super) fn report(
-    run: &Run,
-    data: &DataSet,
+    (run, data): (&Run, &DataSet),
     prepared: &Prepared,
     result: &Inference,
-    answers: &Answers,
+    (answers, foreseen): (&Answers, Option<&Prospects>),
     tracks: Option<(TracksReport, Option<ActivityReport>)>,
 ) -> InferReport {
     let (tracks, activity) = tracks.map_or((None, None), |(tracks, activity)| (Some(tracks), activity));
@@ -26,9 +25,13 @@ pub(super) fn report(
     let naive = &result.naive;
     let parameters = outcome::parameters(prepared, result, &units);
     let nmse = nmse(prepared, result);
+    let verdict = verdict(result, &nmse, &parameters);
+    // Parameters of a model that explains nothing are not worth more.
+    let foreseen = foreseen.filter(|_| verdict.kind.is_finding());
     InferReport {
         run: run.record(Some(data)),
-        verdict: verdict(result, &nmse, &parameters),
+        prospects: foreseen.map(|foreseen| prospects::report(prepared, result, foreseen, &[], &units)),
+        verdict,
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, result),
         measurement: Measurement { tracks, ..outcome::measurement(data, prepared) },

@@ -100,6 +100,9 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         report.nudge.edges_changed
     );
     text.push_str(&detections(report));
+    if let Some(advice) = report.prospects.as_ref().map(|own| &own.words).filter(|words| !words.is_empty()) {
+        let _ = writeln!(text, "next          {advice}");
+    }
     let _ = writeln!(text, "\nfigures in {}", folder.join("report.html").display());
     text
 }

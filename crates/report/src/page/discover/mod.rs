@@ -16,6 +16,7 @@ use self::effects::{EffectView, coefficient_figure};
 use self::forecast::ForecastView;
 use self::remainder::Remainder;
 use super::directions::{Directions, directions};
+use super::prospects::ProspectsView;
 use super::spreads::SpreadView;
 use super::words::{self, listed, percent};
 use super::{Columns, Figure, PageHead, Panel, Template, render};
@@ -88,6 +89,7 @@ struct Context<'a> {
     noise: Vec<NoiseRow>,
     parameters: Vec<ParameterComparison>,
     directions: Directions,
+    prospects: Option<ProspectsView>,
     predictions: Vec<PredictionRow>,
     likelihood_gain: Option<String>,
     single_p: String,
@@ -137,6 +139,7 @@ impl DiscoverPage<'_> {
             noise: before_after::noise_rows(report),
             parameters: before_after::parameters(report),
             directions: directions(&report.models.after.identifiability),
+            prospects: ProspectsView::new(report.prospects.as_ref()),
             predictions: before_after::predictions(report),
             likelihood_gain: report
                 .likelihood_gain
