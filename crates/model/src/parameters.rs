@@ -2,7 +2,7 @@
 
 use crate::{Model, Term, columns};
 use num_dual::DualSVec64;
-use voronudge_geometry::{Tessellation, Vector};
+use voronudge_geometry::{Scalar, Tessellation, Vector};
 
 /// Names of the parameters that change velocities, in the order of [`parameter_derivatives`].
 pub const PARAMETER_NAMES: [&str; 4] = ["K_A", "K_P", "P_0", "alpha"];
@@ -20,6 +20,14 @@ pub struct Parameters<S> {
     pub preferred_area: f64,
     /// Cortical chirality `α`; positive adds the contraction turned clockwise by a quarter (y axis up).
     pub chirality: S,
+}
+
+impl<S: Scalar> Parameters<S> {
+    /// Coefficients of the terms of the base model: `K_A`, `K_P P_0`, `K_P` and `K_P α`.
+    pub fn coefficients(&self) -> [S; 4] {
+        let k_p = self.perimeter_elasticity;
+        [self.area_elasticity, k_p * self.preferred_perimeter, k_p, k_p * self.chirality]
+    }
 }
 
 impl Default for Parameters<f64> {

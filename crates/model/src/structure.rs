@@ -40,14 +40,7 @@ pub struct Model<S> {
 impl<S: Scalar> Model<S> {
     /// The base model: area elasticity `K_A`, adhesion `K_P P_0`, contractility `K_P`, cortical chirality `K_P α`.
     pub fn chiral_voronoi(parameters: &Parameters<S>) -> Self {
-        let k_p = parameters.perimeter_elasticity;
-        let coefficients = [
-            parameters.area_elasticity,
-            k_p * parameters.preferred_perimeter,
-            k_p,
-            k_p * parameters.chirality,
-        ];
-        Self::with_coefficients(&base_terms(parameters.preferred_area), &coefficients)
+        Self::with_coefficients(&base_terms(parameters.preferred_area), &parameters.coefficients())
     }
 
     /// Terms with coefficients, in the same order.

@@ -16,6 +16,15 @@ struct Part {
     squares: f64,
 }
 
+impl Part {
+    /// The same for some columns.
+    fn of(&self, chosen: &[usize]) -> (DMatrix<f64>, DVector<f64>) {
+        let q = chosen.len();
+        let normal = DMatrix::from_fn(q, q, |i, j| self.normal[(chosen[i], chosen[j])]);
+        (normal, DVector::from_fn(q, |i, _| self.mixed[chosen[i]]))
+    }
+}
+
 /// The coefficients with the base model alone, and after the selection; nought of what was not selected.
 pub fn fit(set: &Set, names: &[&str]) -> Result<[Vec<f64>; 2], Box<dyn Error>> {
     let parts = parts(set)?;
@@ -79,8 +88,9 @@ fn solve<'a>(
     let q = chosen.len();
     let (mut normal, mut mixed) = (DMatrix::zeros(q, q), DVector::zeros(q));
     for part in parts {
-        normal += DMatrix::from_fn(q, q, |i, j| part.normal[(chosen[i], chosen[j])]);
-        mixed += DVector::from_fn(q, |i, _| part.mixed[chosen[i]]);
+        let own = part.of(chosen);
+        normal += own.0;
+        mixed += own.1;
     }
     Ok(normal.cholesky().ok_or("columns are linearly dependent")?.solve(&mixed))
 }
@@ -100,9 +110,7 @@ fn held_out(parts: &[Part], chosen: &[usize]) -> Result<Vec<f64>, Box<dyn Error>
         let c = solve(parts.iter().enumerate().filter(|(k, _)| !is_out(*k)).map(|(_, part)| part), chosen)?;
         let (mut missed, mut total) = (0.0, 0.0);
         for part in parts.iter().enumerate().filter(|(k, _)| is_out(*k)).map(|(_, part)| part) {
-            let mixed = DVector::from_fn(chosen.len(), |i, _| part.mixed[chosen[i]]);
-            let normal =
-                DMatrix::from_fn(chosen.len(), chosen.len(), |i, j| part.normal[(chosen[i], chosen[j])]);
+            let (normal, mixed) = part.of(chosen);
             missed += part.squares - 2.0 * c.dot(&mixed) + (c.transpose() * normal * &c).sum();
             total += part.squares;
         }

@@ -1,5 +1,6 @@
 //! A movie of a simulated tissue: what every method is given, and the truth.
 
+use crate::study::{parameters, random};
 use ndarray::{Array3, Array4, ArrayView};
 use rand::{Rng, SeedableRng};
 use rand_distr::{Distribution, StandardNormal};
@@ -8,8 +9,8 @@ use std::error::Error;
 use std::path::Path;
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
 use voronudge_io::OutputDirectory;
-use voronudge_model::{Column, Effect, Environment, Model, Parameters, Structure, velocities};
-use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator};
+use voronudge_model::{Column, Effect, Environment, Structure, velocities};
+use voronudge_simulate::{Driving, Simulation};
 
 /// Cells of a set, frames that are fitted, and frames after these that nobody fits.
 const CELLS: usize = 64;
@@ -78,27 +79,15 @@ impl Set {
     /// A tissue of a seed; with an effect, if it should have one.
     pub fn new(kind: Kind, seed: u64, lacks: bool) -> Result<Self, Box<dyn Error>> {
         let mut drawn = Pcg64::seed_from_u64(11_000 + seed);
-        let parameters = Parameters {
-            area_elasticity: 0.1,
-            perimeter_elasticity: 1.0,
-            preferred_perimeter: drawn.random_range(3.8..4.0),
-            preferred_area: 1.0,
-            chirality: drawn.random_range(0.5..2.0),
-        };
+        let preferred_perimeter = drawn.random_range(3.8..4.0);
+        let parameters = parameters(preferred_perimeter, drawn.random_range(0.5..2.0));
         let cell_box = PeriodicBox::new([(CELLS as f64).sqrt(); 2])?;
         let domain = Domain::Periodic(cell_box);
-        let start = RandomPlacement::new(CELLS, cell_box).draw(&mut generator(12_000 + seed))?;
-        let mut tissue = Simulation::new(start, domain, Model::chiral_voronoi(&parameters))?;
+        let mut tissue = random(CELLS, &parameters, 12_000 + seed)?;
         settle(&mut tissue, SETTLING[0])?;
         let (structure, places) = structure(domain)?;
         let mut truth = vec![0.0; structure.dimension()];
-        let base = [
-            parameters.area_elasticity,
-            parameters.perimeter_elasticity * parameters.preferred_perimeter,
-            parameters.perimeter_elasticity,
-            parameters.perimeter_elasticity * parameters.chirality,
-        ];
-        truth[..base.len()].copy_from_slice(&base);
+        truth[..BASE.len()].copy_from_slice(&parameters.coefficients());
         let effect = lacks.then(|| ACTING[seed as usize % ACTING.len()]);
         if let Some(effect) = effect {
             let speed = root_mean_square(tissue.velocities());

@@ -4,8 +4,8 @@
 //! Cases take turns: velocities of cells in one to three frames, and tracks over four to six. Numbers of cells, parameters and errors are drawn.
 //! The program is run as a user would; besides what it advises, one more measurement is made in each case, another one from case to case.
 
-use super::Program;
 use super::seeds::on_cores;
+use super::{Program, parameters, random};
 use crate::Outcome;
 use claims::measured::{MeasuredSet, Truth, Velocities};
 use ndarray::Array3;
@@ -16,10 +16,9 @@ use serde_json::Value;
 use std::collections::BTreeMap;
 use std::error::Error;
 use std::path::Path;
-use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_geometry::Vector;
 use voronudge_infer::Design;
-use voronudge_model::{Model, Parameters};
-use voronudge_simulate::{RandomPlacement, Simulation, generator};
+use voronudge_model::Parameters;
 
 /// Time before the first frame, in 1/K_P, and a step of the integration.
 const SETTLING: f64 = 10.0;
@@ -105,13 +104,8 @@ impl Case {
         let mut drawn = Pcg64::seed_from_u64(7000 + seed);
         let tracks = seed % 2 == 1;
         let cells = [100, 121, 144, 169, 196][drawn.random_range(0..5)];
-        let parameters = Parameters {
-            area_elasticity: 0.1,
-            perimeter_elasticity: 1.0,
-            preferred_perimeter: drawn.random_range(3.8..4.0),
-            preferred_area: 1.0,
-            chirality: drawn.random_range(0.5..3.0),
-        };
+        let preferred_perimeter = drawn.random_range(3.8..4.0);
+        let parameters = parameters(preferred_perimeter, drawn.random_range(0.5..3.0));
         let (frames, apart) = match tracks {
             true => (drawn.random_range(4..7), drawn.random_range(0.06..0.14)),
             false => (drawn.random_range(1..4), 1.0),
@@ -163,10 +157,11 @@ impl Case {
 
     /// What the program foresees of data of this kind.
     fn prospects(&self, program: &Program, folder: &Path) -> Result<Value, Box<dyn Error>> {
-        self.measure()?.save(folder)?;
+        let (set, scatter) = self.measure()?;
+        set.save(folder)?;
         let mut command = vec!["infer".to_owned()];
         if !self.tracks {
-            let noise = [("--position-noise", self.position_noise), ("--velocity-noise", self.scatter()?)];
+            let noise = [("--position-noise", self.position_noise), ("--velocity-noise", scatter)];
             command.extend(noise.into_iter().flat_map(|(name, value)| [name.to_owned(), value.to_string()]));
         }
         let command: Vec<&str> = command.iter().map(String::as_str).collect();
@@ -175,21 +170,15 @@ impl Case {
         Ok(report["prospects"].clone())
     }
 
-    /// σ_v, which does not depend on the measurement.
-    fn scatter(&self) -> Result<f64, Box<dyn Error>> {
-        let steady = steady(self.cells, self.seed, &self.parameters)?;
-        let now = steady.velocities().iter().map(Vector::norm_squared).sum::<f64>() / self.cells as f64;
-        // The tissue of twice the cells moves as fast but for chance, and its noise is said to be the same.
-        Ok(self.velocity_noise * now.sqrt())
-    }
-
-    /// A simulated tissue, measured.
-    fn measure(&self) -> Result<MeasuredSet, Box<dyn Error>> {
-        let mut tissue = steady(self.cells, self.seed, &self.parameters)?;
-        let speed = tissue.velocities().iter().map(Vector::norm_squared).sum::<f64>() / self.cells as f64;
-        let interval = if self.tracks { self.apart / speed.sqrt() } else { self.apart };
+    /// A simulated tissue, measured, with the error of its velocities.
+    fn measure(&self) -> Result<(MeasuredSet, f64), Box<dyn Error>> {
+        let mut tissue = random(self.cells, &self.parameters, 8000 + self.seed)?;
+        (0..(SETTLING / STEP) as usize).try_for_each(|_| tissue.step(STEP))?;
+        let squares = tissue.velocities().iter().map(Vector::norm_squared).sum::<f64>();
+        let speed = (squares / self.cells as f64).sqrt();
+        let interval = if self.tracks { self.apart / speed } else { self.apart };
         let steps = (interval / STEP).ceil();
-        let scatter = self.scatter()?;
+        let scatter = self.velocity_noise * speed;
         let mut noise = Pcg64::seed_from_u64(9000 + self.seed);
         let mut positions = Array3::zeros((self.frames, self.cells, 2));
         let mut velocities = Array3::zeros((self.frames, self.cells, 2));
@@ -207,7 +196,7 @@ impl Case {
         }
         let side = (self.cells as f64).sqrt();
         positions.mapv_inplace(|x| x.rem_euclid(side));
-        Ok(MeasuredSet {
+        let set = MeasuredSet {
             positions,
             velocities: if self.tracks { Velocities::None } else { Velocities::OfCells(velocities) },
             cell_box: Some(side),
@@ -223,7 +212,8 @@ impl Case {
                 hidden: Vec::new(),
                 doubled: 0,
             },
-        })
+        };
+        Ok((set, scatter))
     }
 }
 
@@ -231,13 +221,4 @@ impl Case {
 fn of<'a>(prospects: &'a Value, name: &str) -> Result<&'a Value, Box<dyn Error>> {
     let all = prospects["quantities"].as_array().ok_or("no prospects")?;
     Ok(all.iter().find(|own| own["name"] == name).ok_or("no such quantity")?)
-}
-
-/// A tissue that has come to its steady state.
-fn steady(cells: usize, seed: u64, parameters: &Parameters<f64>) -> Result<Simulation, Box<dyn Error>> {
-    let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
-    let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(8000 + seed))?;
-    let mut tissue = Simulation::new(start, Domain::Periodic(cell_box), Model::chiral_voronoi(parameters))?;
-    (0..(SETTLING / STEP) as usize).try_for_each(|_| tissue.step(STEP))?;
-    Ok(tissue)
 }

@@ -17,7 +17,8 @@ pub(super) const PINCH_CELLS: usize = 400;
 /// Area elasticity of all tissues here, with K_P = 1.
 const AREA_ELASTICITY: f64 = 0.1;
 
-pub(super) fn parameters(preferred_perimeter: f64, chirality: f64) -> Parameters<f64> {
+/// A model with the area elasticity of all tissues here, and K_P = 1.
+pub(crate) fn parameters(preferred_perimeter: f64, chirality: f64) -> Parameters<f64> {
     Parameters { area_elasticity: AREA_ELASTICITY, preferred_perimeter, chirality, ..Parameters::default() }
 }
 
@@ -30,7 +31,8 @@ fn theory(p: &Parameters<f64>, area_elasticity: f64) -> Result<MeanField, Failur
     })?)
 }
 
-pub(super) fn random(cells: usize, p: &Parameters<f64>, seed: u64) -> Result<Simulation, Failure> {
+/// Cells at random in a square box, one to a unit of area.
+pub(crate) fn random(cells: usize, p: &Parameters<f64>, seed: u64) -> Result<Simulation, Failure> {
     let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
     let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(seed))?;
     Ok(Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(p))?)

@@ -16,6 +16,7 @@ mod seeds;
 mod spectrum;
 mod spreads;
 
+pub(crate) use flows::{parameters, random};
 pub(crate) use measured::Program;
 pub(crate) use seeds::quartiles;
 

@@ -1,14 +1,11 @@
 //! Solid and liquid: mean square velocities at two system sizes, and Lyapunov exponents across the transition.
 
+use super::flows::{parameters, random};
 use super::seeds::on_one_core_each;
 use crate::Outcome;
 use std::ops::ControlFlow;
-use voronudge_geometry::{Domain, PeriodicBox};
-use voronudge_model::{Model, Parameters};
 use voronudge_simulate::measure::{LyapunovSchedule, largest_lyapunov_exponent};
-use voronudge_simulate::{
-    RandomPlacement, Schedule, Simulation, generator, recommended_time_step, run as simulate,
-};
+use voronudge_simulate::{Schedule, recommended_time_step, run as simulate};
 
 /// Points (P_0, α) with the value of an independent implementation at Δt = 0.02 and its error; zero stands for a solid.
 const POINTS: [(f64, f64, f64, f64); 6] = [
@@ -24,16 +21,6 @@ const DURATION: f64 = 300.0;
 /// The time step of the independent values.
 const THEIR_STEP: f64 = 0.02;
 
-fn parameters(preferred_perimeter: f64, chirality: f64) -> Parameters<f64> {
-    Parameters { preferred_perimeter, chirality, ..Parameters::default() }
-}
-
-fn tissue(cells: usize, at: Parameters<f64>, seed: u64) -> Result<Simulation, Box<dyn std::error::Error>> {
-    let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
-    let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(seed))?;
-    Ok(Simulation::new(positions, Domain::Periodic(cell_box), Model::chiral_voronoi(&at))?)
-}
-
 /// ⟨v²⟩ with its error, and T1 transitions per cell and time, over the second half of a run.
 pub fn velocities() -> Outcome {
     println!("| cells | P_0 | α | Δt | ⟨v²⟩ | T1 rate | independent (Δt 0.02, 100 cells) |");
@@ -48,7 +35,7 @@ pub fn velocities() -> Outcome {
         .collect();
     let rows = on_one_core_each(cases.len() as u64, |k| {
         let (cells, (perimeter, chirality, value, error), time_step) = cases[k as usize];
-        let mut simulation = tissue(cells, parameters(perimeter, chirality), 1)?;
+        let mut simulation = random(cells, &parameters(perimeter, chirality), 1)?;
         let schedule = Schedule { time: DURATION, time_step, frames: 1 };
         let summary = simulate(&mut simulation, &schedule, |_| ControlFlow::Continue(()))?;
         let theirs = if value > 0.0 { format!("{value} ± {error}") } else { "solid".into() };
@@ -70,7 +57,7 @@ pub fn lyapunov(seeds: u64) -> Outcome {
     let chiral = [3.3, 3.4, 3.5, 3.55, 3.6, 3.65, 3.7, 3.75, 3.8, 3.9, 4.0].map(|p| (p, 0.2));
     for (perimeter, chirality) in chiral.into_iter().chain([(3.95, 0.0), (4.1, 0.0)]) {
         let exponents = on_one_core_each(seeds, |seed| {
-            let mut simulation = tissue(100, parameters(perimeter, chirality), seed)?;
+            let mut simulation = random(100, &parameters(perimeter, chirality), seed)?;
             for _ in 0..30_000 {
                 simulation.step(0.01)?;
             }

@@ -2,11 +2,11 @@
 //!
 //! K_A 0.1, K_P 1, unit cells. Seed s grows the tissue of every point of the grid with the generator made from s.
 
+use super::flows::{parameters, random};
 use super::seeds::on_one_core_each;
 use crate::Outcome;
-use voronudge_geometry::{Domain, PeriodicBox};
-use voronudge_model::{Model, Parameters};
-use voronudge_simulate::{RandomPlacement, Simulation, generator, recommended_time_step};
+use voronudge_model::Model;
+use voronudge_simulate::recommended_time_step;
 use voronudge_spectrum::{Character, LinearProblem, Request, Selection, modes};
 use voronudge_theory::MeanField;
 
@@ -61,16 +61,9 @@ pub fn run(seeds: u64, cells: Option<usize>) -> Outcome {
 }
 
 fn measure(point: (usize, usize), seed: u64, cells: usize) -> Result<Measured, Box<dyn std::error::Error>> {
-    let parameters = Parameters {
-        area_elasticity: 0.1,
-        preferred_perimeter: PERIMETERS[point.0],
-        chirality: CHIRALITIES[point.1],
-        ..Parameters::default()
-    };
-    let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
-    let positions = RandomPlacement::new(cells, cell_box).draw(&mut generator(seed))?;
+    let parameters = parameters(PERIMETERS[point.0], CHIRALITIES[point.1]);
     let model = Model::chiral_voronoi(&parameters);
-    let mut simulation = Simulation::new(positions, Domain::Periodic(cell_box), model.clone())?;
+    let mut simulation = random(cells, &parameters, seed)?;
     let time_step = 2.0 * recommended_time_step(&parameters, 1.0);
     for _ in 0..(TIME / time_step).ceil() as usize {
         simulation.step(time_step)?;

@@ -18,6 +18,7 @@ pub(crate) use snapshots::informed;
 pub use snapshots::prospects;
 
 use crate::estimates::{Fitted, StandardErrors};
+use crate::least_squares::invert;
 use crate::{CoefficientSpace, Constraints, Error, Inference, Quantity};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Domain;
@@ -141,10 +142,10 @@ impl Informed {
     /// beside all others.
     pub fn separations(&self, places: &[usize], c: &[f64]) -> Result<(f64, Vec<(Design, f64)>), Error> {
         let of = |information: &DMatrix<f64>| -> Result<f64, Error> {
-            let covariance = crate::least_squares::invert(information.clone())?;
+            let covariance = invert(information.clone())?;
             let own = DMatrix::from_fn(c.len(), c.len(), |i, j| covariance[(places[i], places[j])]);
             let c = DVector::from_column_slice(c);
-            Ok(c.dot(&(crate::least_squares::invert(own)? * &c)).max(0.0).sqrt())
+            Ok(c.dot(&(invert(own)? * &c)).max(0.0).sqrt())
         };
         let with = self.with.iter().map(|(design, information)| Ok((*design, of(information)?)));
         Ok((of(&self.now)?, with.collect::<Result<_, Error>>()?))

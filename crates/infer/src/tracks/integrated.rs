@@ -130,8 +130,7 @@ mod tests {
     fn a_soft_tissue_yields_more() {
         let (movie, _) =
             Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
-        let constraints =
-            Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
         let request = Request {
             activity: Activity::Polarity,
             cross_validation: CrossValidation::Skipped,

@@ -73,33 +73,20 @@ impl Surface {
         Self { bend, ..self }
     }
 
-    /// Whether it rises by more than a standard deviation within three quarters of a spacing along all axes of what is not held, if it is −2 log of a likelihood.
+    /// Whether it rises by more than a standard deviation within three quarters of a spacing along all axes of what is not held, if it is −2 log
+    /// of a likelihood.
     pub fn is_sharp(&self, held: [bool; UNKNOWNS]) -> bool {
-        let mut bend = self.bend;
-        for k in (0..UNKNOWNS).filter(|k| held[*k]) {
-            bend.fill_row(k, 0.0);
-            bend.fill_column(k, 0.0);
-            bend[(k, k)] = 2.0 * SHARP;
-        }
+        let mut bend = without(self.bend, held);
+        (0..UNKNOWNS).filter(|k| held[*k]).for_each(|k| bend[(k, k)] = 2.0 * SHARP);
         bend.symmetric_eigenvalues().min() > SHARP
     }
 
     /// The inverse of the bend without what is held, at least a little upwards along its own axes.
     fn inverse(&self, held: [bool; UNKNOWNS]) -> Matrix {
-        let mut bend = self.bend;
-        for k in (0..UNKNOWNS).filter(|k| held[*k]) {
-            bend.fill_row(k, 0.0);
-            bend.fill_column(k, 0.0);
-        }
-        let axes = bend.symmetric_eigen();
+        let axes = without(self.bend, held).symmetric_eigen();
         let largest = axes.eigenvalues.amax().max(f64::MIN_POSITIVE);
         let inverse = axes.eigenvalues.map(|bend| 1.0 / bend.abs().max(FLAT * largest));
-        let mut inverse = axes.eigenvectors * Matrix::from_diagonal(&inverse) * axes.eigenvectors.transpose();
-        for k in (0..UNKNOWNS).filter(|k| held[*k]) {
-            inverse.fill_row(k, 0.0);
-            inverse.fill_column(k, 0.0);
-        }
-        inverse
+        without(axes.eigenvectors * Matrix::from_diagonal(&inverse) * axes.eigenvectors.transpose(), held)
     }
 
     /// The step towards the least value.
@@ -112,6 +99,15 @@ impl Surface {
     pub fn covariance(&self, held: [bool; UNKNOWNS]) -> Matrix {
         self.inverse(held) * 2.0
     }
+}
+
+/// Zero in all of what is held.
+fn without(mut matrix: Matrix, held: [bool; UNKNOWNS]) -> Matrix {
+    for k in (0..UNKNOWNS).filter(|k| held[*k]) {
+        matrix.fill_row(k, 0.0);
+        matrix.fill_column(k, 0.0);
+    }
+    matrix
 }
 
 /// The second derivative of −2 log L where a standard deviation is three quarters of a spacing.

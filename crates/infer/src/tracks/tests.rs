@@ -8,8 +8,7 @@ use voronudge_simulate::Driving;
 #[test]
 fn large_steps_do_not_bias_the_parameters() {
     let (movie, chiral) = Filmed { size: [100, 4], step: 0.19, error: 0.02, seed: 3 }.movie();
-    let constraints =
-        Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
     let (found, tracked) =
         infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
     let p = &found.parameters;
@@ -27,8 +26,7 @@ fn large_steps_do_not_bias_the_parameters() {
 #[test]
 fn centroids_are_told_from_sites() {
     let filmed = Filmed { size: [144, 4], step: 0.1, error: 0.01, seed: 4 };
-    let constraints =
-        Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
     let request = Request::new(constraints);
     let mut observe = |_: crate::Progress<'_>| ControlFlow::Continue(());
     for (share, (movie, chiral)) in [(0.0, filmed.movie()), (1.0, filmed.movie_of_centroids())] {
@@ -48,8 +46,7 @@ fn centroids_are_told_from_sites() {
 }
 
 fn crawling() -> Request {
-    let constraints =
-        Constraints { fixed: [(Quantity::AreaElasticity, 0.0)].into(), ..Constraints::default() };
+    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
     Request { activity: Activity::Polarity, ..Request::new(constraints) }
 }
 

@@ -56,3 +56,10 @@ pub struct AmbiguityReport {
     /// The same with other measurements, by name of the measurement.
     pub expected: BTreeMap<String, f64>,
 }
+
+impl AmbiguityReport {
+    /// What it is called where something is least certain.
+    pub fn name(&self) -> String {
+        format!("{} or {}", self.effect, self.other)
+    }
+}

@@ -69,7 +69,7 @@ impl ProspectsView {
             unit: String::new(),
             now: significant(own.separation, 2),
             cells: cells(own.separation, &own.expected, f64::max),
-            is_main: report.least_certain == Some(format!("{} or {}", own.effect, own.other)),
+            is_main: report.least_certain == Some(own.name()),
         });
         Some(Self {
             words: report.words.clone(),

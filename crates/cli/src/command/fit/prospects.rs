@@ -163,7 +163,7 @@ fn of_ambiguity(own: &Ambiguity) -> Uncertain {
     let shares =
         own.with.iter().map(|(design, separation)| (design.name().into(), own.separation / separation));
     Uncertain {
-        name: format!("{} or {}", own.effect, own.other),
+        name: ambiguity(own).name(),
         spoken: format!("{} beside {}", own.effect, own.other),
         relative: 1.0 / own.separation,
         beside: "",
