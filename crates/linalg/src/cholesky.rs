@@ -1,6 +1,7 @@
 //! Sparse Cholesky factorisation of symmetric positive definite matrices.
 
 use crate::Error;
+use crate::SelectedInverse;
 use crate::SymmetricMatrix;
 use crate::dissection::Dissection;
 use crate::graph::Graph;
@@ -81,7 +82,7 @@ impl CholeskyPattern {
     }
 
     /// Above the threshold of operations per entry, columns of the factor are taken together as dense blocks.
-    fn with_threshold(
+    pub(crate) fn with_threshold(
         matrix: &SymmetricMatrix,
         threshold: SupernodalThreshold,
         order: SymmetricOrdering<'_, usize>,
@@ -168,6 +169,11 @@ impl Cholesky {
             SEQUENTIAL,
             MemStack::new(&mut MemBuffer::new(room)),
         );
+    }
+
+    /// The inverse of the matrix where the factor has entries; `None` of a factor without dense blocks, that is, of small matrices.
+    pub fn selected_inverse(&self) -> Option<SelectedInverse> {
+        SelectedInverse::new(&self.symbolic, &self.values)
     }
 
     /// `log det A = 2 Σ log L_ii`: the determinant itself may be far outside the range of `f64`.
