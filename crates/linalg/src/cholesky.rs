@@ -22,8 +22,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 const SEQUENTIAL: Par = Par::Seq;
 
 /// Entries of a factor from which on it is worth while to share its dense blocks out to several tasks, and into how many.
-const LARGE: usize = 40_000_000;
+const SHARED: usize = 10_000_000;
 const TASKS: usize = 2;
+
+/// Entries from which on several factors at once would take much memory.
+const LARGE: usize = 40_000_000;
 
 /// Memory of factors that are gone, for those to come: a page that is new to a process costs more than what is done with it.
 static SPARE: Mutex<Vec<Vec<f64>>> = Mutex::new(Vec::new());
@@ -94,14 +97,14 @@ impl CholeskyPattern {
         Ok(Self { symbolic: Arc::new(symbolic) })
     }
 
-    /// Whether factors are so large that the work on each is shared out, and several at once would take much memory.
+    /// Whether factors are so large that several at once would take much memory; the work on each is shared out then.
     pub fn is_large(&self) -> bool {
         self.symbolic.len_val() >= LARGE
     }
 
     /// How the work on a factor is shared out: the same for any number of threads, so that results are.
     fn tasks(&self) -> Par {
-        if self.is_large() { Par::rayon(TASKS) } else { Par::Seq }
+        if self.symbolic.len_val() >= SHARED { Par::rayon(TASKS) } else { Par::Seq }
     }
 
     /// Factorises a matrix of this pattern.

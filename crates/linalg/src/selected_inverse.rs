@@ -10,9 +10,7 @@
 //! three times the work of the factor, for all entries together.
 
 use faer::linalg::matmul::matmul;
-use faer::linalg::triangular_solve::{
-    solve_lower_triangular_in_place, solve_upper_triangular_in_place,
-};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
 use faer::sparse::linalg::cholesky::supernodal::{SupernodalLltRef, SymbolicSupernodalCholesky};
 use faer::sparse::linalg::cholesky::{SymbolicCholesky, SymbolicCholeskyRaw};
 use faer::{Accum, Mat, MatRef, Par};
@@ -36,8 +34,7 @@ impl SelectedInverse {
         for k in 0..count {
             block.resize(blocks.supernode_end()[k], k as u32);
         }
-        let mut inverse =
-            Self { symbolic: Arc::clone(symbolic), block, values: vec![0.0; blocks.len_val()] };
+        let mut inverse = Self { symbolic: Arc::clone(symbolic), block, values: vec![0.0; blocks.len_val()] };
         let factor = SupernodalLltRef::new(blocks, factor);
         for k in (0..count).rev() {
             inverse.fill(blocks, k, factor.supernode(k).val());
@@ -169,7 +166,8 @@ mod tests {
         let other = form(SupernodalThreshold::FORCE_SIMPLICIAL).unwrap().factor(&matrix).unwrap();
         assert!(other.selected_inverse().is_none());
         let (column_start, rows) = matrix.places();
-        let all = (0..n).flat_map(|j| rows[column_start[j]..column_start[j + 1]].iter().map(move |i| (*i, j)));
+        let all =
+            (0..n).flat_map(|j| rows[column_start[j]..column_start[j + 1]].iter().map(move |i| (*i, j)));
         assert!(all.clone().all(|(i, j)| inverse.entry(i, j).is_some()));
     }
 }
