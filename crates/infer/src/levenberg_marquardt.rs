@@ -43,6 +43,7 @@ pub(crate) struct LevenbergMarquardt<'o> {
     /// Steps in a row that failed at a few places.
     evasions: u32,
     tolerance: f64,
+    /// At the present point, once it is needed.
     linearised: Option<NormalEquations>,
     small_steps: u32,
     observer: Observer<'o>,
@@ -93,7 +94,7 @@ impl<'o> LevenbergMarquardt<'o> {
         Self { linearised, ..self }
     }
 
-    /// The problem linearised at the last point.
+    /// The problem linearised at the last point, if it was.
     pub fn into_linearised(self) -> Option<NormalEquations> {
         self.linearised
     }
@@ -148,9 +149,6 @@ where
     ) -> Result<(FitState, Option<KV>), ArgminError> {
         let start = state.take_param().ok_or_else(|| Error::Optimiser("no starting point".into()))?;
         let cost = problem.cost(&start)?;
-        if self.linearised.is_none() {
-            self.linearised = Some(problem.jacobian(&start)?);
-        }
         Ok((state.param(start).cost(cost), None))
     }
 
@@ -163,10 +161,10 @@ where
             state.take_param().ok_or_else(|| Error::Optimiser("no current point".into()))?,
             state.get_cost(),
         );
-        let linearised = self
-            .linearised
-            .take()
-            .ok_or_else(|| Error::Optimiser("the problem was not linearised".into()))?;
+        let linearised = match self.linearised.take() {
+            Some(linearised) => linearised,
+            None => problem.jacobian(&at)?,
+        };
         let Step { step, promised } = linearised.step(self.damping, &self.held)?;
         let mut trial: Vec<f64> = at.iter().zip(&step).map(|(x, s)| x + s).collect();
         let mut trial_cost = problem.cost(&trial)?;
@@ -194,7 +192,6 @@ where
         }
         let gain = (cost - trial_cost) / promised.max(f64::MIN_POSITIVE);
         let next = if trial_cost < cost {
-            self.linearised = Some(problem.jacobian(&trial)?);
             let change = (1.0 - (2.0 * gain - 1.0).powi(3)).clamp(1.0 / 3.0, 2.0);
             self.damping = (self.damping * if evaded { change.min(1.0) } else { change }).max(1e-12);
             self.growth = 2.0;

@@ -32,6 +32,8 @@ pub(crate) struct Linearisation {
     pattern: CholeskyPattern,
     /// The nudges ε at which it was linearised.
     nudges: Vec<f64>,
+    /// Places that are held and not among the nudges.
+    left_out: usize,
 }
 
 /// What holds the unknowns beside the data.
@@ -59,6 +61,8 @@ pub(crate) struct Local<'a> {
     pub free: usize,
     /// Where the coordinates belong, two after the other; those of `None` are coupled to all others.
     pub places: Vec<Option<[f64; 3]>>,
+    /// Places that are measured but held, and not among the unknowns.
+    pub left_out: usize,
 }
 
 /// One frame's part of a step before the coefficients' part is known.
@@ -90,7 +94,7 @@ impl Eliminated {
 
 impl Linearisation {
     pub fn new<'a>(local: &Local<'a>) -> Result<Self, Error> {
-        let Local { velocities, positions, known, nudges, stiffness, free, places } = local;
+        let Local { velocities, positions, known, nudges, stiffness, free, places, left_out } = local;
         let chosen = |group: &Rows<'a>| Chosen {
             matrix: group.jacobian,
             rows: group.rows.iter().map(|row| row.0).collect(),
@@ -113,6 +117,7 @@ impl Linearisation {
             known,
             pattern,
             nudges: nudges.to_vec(),
+            left_out: *left_out,
         })
     }
 
@@ -137,14 +142,19 @@ impl Linearisation {
         self.nudges.len()
     }
 
+    /// Number of nudge components, those that are held and left out included.
+    pub fn components(&self) -> usize {
+        self.order() + 2 * self.left_out
+    }
+
     /// The trace of JᵀJ.
     pub fn trace(&self) -> f64 {
         self.velocities.normal.diagonal().sum()
     }
 
-    /// The trace of HᵀH: the number of coordinates if all are measured alike.
+    /// The trace of HᵀH: the number of coordinates if all are measured alike. Those that are held count as one each.
     pub fn stiffness(&self) -> f64 {
-        self.positions.normal.diagonal().sum()
+        self.positions.normal.diagonal().sum::<f64>() + (2 * self.left_out) as f64
     }
 
     /// `Σ ‖∂v/∂r_j‖² / m_j` over measured coordinates, m_j the diagonal of HᵀH: what errors of position of unit variance make of

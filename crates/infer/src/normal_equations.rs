@@ -175,7 +175,7 @@ impl NormalEquations {
     /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kHᵀH for nudges and
     /// of the diagonal of XᵀX for coefficients. Some places may be held harder, each by a damping of its own; none if there are none.
     pub fn step(&self, damping: f64, held: &[f64]) -> Result<Step, Error> {
-        let count: usize = self.frames.iter().map(Linearisation::order).sum();
+        let count: usize = self.frames.iter().map(Linearisation::components).sum();
         let diagonal = |frame: &Linearisation| frame.trace() + self.spring * frame.stiffness();
         let unit = self.frames.iter().map(diagonal).sum::<f64>() / count as f64;
         let shift = damping * unit;

@@ -1,17 +1,16 @@
 //! The penalised objective of nudged inference as a problem for argmin.
 
+mod linearised;
+
 use crate::flow::Sampling;
-use crate::least_squares::{Columns, free_rows, residuals};
+use crate::least_squares::{Columns, residuals};
 use crate::levenberg_marquardt::Obstacles;
-use crate::linearisation::{Linearisation, Local};
-use crate::measurement::Unknown;
 use crate::normal_equations::NormalEquations;
-use crate::position_rows::{self, PositionRows};
-use crate::rows::Rows;
+use crate::position_rows;
 use crate::spread::OwnParts;
-use crate::stiffness::Stiffness;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
+pub(crate) use linearised::Free;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 use std::sync::Arc;
@@ -268,87 +267,6 @@ impl<'a> Objective<'a> {
         let parts = self.parts(parameters);
         let value = parts.residual + self.spring() * parts.nudges + parts.priors;
         if value.is_nan() { f64::INFINITY } else { value }
-    }
-
-    /// The problem linearised about a point.
-    pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
-        self.linearise_with(parameters, &[])
-    }
-
-    /// What is measured of one frame, linearised about its nudges; weights of velocities are not yet in it.
-    pub fn measurable(
-        &self,
-        index: usize,
-        coefficients: &[f64],
-        nudges: &[f64],
-    ) -> Result<Measurable<'a>, Error> {
-        let frame = &self.frames[index];
-        let nudged = self.place_with_own(index, nudges, coefficients)?;
-        let mut evaluated = nudged.evaluate(coefficients);
-        if self.own.is_some() {
-            // What a cell has of its own does not change with the coefficients.
-            evaluated.by_coefficient = self.place(index, nudges)?.evaluate(coefficients).by_coefficient;
-        }
-        let rows = residuals(frame, &evaluated.predicted)
-            .into_iter()
-            .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
-            .map(|((datum, rest), x)| (datum, rest, x))
-            .collect();
-        let mut jacobian = nudged.jacobian(coefficients, &evaluated);
-        if !frame.is_free() {
-            jacobian = jacobian.only(|cell| !frame.is_held(cell));
-        }
-        Ok(Measurable { nudged, evaluated, rows, jacobian })
-    }
-
-    /// The same with unknowns of the measurement as further coefficients, after all others.
-    pub fn linearise_with(&self, parameters: &[f64], unknowns: &[Unknown]) -> Result<NormalEquations, Error> {
-        let (free, nudges) = self.split(parameters);
-        let coefficients = self.space.coefficients(free);
-        let own = self.space.dimension();
-        let p = own + unknowns.len();
-        let of_share = unknowns.iter().position(|unknown| *unknown == Unknown::Share).map(|k| own + k);
-        let of_width = unknowns.iter().position(|unknown| *unknown == Unknown::Width).map(|k| own + k);
-        let frames = self
-            .frames
-            .par_iter()
-            .zip(&nudges)
-            .enumerate()
-            .map(|(index, (frame, nudges))| {
-                let Measurable { nudged, evaluated, mut rows, mut jacobian } =
-                    self.measurable(index, coefficients.as_slice(), nudges)?;
-                for (_, _, x) in &mut rows {
-                    *x = std::mem::take(x).resize_horizontally(p, 0.0);
-                }
-                if let (Some(k), Some(sampling)) = (of_width, &nudged.sampling) {
-                    let slopes = sampling.width_slope(&evaluated.of_cells);
-                    let mut slopes: Vec<Vector<f64>> =
-                        rows.iter().map(|(datum, ..)| slopes[*datum]).collect();
-                    frame.remove_background(&mut slopes);
-                    rows.iter_mut().zip(slopes).for_each(|((_, _, x), slope)| x.set_column(k, &slope));
-                }
-                frame.weigh(&mut rows, &mut jacobian);
-                let positions =
-                    PositionRows::new(frame, &nudged.tessellation, &nudged.positions, nudges, p, of_share);
-                let floor = self.floor();
-                let of_cell = |cell| if frame.is_seen(cell) { 0.0 } else { floor };
-                Linearisation::new(&Local {
-                    velocities: Rows { jacobian: &jacobian, rows: &rows },
-                    positions: positions.rows(),
-                    known: Vec::new(),
-                    nudges,
-                    stiffness: match frame.unseen() {
-                        0 => Stiffness::default(),
-                        _ => Stiffness::of_blocks((0..nudges.len() / 2).map(of_cell)),
-                    },
-                    free: p,
-                    places: nudged.positions.iter().map(|r| Some([r[0], r[1], 0.0])).collect(),
-                })
-            })
-            .collect::<Result<Vec<_>, _>>()?;
-        let mut free = free.to_vec();
-        free.resize(p, 0.0);
-        Ok(NormalEquations::new(&self.space.widened(unknowns.len()), self.levels, &free, frames))
     }
 }
 

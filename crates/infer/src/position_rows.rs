@@ -9,6 +9,7 @@
 //! measured at their sites.
 
 use crate::Observation;
+use crate::objective::Free;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
 use voronudge_geometry::{CellPolygon, Tessellation, Vector, centroid_slopes};
@@ -77,6 +78,13 @@ impl PositionRows {
             rows.end(row, Vector::zeros(), None);
         }
         Self { jacobian: rows.jacobian, rows: rows.rows }
+    }
+
+    /// Leaves out what says of held cells that they are held, and makes the columns those of free ones.
+    pub fn keep(&mut self, free: &Free) {
+        let places = free.count();
+        self.rows.retain(|row| row.0 < places);
+        free.renumber(&mut self.jacobian);
     }
 
     pub fn rows(&self) -> Rows<'_> {

@@ -16,6 +16,8 @@ use crate::{Error, Observation};
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
+use voronudge_linalg::SelectedInverse;
+use voronudge_model::BlockMatrix;
 
 /// κ²: variance of the errors of faulty velocities, in units of that of the others.
 const VARIANCE: f64 = 100.0;
@@ -28,6 +30,9 @@ const STEPS: usize = 20;
 
 /// Squared residual, in units of σ_v², below which a velocity is sound without looking at its leverage.
 const SOUND: f64 = 2.0;
+
+/// Velocities to be looked at from which on it costs less to have the whole of G at once than a solution for each.
+const MANY: usize = 64;
 
 /// Median of χ²₂.
 const MEDIAN: f64 = 1.386_294_361_119_890_6;
@@ -104,12 +109,14 @@ fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)
             let evaluated = nudged.evaluate(coefficients.as_slice());
             let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
             let factor = linearised.factor(objective.spring())?;
+            let rests = residuals(frame, &evaluated.predicted);
+            let is_sound = |rest: &Vector<f64>| rest.norm_squared() / variance < SOUND;
+            let inverse = match rests.iter().filter(|(_, rest)| !is_sound(rest)).count() < MANY {
+                true => None,
+                false => factor.selected_inverse(),
+            };
             let mut right = vec![0.0; 2 * nudges.len()];
-            let mut square = |datum: usize, rest: Vector<f64>| {
-                let plain = rest.norm_squared() / variance;
-                if plain < SOUND {
-                    return plain;
-                }
+            let mut solved = |datum: usize| {
                 right.iter_mut().for_each(|x| *x = 0.0);
                 let (along_x, along_y) = right.split_at_mut(nudges.len());
                 for (cell, b) in jacobian.row(datum) {
@@ -125,16 +132,43 @@ fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)
                         g[(1, column)] += b[2] * x + b[3] * y;
                     }
                 }
+                g
+            };
+            let mut square = |datum: usize, rest: Vector<f64>| {
+                let plain = rest.norm_squared() / variance;
+                if is_sound(&rest) {
+                    return plain;
+                }
+                let g = inverse.as_ref().and_then(|inverse| of_entries(&jacobian, datum, inverse));
+                let g = g.unwrap_or_else(|| solved(datum));
                 let own = Matrix2::identity() - g * frame.weight(datum);
                 let Some(inverse) = own.try_inverse() else { return plain };
                 let error = inverse * rest;
                 let spread = Matrix2::identity() + g * inverse;
                 spread.try_inverse().map_or(plain, |inverse| error.dot(&(inverse * error)) / variance)
             };
-            let rests = residuals(frame, &evaluated.predicted);
             Ok(rests.into_iter().map(|(datum, rest)| (datum, square(datum, rest))).collect())
         })
         .collect()
+}
+
+/// G of a datum, where the inverse is known between all cells that it depends on.
+fn of_entries(jacobian: &BlockMatrix, datum: usize, inverse: &SelectedInverse) -> Option<Matrix2<f64>> {
+    let mut g = Matrix2::zeros();
+    for (cell, b) in jacobian.row(datum) {
+        for (other, c) in jacobian.row(datum) {
+            for (axis, side) in (0..2).flat_map(|axis| (0..2).map(move |side| (axis, side))) {
+                let entry = inverse.entry(2 * cell + axis, 2 * other + side)?;
+                g += Matrix2::new(
+                    b[axis] * c[side],
+                    b[axis] * c[2 + side],
+                    b[2 + axis] * c[side],
+                    b[2 + axis] * c[2 + side],
+                ) * entry;
+            }
+        }
+    }
+    Some(g)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Sparse Cholesky factorisation of symmetric positive definite matrices.
 
 use crate::Error;
+use crate::SelectedInverse;
 use crate::SymmetricMatrix;
 use crate::dissection::Dissection;
 use crate::graph::Graph;
@@ -21,8 +22,11 @@ use std::sync::{Arc, Mutex, PoisonError};
 const SEQUENTIAL: Par = Par::Seq;
 
 /// Entries of a factor from which on it is worth while to share its dense blocks out to several tasks, and into how many.
-const LARGE: usize = 40_000_000;
+const SHARED: usize = 10_000_000;
 const TASKS: usize = 2;
+
+/// Entries from which on several factors at once would take much memory.
+const LARGE: usize = 40_000_000;
 
 /// Memory of factors that are gone, for those to come: a page that is new to a process costs more than what is done with it.
 static SPARE: Mutex<Vec<Vec<f64>>> = Mutex::new(Vec::new());
@@ -81,7 +85,7 @@ impl CholeskyPattern {
     }
 
     /// Above the threshold of operations per entry, columns of the factor are taken together as dense blocks.
-    fn with_threshold(
+    pub(crate) fn with_threshold(
         matrix: &SymmetricMatrix,
         threshold: SupernodalThreshold,
         order: SymmetricOrdering<'_, usize>,
@@ -93,14 +97,14 @@ impl CholeskyPattern {
         Ok(Self { symbolic: Arc::new(symbolic) })
     }
 
-    /// Whether factors are so large that the work on each is shared out, and several at once would take much memory.
+    /// Whether factors are so large that several at once would take much memory; the work on each is shared out then.
     pub fn is_large(&self) -> bool {
         self.symbolic.len_val() >= LARGE
     }
 
     /// How the work on a factor is shared out: the same for any number of threads, so that results are.
     fn tasks(&self) -> Par {
-        if self.is_large() { Par::rayon(TASKS) } else { Par::Seq }
+        if self.symbolic.len_val() >= SHARED { Par::rayon(TASKS) } else { Par::Seq }
     }
 
     /// Factorises a matrix of this pattern.
@@ -168,6 +172,11 @@ impl Cholesky {
             SEQUENTIAL,
             MemStack::new(&mut MemBuffer::new(room)),
         );
+    }
+
+    /// The inverse of the matrix where the factor has entries; `None` of a factor without dense blocks, that is, of small matrices.
+    pub fn selected_inverse(&self) -> Option<SelectedInverse> {
+        SelectedInverse::new(&self.symbolic, &self.values)
     }
 
     /// `log det A = 2 Σ log L_ii`: the determinant itself may be far outside the range of `f64`.

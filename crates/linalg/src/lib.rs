@@ -23,6 +23,7 @@ mod linear_system;
 mod partial_eigen;
 #[cfg(test)]
 mod sample;
+mod selected_inverse;
 mod separator;
 mod sparse_lu;
 mod symmetric_matrix;
@@ -35,4 +36,5 @@ pub use error::Error;
 pub use linear_system::LinearSystem;
 pub use num_complex::Complex64;
 pub use partial_eigen::{PartialEigenpairs, Progress, RESIDUAL_LIMIT, nearest, rightmost};
+pub use selected_inverse::SelectedInverse;
 pub use symmetric_matrix::SymmetricMatrix;

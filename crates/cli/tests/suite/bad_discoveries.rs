@@ -60,6 +60,11 @@ fn a_statement_on_velocities_that_are_not_given_is_refused() {
 }
 
 #[test]
+fn simulations_to_compare_with_take_a_movie() {
+    assert_discover_refuses("--check", &["--check: 1 frame, but a comparison", "takes four at least"]);
+}
+
+#[test]
 fn frames_without_velocities_are_refused() {
     let facts = ["positions.npy, frame 4", "no cell has a velocity"];
     let flags = ["--frames", "4", "--difference", "forward"];

@@ -1,7 +1,7 @@
 //! Fits and questions that cannot be meant.
 
 use crate::program::fixture;
-use crate::refusal::assert_refused;
+use crate::refusal::{assert_hinted, assert_refused};
 
 #[track_caller]
 fn assert_infer_refuses(flags: &str, facts: &[&str]) {
@@ -74,6 +74,23 @@ fn methods_and_their_options_belong_together() {
     assert_infer_refuses("--method descent --starts 2", &["--starts is for --method search"]);
     for starts in ["0", "65"] {
         assert_infer_refuses(&format!("--starts {starts}"), &["--starts", "1..=64"]);
+    }
+}
+
+#[test]
+fn equations_that_cannot_be_solved_are_told_with_file_frame_and_cause() {
+    let flags = ["--fix", "K_A=0.1", "--velocity-noise", "1e-12", "--complete", "false"];
+    let facts = ["positions.npy, frame 0", "equations of the fit cannot be solved", "not positive definite"];
+    assert_refused("infer", &fixture("chiral-liquid"), &flags, &facts);
+    assert_hinted("infer", &fixture("chiral-liquid"), &flags, &["noise levels far from", "observe"]);
+}
+
+#[test]
+fn a_share_of_missed_cells_that_is_none_is_refused_with_what_to_say_instead() {
+    assert_infer_refuses("--missed-rate 0", &["--missed-rate is 0", "between 0 and 1"]);
+    for (rate, hint) in [("0", "--complete false"), ("1", "0.03 for 3 %"), ("nan", "0.03 for 3 %")] {
+        let flags = ["--missed-rate", rate];
+        assert_hinted("infer", &fixture("chiral-liquid"), &flags, &[hint]);
     }
 }
 

@@ -26,6 +26,21 @@ pub fn assert_refused(command: &str, data: &Path, flags: &[&str], facts: &[&str]
     assert_arguments_refused(arguments.into_iter().chain(flags.iter().map(OsStr::new)), facts);
 }
 
+/// Asserts that the hint with which one command refuses a data set or its flags has these words.
+#[track_caller]
+pub fn assert_hinted(command: &str, data: &Path, flags: &[&str], words: &[&str]) {
+    let out = Folder::new();
+    let mut arguments = vec![OsString::from(command), data.into()];
+    arguments.extend(flags.iter().map(OsString::from));
+    arguments.extend(["--out".into(), out.path().into()]);
+    let outcome = voronudge(&arguments);
+    assert_eq!(outcome.code, Some(2), "{outcome:?}");
+    let hint = outcome.stderr.split_once("\n\nhint: ").map(|(_, hint)| hint.to_owned()).unwrap_or_default();
+    for word in words {
+        assert!(hint.contains(word), "\"{word}\" is not in: {hint}");
+    }
+}
+
 /// Asserts that a command line is refused in the agreed form while an earlier result stays as it was.
 #[track_caller]
 pub fn assert_arguments_refused<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>, facts: &[&str]) {

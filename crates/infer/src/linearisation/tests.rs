@@ -42,6 +42,7 @@ fn the_step_agrees_with_the_dense_normal_equations() {
     let frame = frame.with_position_errors(&errors);
     let positions = PositionRows::new(&frame, &tessellation, &positions, &nudges, free, None);
     let local = Local {
+        left_out: 0,
         velocities: Rows { jacobian: &jacobian, rows: &rows },
         positions: positions.rows(),
         known: Vec::new(),

@@ -102,8 +102,8 @@ pub(crate) fn improve(
 /// One optimisation at fixed noise levels.
 pub(crate) struct Optimum {
     pub parameters: Vec<f64>,
-    /// The problem linearised there.
-    pub equations: NormalEquations,
+    /// The problem linearised there, if a step from there was tried.
+    pub equations: Option<NormalEquations>,
     pub value: f64,
     pub status: Status,
     pub steps: u64,
@@ -174,8 +174,7 @@ where
     };
     let value = state.best_cost;
     let parameters = state.take_best_param().ok_or_else(|| Error::Optimiser("no best point".into()))?;
-    let equations =
-        solver.into_linearised().ok_or_else(|| Error::Optimiser("no linearised problem".into()))?;
+    let equations = solver.into_linearised();
     Ok(Optimum { parameters, equations, value, status, steps: state.iter })
 }
 

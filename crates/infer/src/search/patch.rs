@@ -1,7 +1,10 @@
 //! A part of a frame cut out, to try changes in without touching the rest.
 
-use crate::objective::{Nudged, Objective};
+use crate::levenberg_marquardt::Obstacles;
+use crate::normal_equations::NormalEquations;
+use crate::objective::{Free, Nudged, Objective};
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Velocities};
+use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use std::collections::HashMap;
 use voronudge_geometry::Vector;
 use voronudge_model::Structure;
@@ -22,7 +25,8 @@ pub(super) struct Patch {
     /// Cells of the frame, in the order of the patch.
     cells: Vec<usize>,
     /// ε of the patch: that of the frame for free cells, zero for others.
-    pub nudges: Vec<f64>,
+    nudges: Vec<f64>,
+    free: Free,
 }
 
 /// A frame, its nudges, and where they put the cells.
@@ -68,7 +72,8 @@ impl Patch {
             }
             None => whole.frame.clone(),
         };
-        Ok(Self { frame: [frame], cells, nudges })
+        let free = Free::new(cells.len(), |own| !frame.is_held(own));
+        Ok(Self { frame: [frame], cells, nudges, free })
     }
 
     /// The objective of the patch alone, coefficients held.
@@ -77,24 +82,63 @@ impl Patch {
         structure: &'s Structure,
         pinned: &'s CoefficientSpace,
         levels: NoiseLevels,
-    ) -> Objective<'s> {
-        Objective::new(&self.frame, structure, pinned, levels)
+    ) -> OfFree<'s> {
+        OfFree { patch: self, objective: Objective::new(&self.frame, structure, pinned, levels) }
     }
 
-    /// Index in the patch of a cell of the frame.
-    pub fn index(&self, cell: usize) -> Option<usize> {
-        self.cells.iter().position(|own| *own == cell)
+    /// The place among the free cells of a cell of the frame.
+    pub fn place(&self, cell: usize) -> Option<usize> {
+        self.cells.iter().position(|own| *own == cell).and_then(|own| self.free.place(own))
     }
 
-    /// Free cells: index in the frame and in the patch.
-    pub fn free(&self) -> impl Iterator<Item = (usize, usize)> {
-        self.cells
-            .iter()
-            .enumerate()
-            .filter(|(own, _)| !self.frame[0].is_held(*own))
-            .map(|(own, cell)| (*cell, own))
+    /// Free cells by their index in the frame.
+    pub fn free(&self) -> impl Iterator<Item = usize> {
+        self.free.cells.iter().map(|own| self.cells[*own])
+    }
+
+    /// Nudges of the free cells.
+    pub fn start(&self) -> Vec<f64> {
+        self.free.of(&self.nudges)
     }
 }
+
+/// The objective of a patch as a function of the nudges of its free cells.
+pub(super) struct OfFree<'a> {
+    pub patch: &'a Patch,
+    pub objective: Objective<'a>,
+}
+
+impl OfFree<'_> {
+    pub fn value(&self, nudges: &[f64]) -> f64 {
+        self.objective.value(&self.patch.free.within(&self.patch.nudges, nudges))
+    }
+
+    pub fn linearise(&self, nudges: &[f64]) -> Result<NormalEquations, Error> {
+        let all = self.patch.free.within(&self.patch.nudges, nudges);
+        self.objective.linearise_free(&all, &self.patch.free)
+    }
+}
+
+// argmin takes its problem by value: it is given a reference.
+impl CostFunction for &OfFree<'_> {
+    type Param = Vec<f64>;
+    type Output = f64;
+
+    fn cost(&self, nudges: &Vec<f64>) -> Result<f64, ArgminError> {
+        Ok(self.value(nudges))
+    }
+}
+
+impl Jacobian for &OfFree<'_> {
+    type Param = Vec<f64>;
+    type Jacobian = NormalEquations;
+
+    fn jacobian(&self, nudges: &Vec<f64>) -> Result<NormalEquations, ArgminError> {
+        Ok(self.linearise(nudges)?)
+    }
+}
+
+impl Obstacles for &OfFree<'_> {}
 
 /// Cells by their distance in rings, with positions that do not jump across the box.
 struct Rings {

@@ -210,10 +210,11 @@ fn trial(
 ) -> Result<Option<Trial>, Error> {
     let patch = Patch::new(whole, &side.cells)?;
     let local = patch.objective(objective.structure, pinned, objective.levels);
-    let factor = local.linearise(&patch.nudges)?.frames[0].factor(local.spring())?;
-    let mut gradient = vec![0.0; patch.nudges.len()];
+    let present = patch.start();
+    let factor = local.linearise(&present)?.frames[0].factor(objective.spring())?;
+    let mut gradient = vec![0.0; present.len()];
     for (cell, g) in side.cells.iter().zip(side.gradient) {
-        if let Some(own) = patch.index(*cell) {
+        if let Some(own) = patch.place(*cell) {
             gradient[2 * own] += g.x;
             gradient[2 * own + 1] += g.y;
         }
@@ -226,8 +227,8 @@ fn trial(
     if target * target > LARGEST_COST * unit * yields {
         return Ok(None);
     }
-    let before = local.value(&patch.nudges);
-    let start = patch.nudges.iter().zip(&solved).map(|(e, s)| e - s * target / yields).collect();
+    let before = local.value(&present);
+    let start = present.iter().zip(&solved).map(|(e, s)| e - s * target / yields).collect();
     let mut previous = f64::INFINITY;
     let mut observer = |step: u64, value: f64| {
         let hopeless = step >= FIRST_STEPS && previous - value < HOPE * (value - before);
@@ -243,6 +244,6 @@ fn trial(
     Ok(Some(Trial {
         key,
         gain: before - optimum.value,
-        moved: patch.free().map(|(cell, own)| (cell, nudge(own))).collect(),
+        moved: patch.free().enumerate().map(|(own, cell)| (cell, nudge(own))).collect(),
     }))
 }

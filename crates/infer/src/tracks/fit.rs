@@ -161,6 +161,10 @@ impl<'a> Course<'a, '_> {
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
             let Optimum { parameters, equations, .. } = optimum;
             let objective = self.objective(states);
+            let equations = match equations {
+                Some(equations) => equations,
+                None => objective.linearise(&parameters)?,
+            };
             let (wanted, memory) = match self.memory {
                 Some(_) => {
                     let placed = objective.place(&parameters)?;
@@ -230,7 +234,8 @@ impl<'a> Course<'a, '_> {
                 return Ok((optimum.parameters, error));
             }
             self.levels.velocity *= optimum.value / expected;
-            start = (optimum.parameters, Some(self.renewed(states, optimum.equations)));
+            let equations = optimum.equations.map(|equations| self.renewed(states, equations));
+            start = (optimum.parameters, equations);
         }
         Ok((self.optimise(states, start, most, TOLERANCE, (1, 1))?.parameters, error))
     }

@@ -119,6 +119,7 @@ impl MovieObjective<'_> {
             known: known.zip(self.weights_of_known()).collect(),
             nudges: displacements,
             stiffness: self.stiffness(),
+            left_out: 0,
             free: p,
             places: self.states.where_and_when(&self.movie.times),
         })?;

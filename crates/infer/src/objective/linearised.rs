@@ -1,0 +1,177 @@
+//! The objective linearised about a point.
+
+use super::{Measurable, Objective};
+use crate::Error;
+use crate::least_squares::{free_rows, residuals};
+use crate::linearisation::{Linearisation, Local};
+use crate::measurement::Unknown;
+use crate::normal_equations::NormalEquations;
+use crate::position_rows::PositionRows;
+use crate::rows::Rows;
+use crate::stiffness::Stiffness;
+use rayon::prelude::*;
+use voronudge_geometry::Vector;
+use voronudge_model::BlockMatrix;
+
+/// The cells of a frame that are not held, where most are.
+#[derive(Debug)]
+pub(crate) struct Free {
+    pub cells: Vec<usize>,
+    /// For each cell its place among these; of those that are held none.
+    seat: Vec<u32>,
+}
+
+impl Free {
+    /// Those of so many cells of which it is true.
+    pub fn new(count: usize, is_free: impl Fn(usize) -> bool) -> Self {
+        let cells: Vec<usize> = (0..count).filter(|cell| is_free(*cell)).collect();
+        let mut seat = vec![u32::MAX; count];
+        cells.iter().zip(0..).for_each(|(cell, place)| seat[*cell] = place);
+        Self { cells, seat }
+    }
+
+    /// Number of cells, those that are held included.
+    pub fn count(&self) -> usize {
+        self.seat.len()
+    }
+
+    /// The place of a cell among those that are free.
+    pub fn place(&self, cell: usize) -> Option<usize> {
+        self.seat.get(cell).filter(|seat| **seat != u32::MAX).map(|seat| *seat as usize)
+    }
+
+    /// Their part of a vector with two numbers for each cell.
+    pub fn of(&self, all: &[f64]) -> Vec<f64> {
+        self.cells.iter().flat_map(|cell| [all[2 * cell], all[2 * cell + 1]]).collect()
+    }
+
+    /// A vector with two numbers for each cell, their part replaced.
+    pub fn within(&self, all: &[f64], part: &[f64]) -> Vec<f64> {
+        let mut all = all.to_vec();
+        for (cell, own) in self.cells.iter().zip(part.chunks_exact(2)) {
+            all[2 * cell..2 * cell + 2].copy_from_slice(own);
+        }
+        all
+    }
+
+    /// Makes the columns of a matrix those of free cells.
+    pub fn renumber(&self, matrix: &mut BlockMatrix) {
+        matrix.column.iter_mut().for_each(|column| *column = self.seat[*column as usize]);
+    }
+}
+
+impl<'a> Objective<'a> {
+    /// The problem linearised about a point.
+    pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
+        self.linearise_with(parameters, &[])
+    }
+
+    /// What is measured of one frame, linearised about its nudges; weights of velocities are not yet in it.
+    pub fn measurable(
+        &self,
+        index: usize,
+        coefficients: &[f64],
+        nudges: &[f64],
+    ) -> Result<Measurable<'a>, Error> {
+        let frame = &self.frames[index];
+        let nudged = self.place_with_own(index, nudges, coefficients)?;
+        let mut evaluated = nudged.evaluate(coefficients);
+        if self.own.is_some() {
+            // What a cell has of its own does not change with the coefficients.
+            evaluated.by_coefficient = self.place(index, nudges)?.evaluate(coefficients).by_coefficient;
+        }
+        let rows = residuals(frame, &evaluated.predicted)
+            .into_iter()
+            .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
+            .map(|((datum, rest), x)| (datum, rest, x))
+            .collect();
+        let mut jacobian = nudged.jacobian(coefficients, &evaluated);
+        if !frame.is_free() {
+            jacobian = jacobian.only(|cell| !frame.is_held(cell));
+        }
+        Ok(Measurable { nudged, evaluated, rows, jacobian })
+    }
+
+    /// The same with unknowns of the measurement as further coefficients, after all others.
+    pub fn linearise_with(&self, parameters: &[f64], unknowns: &[Unknown]) -> Result<NormalEquations, Error> {
+        self.linearise_among(parameters, unknowns, None)
+    }
+
+    /// The same for the nudges of those cells alone that are not held, where there is one frame.
+    pub fn linearise_free(&self, parameters: &[f64], free: &Free) -> Result<NormalEquations, Error> {
+        self.linearise_among(parameters, &[], Some(free))
+    }
+
+    fn linearise_among(
+        &self,
+        parameters: &[f64],
+        unknowns: &[Unknown],
+        among: Option<&Free>,
+    ) -> Result<NormalEquations, Error> {
+        let (free, nudges) = self.split(parameters);
+        let coefficients = self.space.coefficients(free);
+        let own = self.space.dimension();
+        let p = own + unknowns.len();
+        let of_share = unknowns.iter().position(|unknown| *unknown == Unknown::Share).map(|k| own + k);
+        let of_width = unknowns.iter().position(|unknown| *unknown == Unknown::Width).map(|k| own + k);
+        let frames = self
+            .frames
+            .par_iter()
+            .zip(&nudges)
+            .enumerate()
+            .map(|(index, (frame, nudges))| {
+                let Measurable { nudged, evaluated, mut rows, mut jacobian } =
+                    self.measurable(index, coefficients.as_slice(), nudges)?;
+                for (_, _, x) in &mut rows {
+                    *x = std::mem::take(x).resize_horizontally(p, 0.0);
+                }
+                if let (Some(k), Some(sampling)) = (of_width, &nudged.sampling) {
+                    let slopes = sampling.width_slope(&evaluated.of_cells);
+                    let mut slopes: Vec<Vector<f64>> =
+                        rows.iter().map(|(datum, ..)| slopes[*datum]).collect();
+                    frame.remove_background(&mut slopes);
+                    rows.iter_mut().zip(slopes).for_each(|((_, _, x), slope)| x.set_column(k, &slope));
+                }
+                frame.weigh(&mut rows, &mut jacobian);
+                let mut positions =
+                    PositionRows::new(frame, &nudged.tessellation, &nudged.positions, nudges, p, of_share);
+                let floor = self.floor();
+                let of_cell = |cell| if frame.is_seen(cell) { 0.0 } else { floor };
+                let local =
+                    |cells: &[usize], nudges: &[f64], jacobian: &BlockMatrix, positions: &PositionRows| {
+                        Linearisation::new(&Local {
+                            velocities: Rows { jacobian, rows: &rows },
+                            positions: positions.rows(),
+                            known: Vec::new(),
+                            nudges,
+                            stiffness: match frame.unseen() {
+                                0 => Stiffness::default(),
+                                _ => Stiffness::of_blocks(cells.iter().map(|cell| of_cell(*cell))),
+                            },
+                            free: p,
+                            places: cells
+                                .iter()
+                                .map(|cell| nudged.positions[*cell])
+                                .map(|r| Some([r[0], r[1], 0.0]))
+                                .collect(),
+                            left_out: frame.positions.len() - cells.len(),
+                        })
+                    };
+                match among {
+                    None => {
+                        let all: Vec<usize> = (0..frame.positions.len()).collect();
+                        local(&all, nudges, &jacobian, &positions)
+                    }
+                    Some(free) => {
+                        free.renumber(&mut jacobian);
+                        positions.keep(free);
+                        local(&free.cells, &free.of(nudges), &jacobian, &positions)
+                    }
+                }
+            })
+            .collect::<Result<Vec<_>, _>>()?;
+        let mut free = free.to_vec();
+        free.resize(p, 0.0);
+        Ok(NormalEquations::new(&self.space.widened(unknowns.len()), self.levels, &free, frames))
+    }
+}
