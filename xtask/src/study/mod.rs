@@ -6,6 +6,7 @@ mod coverage;
 mod discover;
 mod doubts;
 pub(crate) mod flows;
+mod forecast;
 mod measured;
 mod nada;
 mod noise;
@@ -33,7 +34,7 @@ pub struct Arguments {
     /// Number of seeds.
     #[arg(long, visible_alias = "sets", default_value_t = 10)]
     seeds: u64,
-    /// Only tissues of this many cells (nada, coverage, discover, spectrum, spreads).
+    /// Only tissues of this many cells (nada, coverage, discover, forecast, spectrum, spreads).
     #[arg(long)]
     cells: Option<usize>,
     /// Folder for figures (nada).
@@ -90,6 +91,8 @@ enum Study {
     Spreads,
     /// What to measure next: foreseen, and done.
     Advice,
+    /// What fitted models forecast and simulate, beside the truth.
+    Forecast,
 }
 
 /// Runs a study.
@@ -112,6 +115,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let searching = arguments.measured.discover;
             spreads::run(arguments.seeds, arguments.cells, &arguments.only, searching)
         }
+        Study::Forecast => forecast::run(arguments.seeds, arguments.cells),
         Study::Advice => advice::run(arguments.seeds, &arguments.only),
         Study::Discover => discover::run(&arguments.plan()),
     }

@@ -9,6 +9,10 @@ use crate::svg::{Anchor, PathData, TextStyle};
 
 /// Bars end here however large the error is; the number tells.
 const LONGEST: f64 = 2.5;
+/// An error, or what noise leaves, that is smaller than this share of the axis is told apart from others on a logarithmic one only.
+const SMALL: f64 = 0.04;
+/// The least that a logarithmic axis shows.
+const LEAST: f64 = 1e-6;
 /// Height of a bar's row in pixels.
 const ROW: f64 = 34.0;
 
@@ -38,7 +42,7 @@ pub enum Emphasis {
 }
 
 /// NMSE bars with their numbers; a line at 1 marks a model that predicts nothing. Bars that are not
-/// finite are left out.
+/// finite are left out. Where some are hardly to be seen the axis is logarithmic, and points stand for bars.
 #[must_use]
 pub fn error_bars(bars: &[ErrorBar]) -> String {
     error_bars_with_floor(bars, None)
@@ -56,11 +60,19 @@ pub fn error_bars_with_floor(bars: &[ErrorBar], floor: Option<f64>) -> String {
     }
     let end = (longest * 1.12).clamp(1.15, LONGEST);
     let count = bars.len() as f64;
+    let least = bars.iter().map(|bar| bar.nmse).chain(floor).filter(|x| *x > 0.0).fold(end, f64::min);
+    let (x, range) = match least < SMALL * end {
+        true => {
+            let range = [(0.4 * least).max(LEAST), 2.5 * end];
+            (Axis::logarithmic("NMSE (1: predicts nothing), logarithmic", range), range)
+        }
+        false => (Axis::linear("NMSE (0: perfect, 1: predicts nothing)", [0.0, end]), [0.0, end]),
+    };
     let layout = ChartLayout {
         title,
         size: [440.0, 56.0 + 14.0 + ROW * count],
         left: 158.0,
-        x: Axis::linear("NMSE (0: perfect, 1: predicts nothing)", [0.0, end]),
+        x,
         y: Axis::linear("", [0.0, count]).without_ticks(),
     };
     let Some(mut chart) = Chart::new(layout) else {
@@ -68,7 +80,7 @@ pub fn error_bars_with_floor(bars: &[ErrorBar], floor: Option<f64>) -> String {
     };
     let middle = |row: usize| count - row as f64 - 0.5;
     for (row, bar) in bars.iter().enumerate() {
-        draw_bar(&mut chart, bar, (middle(row), end));
+        draw_bar(&mut chart, bar, (middle(row), range));
     }
     let ends = [[1.0, 0.0], [1.0, count]];
     chart.curve(&ends, r##"stroke="#222" stroke-width="1.2" stroke-dasharray="5 3""##);
@@ -77,61 +89,77 @@ pub fn error_bars_with_floor(bars: &[ErrorBar], floor: Option<f64>) -> String {
         chart.curve(&[[floor, 0.0], [floor, count]], FLOOR);
     }
     for (row, bar) in bars.iter().enumerate() {
-        draw_number(&mut chart, bar, (middle(row), end));
+        draw_number(&mut chart, bar, (middle(row), range));
     }
     let label = |floor: f64| format!("noise alone: {}", significant(floor, 2));
     let key: Vec<KeyEntry> = floor.map(|floor| KeyEntry::line(&label(floor), FLOOR)).into_iter().collect();
     chart.finish_with_key(&key)
 }
 
-fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {
+fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, [start, end]): (f64, [f64; 2])) {
     let fill = match bar.emphasis {
         Emphasis::Main => BLUE,
         Emphasis::Quiet => "#a9b8c4",
     };
-    let reach = bar.nmse.clamp(0.0, end);
-    let mut path = PathData::new();
-    let [from, to] = [chart.place([0.0, middle + 0.3]), chart.place([reach, middle - 0.3])];
-    path.rectangle(from, to);
-    chart.svg.path(&path, &format!(r#"fill="{fill}""#));
-    let half = whisker(bar);
-    if half > 0.0 {
-        let ends = [[reach - half, middle], [(reach + half).min(end), middle]];
-        chart.curve(&ends, r##"stroke="#222" stroke-width="1.4""##);
+    let reach = bar.nmse.clamp(start, end);
+    if start > 0.0 {
+        // Nothing begins at nought here, so lengths say nothing.
+        let stem = [[start, middle], [reach, middle]];
+        chart.curve(&stem, &format!(r#"stroke="{fill}" stroke-width="1.2" stroke-dasharray="2 3""#));
+        let mut point = PathData::new();
+        point.dot(chart.place([reach, middle]));
+        chart.svg.path(&point, &format!(r#"stroke="{fill}" stroke-width="11" stroke-linecap="round""#));
+    } else {
+        let mut path = PathData::new();
+        let [from, to] = [chart.place([0.0, middle + 0.3]), chart.place([reach, middle - 0.3])];
+        path.rectangle(from, to);
+        chart.svg.path(&path, &format!(r#"fill="{fill}""#));
     }
-    let at = [chart.plot()[0][0] - 9.0, chart.place([0.0, middle])[1] + 4.0];
+    if let Some([low, high]) = whisker(bar, [start, end]) {
+        chart.curve(&[[low, middle], [high, middle]], r##"stroke="#222" stroke-width="1.4""##);
+    }
+    let at = [chart.plot()[0][0] - 9.0, chart.place([start, middle])[1] + 4.0];
     chart.svg.text(at, &bar.label, TextStyle::label(Anchor::End));
 }
 
 /// Prints the number behind the bar, or inside it where there is no room or the line at 1 is in the
 /// way.
-fn draw_number(chart: &mut Chart, bar: &ErrorBar, (middle, end): (f64, f64)) {
-    let reach = bar.nmse.clamp(0.0, end);
-    let half = whisker(bar);
+fn draw_number(chart: &mut Chart, bar: &ErrorBar, (middle, [start, end]): (f64, [f64; 2])) {
+    let reach = bar.nmse.clamp(start, end);
+    let [low, high] = whisker(bar, [start, end]).unwrap_or([reach; 2]);
     let mut number = significant(bar.nmse, 2);
-    if half > 0.0 {
+    if let Some(half) = half(bar) {
         number.push_str(&format!(" ± {}", significant(half, 1)));
     }
     if bar.nmse > end {
         number.push_str(" ▸");
+    } else if bar.nmse < start {
+        number.insert_str(0, "◂ ");
     }
-    let baseline = chart.place([0.0, middle])[1] + 4.0;
+    let baseline = chart.place([start, middle])[1] + 4.0;
     let [[left, _], [right, _]] = chart.plot();
     let width = 6.3 * number.chars().count() as f64;
-    let outside = chart.place([(reach + half).min(end), middle])[0] + 7.0;
-    let inside = chart.place([reach - half, middle])[0] - 7.0;
+    let outside = chart.place([high, middle])[0] + 9.0;
+    let inside = chart.place([low, middle])[0] - 9.0;
     let one = chart.place([1.0, middle])[0];
     let is_blocked = outside + width > right || (outside - 4.0..outside + width + 4.0).contains(&one);
     let (x, anchor, colour) = if is_blocked && inside - width > left {
-        (inside, Anchor::End, contrast(bar.emphasis))
+        let on_bar = if start > 0.0 { "#222" } else { contrast(bar.emphasis) };
+        (inside, Anchor::End, on_bar)
     } else {
         (outside, Anchor::Start, "#222")
     };
     chart.svg.text([x, baseline], &number, TextStyle { size: TextStyle::LABEL, colour, anchor });
 }
 
-fn whisker(bar: &ErrorBar) -> f64 {
-    bar.standard_error.filter(|half| half.is_finite() && *half > 0.0).unwrap_or(0.0)
+/// The standard error, where there is one.
+fn half(bar: &ErrorBar) -> Option<f64> {
+    bar.standard_error.filter(|half| half.is_finite() && *half > 0.0)
+}
+
+/// From one standard error below to one above, as far as the axis shows it.
+fn whisker(bar: &ErrorBar, [start, end]: [f64; 2]) -> Option<[f64; 2]> {
+    half(bar).map(|half| [bar.nmse - half, bar.nmse + half].map(|x| x.clamp(start, end)))
 }
 
 fn contrast(emphasis: Emphasis) -> &'static str {

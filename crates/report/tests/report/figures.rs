@@ -135,7 +135,23 @@ fn bars_mark_one_and_print_their_numbers() {
     for text in ["naive fit", "41 ± 0.02 ▸", "0.31 ± 0.02", "1: predicts nothing"] {
         assert!(svg.contains(text), "{text}");
     }
-    assert!(!svg.contains("lost"));
+    assert!(!svg.contains("lost") && !svg.contains("logarithmic"));
+}
+
+#[test]
+fn errors_too_small_for_bars_are_points_on_a_logarithmic_axis() {
+    let bar = |label: &str, nmse: f64| ErrorBar {
+        label: label.into(),
+        nmse,
+        standard_error: Some(2e-4),
+        emphasis: Emphasis::Main,
+    };
+    let svg = error_bars(&[bar("before", 0.98), bar("after", 2.5e-3), bar("lost", 0.0)]);
+    assert_sound("logarithmic", &svg);
+    for text in ["NMSE (1: predicts nothing), logarithmic", "0.0025 ± 0.0002", "before", "after"] {
+        assert!(svg.contains(text), "{text}");
+    }
+    assert!(svg.matches("stroke-linecap=\"round\"").count() >= 3);
 }
 
 #[test]
