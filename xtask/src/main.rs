@@ -3,6 +3,7 @@
 mod check;
 mod figures;
 mod fixtures;
+mod fuzz;
 mod oracle;
 mod peers;
 mod program;
@@ -31,6 +32,8 @@ enum Command {
     },
     /// Make figures of the paper anew, and the page of them.
     Figures(figures::Arguments),
+    /// Feed readers of files with inputs that are changed by a fuzzer.
+    Fuzz(fuzz::Arguments),
     /// Compare the program with what else one might use on the same movies, and print tables.
     Peers(peers::Arguments),
     /// Kill runs of the program at random moments, take them up again, and compare with runs that were left alone.
@@ -53,6 +56,7 @@ fn main() -> ExitCode {
     let outcome = match Arguments::parse().command {
         Command::Check { only } => check::run(&root, &only),
         Command::Figures(arguments) => figures::run(&root, &arguments),
+        Command::Fuzz(arguments) => fuzz::run(&root, &arguments),
         Command::Peers(arguments) => peers::run(&root, &arguments),
         Command::Soak(arguments) => soak::run(&root, &arguments),
         Command::Study(arguments) => study::run(&arguments),

@@ -168,3 +168,11 @@ impl fmt::Display for ShapeText<'_> {
         write!(f, "({}{comma})", lengths.join(", "))
     }
 }
+
+/// The begin of what a file says, in one line: a stray quotation mark may make a field of half a table.
+pub(crate) fn excerpt(text: &str) -> String {
+    const LONGEST: usize = 40;
+    let mut letters = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter });
+    let begin: String = letters.by_ref().take(LONGEST).collect();
+    if letters.next().is_some() { begin + "…" } else { begin }
+}

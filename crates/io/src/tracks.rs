@@ -18,6 +18,12 @@ const FRAME_LIMIT: usize = 100_000;
 /// The most bytes that an array made from a table may take.
 pub(crate) const SIZE_LIMIT: u64 = 2_000_000_000;
 
+/// The most bytes of an array for each spot that is put into it, beyond [`EMPTY`]: one place in ten thousand is taken.
+const BYTES_OF_SPOT: u64 = 160_000;
+
+/// The bytes of an array that may well have no spots.
+const EMPTY: u64 = 100_000_000;
+
 /// What a table does not say about itself. The default leaves everything open.
 #[derive(Debug, Clone, Default, PartialEq)]
 pub struct ImportOptions {
@@ -164,8 +170,9 @@ impl Tracks {
         let ids: BTreeSet<i64> = table.spots.iter().map(|spot| spot.track).collect();
         let ids: Vec<i64> = ids.into_iter().collect();
         let bytes = 16 * frames as u64 * ids.len() as u64;
-        if bytes > SIZE_LIMIT {
-            return Err(TableFault::TooLarge { frames, tracks: ids.len(), bytes, limit: SIZE_LIMIT });
+        let limit = SIZE_LIMIT.min(EMPTY + BYTES_OF_SPOT * table.spots.len() as u64);
+        if bytes > limit {
+            return Err(TableFault::TooLarge { frames, tracks: ids.len(), bytes, limit });
         }
         let cells: BTreeMap<i64, usize> = ids.iter().copied().zip(0..).collect();
         let mut positions = Array3::from_elem((frames, ids.len(), 2), f64::NAN);

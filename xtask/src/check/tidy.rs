@@ -29,7 +29,9 @@ pub fn violations(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>
             found.extend(text_faults(name, &fs::read_to_string(file)?));
         }
     }
-    found.extend(source_faults(&fs::read_to_string(root.join("Cargo.lock"))?));
+    for lock in files.iter().filter(|file| file.ends_with("Cargo.lock")) {
+        found.extend(source_faults(&fs::read_to_string(lock)?));
+    }
     Ok(found)
 }
 

@@ -1,7 +1,7 @@
 //! The header of a `.npy` file: element type, order, shape.
 
 use super::item::Item;
-use crate::error::FormatFault;
+use crate::error::{FormatFault, excerpt};
 
 const SIGNATURE: &[u8] = b"\x93NUMPY";
 
@@ -31,14 +31,15 @@ impl Header {
             .ok_or_else(|| malformed("no dictionary in braces"))?;
         let (mut item, mut fortran_order, mut shape) = (None, None, None);
         for entry in split_entries(inner) {
-            let (key, value) =
-                entry.split_once(':').ok_or_else(|| malformed(format!("\"{entry}\" has no colon")))?;
+            let (key, value) = entry
+                .split_once(':')
+                .ok_or_else(|| malformed(format!("\"{}\" has no colon", excerpt(entry))))?;
             let value = value.trim();
             match unquote(key.trim()) {
                 Some("descr") => item = Some(Item::parse(unquote(value).unwrap_or(value))?),
                 Some("fortran_order") => fortran_order = Some(parse_flag(value)?),
                 Some("shape") => shape = Some(parse_shape(value)?),
-                _ => return Err(malformed(format!("unknown entry \"{}\"", key.trim()))),
+                _ => return Err(malformed(format!("unknown entry \"{}\"", excerpt(key.trim())))),
             }
         }
         Ok(Self {
@@ -132,12 +133,12 @@ fn parse_flag(text: &str) -> Result<bool, FormatFault> {
     match text {
         "True" => Ok(true),
         "False" => Ok(false),
-        _ => Err(malformed(format!("fortran_order is {text}"))),
+        _ => Err(malformed(format!("fortran_order is {}", excerpt(text)))),
     }
 }
 
 fn parse_shape(text: &str) -> Result<Vec<usize>, FormatFault> {
-    let bad = || malformed(format!("shape is {text}"));
+    let bad = || malformed(format!("shape is {}", excerpt(text)));
     let inner = text.strip_prefix('(').and_then(|rest| rest.strip_suffix(')')).ok_or_else(bad)?;
     // Python 2 wrote long integers as 3L.
     split_entries(inner)

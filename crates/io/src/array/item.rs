@@ -1,6 +1,6 @@
 //! Element types of `.npy` arrays and how their bytes become numbers.
 
-use crate::error::FormatFault;
+use crate::error::{FormatFault, excerpt};
 
 const REALS: &str = "float32, float64 or integers of up to 64 bits";
 const INTEGERS: &str = "integers of up to 64 bits";
@@ -32,7 +32,7 @@ enum ByteOrder {
 impl Item {
     /// Reads a type description such as `<f8`, `>i4` or `|u1`.
     pub(super) fn parse(name: &str) -> Result<Self, FormatFault> {
-        let unsupported = || FormatFault::UnsupportedType { found: name.to_owned(), needed: REALS };
+        let unsupported = || FormatFault::UnsupportedType { found: excerpt(name), needed: REALS };
         let mut letters = name.chars();
         let order = match letters.next() {
             Some('<' | '|') => ByteOrder::Little,

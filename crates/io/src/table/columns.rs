@@ -4,7 +4,7 @@ use std::borrow::Cow;
 
 use csv::ByteRecord;
 
-use crate::error::TableFault;
+use crate::error::{TableFault, excerpt};
 
 /// Names of the columns, where they are not to be recognised automatically.
 ///
@@ -177,14 +177,6 @@ impl Column {
     pub(super) fn fault(&self, text: &str, expected: &'static str) -> TableFault {
         TableFault::NotANumber { column: self.name.clone(), text: excerpt(text), expected }
     }
-}
-
-/// The begin of a field in one line: a stray quotation mark may make a field of half a table.
-fn excerpt(text: &str) -> String {
-    const LONGEST: usize = 40;
-    let mut letters = text.chars().map(|letter| if letter.is_control() { ' ' } else { letter });
-    let begin: String = letters.by_ref().take(LONGEST).collect();
-    if letters.next().is_some() { begin + "…" } else { begin }
 }
 
 /// A column name without what people write differently.

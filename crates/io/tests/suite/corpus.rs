@@ -68,6 +68,23 @@ fn tables_whose_arrays_do_not_fit_in_memory_are_refused() {
     assert_told(read, &[name, "1310 tracks"], "");
 }
 
+#[test]
+fn a_table_of_few_spots_far_apart_makes_no_large_array() {
+    let scratch = Scratch::new();
+    let rows = (0..978).map(|spot| format!("{spot},{},1,{spot}\n", 100 * spot)).collect::<String>();
+    let path = scratch.path("spots.csv");
+    fs::write(&path, format!("TRACK_ID,FRAME,POSITION_X,POSITION_Y\n{rows}")).unwrap();
+    assert_told(import_tracks(&path, &ImportOptions::default()), &["978 tracks", "the limit is"], "frames");
+}
+
+#[test]
+fn what_a_header_says_is_told_in_one_line() {
+    for name in ["shape-of-two-lines.npy", "type-of-two-lines.npy"] {
+        let error = read_vectors(&corpus(name)).unwrap_err().to_string();
+        assert!(error.contains(name) && !error.contains('\n') && error.len() < 300, "{error}");
+    }
+}
+
 /// A generator of 64-bit numbers, the same everywhere.
 struct Random(u64);
 
