@@ -5,7 +5,7 @@ use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
 use crate::curvature;
 use crate::doubts::examine;
 use crate::estimates::Fitted;
-use crate::least_squares::{self, residuals_as_measured, within_bounds};
+use crate::least_squares::{self, invert, residuals_as_measured, within_bounds};
 use crate::noisy_fit::{at_limit, fit, go_on};
 use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Nudged, Objective};
@@ -23,6 +23,9 @@ use voronudge_geometry::{Tessellation, Vector};
 
 /// Rounds in which velocities that nothing explains lose their weight.
 const REWEIGHTINGS: usize = 3;
+
+/// Decrease of Φ, in units of σ_v², that coefficients may promise where the search ended to be given the rest of their way.
+const REST: f64 = 1.0;
 
 /// Standard deviations by which an objective may exceed its expected value.
 const ACCEPTED_EXCESS: f64 = 3.0;
@@ -103,8 +106,7 @@ pub fn infer(
     let mut spreads = Vec::new();
     if let Some(differing) = &differing {
         reduced.information -= &differing.spent;
-        let covariance =
-            space.covariance(&least_squares::invert(&reduced.information / (variance * excess))?);
+        let covariance = space.covariance(&invert(&reduced.information / (variance * excess))?);
         spreads = differing.spreads_beside(&coefficients, &covariance);
     }
     // Where the search ended, and cells are alike, it is known what the curvature of the forces did to the coefficients.
@@ -186,8 +188,8 @@ pub(crate) struct Estimates {
     pub directions: Vec<Direction>,
 }
 
-/// Estimates at β from the linearised problem about it, reduced to the coefficients, with σ_v² as the fit bears it out; a known bias of
-/// β is taken off.
+/// Estimates at β from the linearised problem about it, reduced to the coefficients, with σ_v² as the fit bears it out; where the bias of
+/// β is known it is taken off, after the rest of the way that the search left.
 pub(crate) fn estimates(
     equations: &NormalEquations,
     reduced: Reduced,
@@ -200,7 +202,7 @@ pub(crate) fn estimates(
     let mut centre = equations.unbounded(&reduced)?;
     let mut free = DVector::from_column_slice(free);
     if let Some(bias) = bias {
-        centre -= bias;
+        centre += rest_of_the_way(&reduced, &centre - &free, variance)? - bias;
         free = within_bounds(space, centre.clone(), reduced.information.clone())?;
     }
     let (constraints, information) = (&request.constraints, reduced.information / variance);
@@ -210,6 +212,15 @@ pub(crate) fn estimates(
         effects: fitted.effects()?,
         directions: fitted.directions()?,
     })
+}
+
+/// What the linearised problem would still move the coefficients by, beyond what bounds hold back. The search ends before cells at which
+/// forces jump with their contacts; that is for these cells to end, and not for the coefficients, which all cells share. Nothing if it is so much that the
+/// search cannot have ended there.
+fn rest_of_the_way(reduced: &Reduced, held_back: DVector<f64>, variance: f64) -> Result<DVector<f64>, Error> {
+    let rest = invert(reduced.information.clone())? * &reduced.gradient - held_back;
+    let promised = rest.dot(&(&reduced.information * &rest));
+    Ok(if promised <= REST * variance { rest } else { DVector::zeros(rest.len()) })
 }
 
 /// By how many standard deviations an objective, in units of σ_v², is above what is expected.

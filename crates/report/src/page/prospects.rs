@@ -52,7 +52,7 @@ impl ProspectsView {
             let of_all = found.clone().flatten().reduce(best);
             let cell = |value: Option<f64>| Cell {
                 text: value.map_or_else(|| NO_VALUE.to_owned(), |value| significant(value, 2)),
-                share: value.map_or_else(String::new, |value| format!("× {}", significant(value / now, 2))),
+                share: value.map_or_else(String::new, |value| format!("(× {})", significant(value / now, 2))),
                 is_best: value.is_some() && value == of_all,
             };
             found.map(cell).collect()

@@ -40,7 +40,7 @@ fn the_page_is_self_contained() {
         "v<sub>0</sub>",
         "polarities: what the cells move by of themselves",
         "What to measure next",
-        "<b>0.0016</b> <span class=\"quiet\">× 0.55</span>",
+        "<b>0.0016</b> <span class=\"quiet\">(× 0.55)</span>",
     ] {
         let found = html.contains(text);
         assert!(found, "{text}");
