@@ -301,3 +301,27 @@ fn frame_result(
         tessellation: nudged.tessellation,
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use nalgebra::DMatrix;
+
+    #[test]
+    fn coefficients_go_the_rest_of_a_short_way() {
+        let information = DMatrix::from_row_slice(2, 2, &[4.0, 1.0, 1.0, 2.0]);
+        let gradient = DVector::from_vec(vec![0.6, 0.5]);
+        let reduced = Reduced { information, gradient };
+        let rest = |held_back: [f64; 2], variance: f64| {
+            rest_of_the_way(&reduced, DVector::from_row_slice(&held_back), variance).unwrap()
+        };
+        let is = |found: DVector<f64>, expected: [f64; 2]| {
+            assert!((found - DVector::from_row_slice(&expected)).norm() < 1e-12, "{expected:?}");
+        };
+        // It promises 0.16.
+        is(rest([0.0; 2], 0.17), [0.1, 0.2]);
+        is(rest([0.0; 2], 0.15), [0.0; 2]);
+        // What bounds hold back is no rest.
+        is(rest([0.1, 0.0], 0.17), [0.0, 0.2]);
+    }
+}
