@@ -3,11 +3,12 @@
 use crate::Error;
 
 /// What is beyond the border of an image.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Edge {
     /// The image repeats.
     Periodic,
     /// Nothing is known.
+    #[default]
     Open,
 }
 

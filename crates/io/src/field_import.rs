@@ -35,9 +35,10 @@ pub enum WantedExtrema {
 }
 
 /// How cells of different frames are taken for one.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub enum FieldLinking {
     /// Not at all: each frame has cells of its own.
+    #[default]
     Separate,
     /// The nearest of the same kind, if it is within a limit in units of length; default half the mean distance of cells.
     Nearest {
@@ -46,8 +47,8 @@ pub enum FieldLinking {
     },
 }
 
-/// What is taken for a cell, and what a field does not say about itself.
-#[derive(Debug, Clone, PartialEq)]
+/// What is taken for a cell, and what a field does not say about itself. The default leaves everything open.
+#[derive(Debug, Clone, Default, PartialEq)]
 pub struct FieldOptions {
     /// Units and directions.
     pub scale: ImageScale,

@@ -3,11 +3,7 @@
 
 use libfuzzer_sys::fuzz_target;
 use voronudge_fuzz::{file, told};
-use voronudge_geometry::Edge;
-use voronudge_io::{
-    BorderCells, FieldLinking, FieldOptions, ImageScale, LabelLinking, LabelOptions, WantedExtrema,
-    import_field, import_labels,
-};
+use voronudge_io::{FieldOptions, LabelOptions, WantedExtrema, import_field, import_labels};
 
 fuzz_target!(|bytes: &[u8]| {
     let name = match bytes.first() {
@@ -15,17 +11,8 @@ fuzz_target!(|bytes: &[u8]| {
         Some(b'I' | b'M') => "image.tif",
         _ => "image.png",
     };
-    let (path, scale) = (file(name, bytes), ImageScale::default());
-    let linking = LabelLinking::Separate;
-    told(import_labels(&path, &LabelOptions { scale, gap: 2, linking, border: BorderCells::Kept }));
-    let options = FieldOptions {
-        scale: ImageScale::default(),
-        extrema: WantedExtrema::Both,
-        smoothing: 1.0,
-        prominence: None,
-        distance: 0.0,
-        edge: Edge::Open,
-        linking: FieldLinking::Separate,
-    };
+    let path = file(name, bytes);
+    told(import_labels(&path, &LabelOptions { gap: 2, ..LabelOptions::default() }));
+    let options = FieldOptions { extrema: WantedExtrema::Both, smoothing: 1.0, ..FieldOptions::default() };
     told(import_field(&path, &options));
 });

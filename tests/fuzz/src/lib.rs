@@ -11,9 +11,10 @@ pub fn folder() -> &'static Path {
     FOLDER.get_or_init(|| TempDir::new().expect("a temporary folder")).path()
 }
 
-/// A file there with these bytes.
+/// A file there with these bytes, in folders that are made for it.
 pub fn file(name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder().join(name);
+    std::fs::create_dir_all(path.parent().unwrap_or(folder())).expect("room in the temporary folder");
     std::fs::write(&path, bytes).expect("room in the temporary folder");
     path
 }

@@ -3,9 +3,10 @@
 //! Tissues that crawl are filmed as `claims::measured` films them. Models without and with a polarity are fitted to the first half of the frames; they and
 //! the true one say what comes in the other half, and simulate the whole movie.
 
+use super::flows::mean;
 use super::seeds::{on_cores, quartiles};
 use crate::Outcome;
-use claims::measured::{Class, MeasuredSet, Motion, Recipe};
+use claims::measured::{Class, MeasuredSet};
 use nalgebra::Vector2;
 use std::error::Error;
 use std::ops::ControlFlow;
@@ -17,10 +18,10 @@ use voronudge_infer::{
 };
 use voronudge_model::Structure;
 
-/// Frames in all, and those that are fitted.
-const FRAMES: [usize; 2] = [12, 6];
-/// Distance that a cell moves from frame to frame at first.
-const STEP: f64 = 0.1;
+/// How the tissues are filmed.
+const CLASS: &str = "active-long";
+/// The first frames, which are fitted.
+const FITTED: usize = 6;
 /// Frames ahead.
 const HORIZONS: [usize; 3] = [1, 2, 4];
 /// Simulated movies of each model.
@@ -61,15 +62,15 @@ pub fn run(seeds: u64, cells: Option<usize>) -> Outcome {
     println!("|{}", "---|".repeat(5 + MODELS.len()));
     for (h, horizon) in HORIZONS.iter().enumerate() {
         let skill = |own: &Judged, model: usize| own.skill[model][h];
-        let means =
-            [0, 1, 2].map(|model| format!("{:.3}", mean(all.iter().map(|own| skill(own, model)[0]))[0]));
+        let over = |of: &dyn Fn(&Judged) -> f64| mean(&all.iter().map(of).collect::<Vec<_>>());
+        let means = [0, 1, 2].map(|model| format!("{:.3}", over(&|own| skill(own, model)[0]).0));
         // Within a standard error of the truth's.
         let as_good = |model: usize| {
             let good = |own: &&Judged| skill(own, model)[0] >= skill(own, 2)[0] - skill(own, 2)[1];
             format!("{} of {}", all.iter().filter(good).count(), all.len())
         };
         let less = |a: usize, b: usize| {
-            let [mean, error] = mean(all.iter().map(|own| skill(own, a)[0] - skill(own, b)[0]));
+            let (mean, error) = over(&|own| skill(own, a)[0] - skill(own, b)[0]);
             format!("{mean:.3} ± {error:.3}")
         };
         println!(
@@ -101,14 +102,6 @@ pub fn run(seeds: u64, cells: Option<usize>) -> Outcome {
     Ok(())
 }
 
-/// Mean and its standard error.
-fn mean(values: impl Iterator<Item = f64> + Clone) -> [f64; 2] {
-    let count = values.clone().count() as f64;
-    let mean = values.clone().sum::<f64>() / count;
-    let squares: f64 = values.map(|x| (x - mean).powi(2)).sum();
-    [mean, (squares / (count * (count - 1.0))).sqrt()]
-}
-
 /// The largest difference between the distribution of some ascending numbers and the uniform one.
 fn distance_from_uniform(ascending: &[f64]) -> f64 {
     let count = ascending.len() as f64;
@@ -117,10 +110,8 @@ fn distance_from_uniform(ascending: &[f64]) -> f64 {
 }
 
 fn judge(seed: u64, cells: usize) -> Result<Judged, Box<dyn Error>> {
-    let long = Class::named("active-long").ok_or("no such class")?;
-    let recipe = Recipe { motion: Motion::Tracks { frames: FRAMES[0], step: STEP }, ..long.recipe };
-    let set = Class { recipe, ..long }.measure(seed, Some(cells))?;
-    let movie = movie(&set, FRAMES[0])?;
+    let set = Class::named(CLASS).ok_or("no such class")?.measure(seed, Some(cells))?;
+    let movie = movie(&set, set.positions.dim().0)?;
     let truth = |name: &str| set.truth.parameters.get(name).copied().ok_or("no such parameter");
     let elasticity = truth("K_A")?;
     let structure = Structure::base(1.0);
@@ -130,7 +121,7 @@ fn judge(seed: u64, cells: usize) -> Result<Judged, Box<dyn Error>> {
         structure: structure.clone(),
         ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, elasticity)]))
     };
-    let beginning = self::movie(&set, FRAMES[1])?;
+    let beginning = self::movie(&set, FITTED)?;
     let fit = |activity| {
         let request = Request { activity, ..request.clone() };
         infer_tracks(&beginning, &request, &mut |_| ControlFlow::Continue(()))
@@ -150,7 +141,7 @@ fn judge(seed: u64, cells: usize) -> Result<Judged, Box<dyn Error>> {
     ];
     let ahead = Ahead {
         movie: &movie,
-        first: FRAMES[1],
+        first: FITTED,
         horizon: HORIZONS[HORIZONS.len() - 1],
         noise: with.0.noise,
         draws: RUNS,

@@ -19,43 +19,41 @@ pub fn assert_unreadable(data: &Path, flags: &[&str], facts: &[&str]) {
     }
 }
 
-/// Asserts that one command refuses a data set or its flags.
+/// Asserts that one command refuses a data set or its flags; the hint.
 #[track_caller]
-pub fn assert_refused(command: &str, data: &Path, flags: &[&str], facts: &[&str]) {
+pub fn assert_refused(command: &str, data: &Path, flags: &[&str], facts: &[&str]) -> String {
     let arguments = [OsStr::new(command), data.as_os_str()];
-    assert_arguments_refused(arguments.into_iter().chain(flags.iter().map(OsStr::new)), facts);
+    assert_arguments_refused(arguments.into_iter().chain(flags.iter().map(OsStr::new)), facts)
 }
 
 /// Asserts that the hint with which one command refuses a data set or its flags has these words.
 #[track_caller]
 pub fn assert_hinted(command: &str, data: &Path, flags: &[&str], words: &[&str]) {
-    let out = Folder::new();
-    let mut arguments = vec![OsString::from(command), data.into()];
-    arguments.extend(flags.iter().map(OsString::from));
-    arguments.extend(["--out".into(), out.path().into()]);
-    let outcome = voronudge(&arguments);
-    assert_eq!(outcome.code, Some(2), "{outcome:?}");
-    let hint = outcome.stderr.split_once("\n\nhint: ").map(|(_, hint)| hint.to_owned()).unwrap_or_default();
+    let hint = assert_refused(command, data, flags, &[]);
     for word in words {
         assert!(hint.contains(word), "\"{word}\" is not in: {hint}");
     }
 }
 
-/// Asserts that a command line is refused in the agreed form while an earlier result stays as it was.
+/// Asserts that a command line is refused in the agreed form while an earlier result stays as it was; the hint.
 #[track_caller]
-pub fn assert_arguments_refused<S: AsRef<OsStr>>(arguments: impl IntoIterator<Item = S>, facts: &[&str]) {
+pub fn assert_arguments_refused<S: AsRef<OsStr>>(
+    arguments: impl IntoIterator<Item = S>,
+    facts: &[&str],
+) -> String {
     let out = Folder::new();
     out.write("report.json", EARLIER);
     let mut arguments: Vec<OsString> = arguments.into_iter().map(|word| word.as_ref().to_owned()).collect();
     arguments.extend(["--out".into(), out.path().into()]);
-    assert_told(&arguments, facts);
+    let hint = assert_told(&arguments, facts);
     assert_eq!(out.names(), ["report.json"], "{arguments:?}");
     assert_eq!(fs::read_to_string(out.file("report.json")).unwrap(), EARLIER, "{arguments:?}");
+    hint
 }
 
-/// Asserts exit code 2, an empty stdout, and on stderr the error with every fact, an empty line, and a hint.
+/// Asserts exit code 2, an empty stdout, and on stderr the error with every fact, an empty line, and a hint, which it returns.
 #[track_caller]
-pub fn assert_told<S: AsRef<OsStr>>(arguments: &[S], facts: &[&str]) {
+pub fn assert_told<S: AsRef<OsStr>>(arguments: &[S], facts: &[&str]) -> String {
     let outcome = voronudge(arguments);
     assert_eq!(outcome.code, Some(2), "{outcome:?}");
     assert_eq!(outcome.stdout, "", "{outcome:?}");
@@ -68,4 +66,5 @@ pub fn assert_told<S: AsRef<OsStr>>(arguments: &[S], facts: &[&str]) {
     }
     assert!(!message.contains('\n'), "several lines: {message}");
     assert!(hint.trim().len() > 5 && hint.ends_with('\n') && !hint.trim().contains('\n'), "{hint}");
+    hint.to_owned()
 }

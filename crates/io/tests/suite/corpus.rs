@@ -5,11 +5,10 @@ use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 use ndarray::{Array2, Array3};
-use voronudge_geometry::Edge;
 use voronudge_io::{
-    BorderCells, Error, FieldLinking, FieldOptions, ImageScale, ImportOptions, Journal, LabelLinking,
-    LabelOptions, OutputFolder, Recording, Source, WantedExtrema, import_field, import_labels,
-    import_trackmate, import_tracks, read_integers, read_reals, read_vectors,
+    Error, FieldOptions, ImportOptions, Journal, LabelOptions, OutputFolder, Recording, Source,
+    WantedExtrema, import_field, import_labels, import_trackmate, import_tracks, read_integers, read_reals,
+    read_vectors,
 };
 
 use crate::{Scratch, assert_told};
@@ -19,21 +18,11 @@ fn corpus(name: &str) -> PathBuf {
 }
 
 fn labels(path: &Path) -> Result<(), Error> {
-    let scale = ImageScale::default();
-    let linking = LabelLinking::Separate;
-    import_labels(path, &LabelOptions { scale, gap: 2, linking, border: BorderCells::Kept }).map(|_| ())
+    import_labels(path, &LabelOptions { gap: 2, ..LabelOptions::default() }).map(|_| ())
 }
 
 fn field(path: &Path) -> Result<(), Error> {
-    let options = FieldOptions {
-        scale: ImageScale::default(),
-        extrema: WantedExtrema::Both,
-        smoothing: 1.0,
-        prominence: None,
-        distance: 0.0,
-        edge: Edge::Open,
-        linking: FieldLinking::Separate,
-    };
+    let options = FieldOptions { extrema: WantedExtrema::Both, smoothing: 1.0, ..FieldOptions::default() };
     import_field(path, &options).map(|_| ())
 }
 
