@@ -9,7 +9,7 @@ use crate::svg::{Anchor, PathData, TextStyle};
 
 /// Bars end here however large the error is; the number tells.
 const LONGEST: f64 = 2.5;
-/// An error, or what noise leaves, that is smaller than this share of the axis is told apart from others on a logarithmic one only.
+/// A number to quote, or what noise leaves, that is smaller than this share of the axis is told apart from others on a logarithmic one only.
 const SMALL: f64 = 0.04;
 /// The least that a logarithmic axis shows.
 const LEAST: f64 = 1e-6;
@@ -42,7 +42,7 @@ pub enum Emphasis {
 }
 
 /// NMSE bars with their numbers; a line at 1 marks a model that predicts nothing. Bars that are not
-/// finite are left out. Where some are hardly to be seen the axis is logarithmic, and points stand for bars.
+/// finite are left out. Where those to quote are hardly to be seen the axis is logarithmic, and points stand for bars.
 #[must_use]
 pub fn error_bars(bars: &[ErrorBar]) -> String {
     error_bars_with_floor(bars, None)
@@ -60,8 +60,11 @@ pub fn error_bars_with_floor(bars: &[ErrorBar], floor: Option<f64>) -> String {
     }
     let end = (longest * 1.12).clamp(1.15, LONGEST);
     let count = bars.len() as f64;
-    let least = bars.iter().map(|bar| bar.nmse).chain(floor).filter(|x| *x > 0.0).fold(end, f64::min);
-    let (x, range) = match least < SMALL * end {
+    let least = |errors: &mut dyn Iterator<Item = f64>| errors.filter(|x| *x > 0.0).fold(end, f64::min);
+    let quoted = bars.iter().filter(|bar| bar.emphasis == Emphasis::Main).map(|bar| bar.nmse);
+    let is_small = least(&mut quoted.chain(floor)) < SMALL * end;
+    let least = least(&mut bars.iter().map(|bar| bar.nmse).chain(floor));
+    let (x, range) = match is_small {
         true => {
             let range = [(0.4 * least).max(LEAST), 2.5 * end];
             (Axis::logarithmic("NMSE (1: predicts nothing), logarithmic", range), range)
@@ -144,12 +147,16 @@ fn draw_number(chart: &mut Chart, bar: &ErrorBar, (middle, [start, end]): (f64, 
     let one = chart.place([1.0, middle])[0];
     let is_blocked = outside + width > right || (outside - 4.0..outside + width + 4.0).contains(&one);
     let (x, anchor, colour) = if is_blocked && inside - width > left {
-        let on_bar = if start > 0.0 { "#222" } else { contrast(bar.emphasis) };
-        (inside, Anchor::End, on_bar)
+        (inside, Anchor::End, if start > 0.0 { "#222" } else { contrast(bar.emphasis) })
     } else {
         (outside, Anchor::Start, "#222")
     };
-    chart.svg.text([x, baseline], &number, TextStyle { size: TextStyle::LABEL, colour, anchor });
+    let style = TextStyle { size: TextStyle::LABEL, colour, anchor };
+    match start > 0.0 {
+        // Over the stem.
+        true => chart.svg.text_with_rim([x, baseline], &number, style, "#fff"),
+        false => chart.svg.text([x, baseline], &number, style),
+    }
 }
 
 /// The standard error, where there is one.

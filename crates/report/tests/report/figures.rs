@@ -146,8 +146,12 @@ fn errors_too_small_for_bars_are_points_on_a_logarithmic_axis() {
         standard_error: Some(2e-4),
         emphasis: Emphasis::Main,
     };
-    let svg = error_bars(&[bar("before", 0.98), bar("after", 2.5e-3), bar("lost", 0.0)]);
+    let bars = [bar("before", 0.98), bar("after", 2.5e-3), bar("lost", 0.0)];
+    let svg = error_bars(&bars);
     assert_sound("logarithmic", &svg);
+    // What nobody is to quote has no say in the axis.
+    let quiet = bars.clone().map(|bar| ErrorBar { emphasis: Emphasis::Quiet, ..bar });
+    assert!(!error_bars(&quiet).contains("logarithmic"));
     for text in ["NMSE (1: predicts nothing), logarithmic", "0.0025 ± 0.0002", "before", "after"] {
         assert!(svg.contains(text), "{text}");
     }
