@@ -23,7 +23,7 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
-use voronudge_linalg::Cholesky;
+use voronudge_linalg::DissectedCholesky;
 use voronudge_model::BlockMatrix;
 
 /// Draws of the errors; each is used with both signs.
@@ -86,7 +86,7 @@ struct About<'a> {
     rows: Vec<(usize, Vector<f64>, DMatrix<f64>)>,
     jacobian: BlockMatrix,
     positions: PositionRows,
-    factor: Cholesky,
+    factor: DissectedCholesky,
     /// What nudges do when coefficients decrease (n × p, by columns).
     follow: Vec<f64>,
 }

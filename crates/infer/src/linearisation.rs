@@ -19,7 +19,7 @@ use crate::rows::{Group, Rows};
 use crate::stiffness::Stiffness;
 use crate::whitened::Whitened;
 use nalgebra::{DMatrix, DVector};
-use voronudge_linalg::{Cholesky, CholeskyPattern, SymmetricMatrix};
+use voronudge_linalg::{DissectedCholesky, DissectedPattern, SymmetricMatrix};
 
 /// The linearised problem of one frame.
 #[derive(Debug)]
@@ -29,7 +29,7 @@ pub(crate) struct Linearisation {
     /// Rows of what is known of unknowns beforehand, by kind.
     known: Vec<Group>,
     held: Held,
-    pattern: CholeskyPattern,
+    pattern: DissectedPattern,
     /// The nudges ε at which it was linearised.
     nudges: Vec<f64>,
     /// Places that are held and not among the nudges.
@@ -109,7 +109,7 @@ impl Linearisation {
             return Err(Error::Degenerate);
         };
         let known = known.iter().zip(normals).map(|((rows, _), own)| group(rows, own)).collect();
-        let pattern = CholeskyPattern::dissected(&of_velocities, places)?;
+        let pattern = DissectedPattern::new(&of_velocities, places)?;
         Ok(Self {
             velocities: group(velocities, of_velocities),
             positions: group(positions, of_positions),
@@ -170,11 +170,11 @@ impl Linearisation {
     }
 
     /// The factor of JᵀJ + k HᵀH and what stiffness there is beside.
-    pub fn factor(&self, spring: f64) -> Result<Cholesky, Error> {
+    pub fn factor(&self, spring: f64) -> Result<DissectedCholesky, Error> {
         self.damped(spring, &[], &self.held)
     }
 
-    fn damped(&self, spring: f64, damping: &[f64], held: &Held) -> Result<Cholesky, Error> {
+    fn damped(&self, spring: f64, damping: &[f64], held: &Held) -> Result<DissectedCholesky, Error> {
         let mut sum: SymmetricMatrix = self.velocities.normal.plus(spring, &self.positions.normal)?;
         for (known, weight) in self.known.iter().zip(&held.weights) {
             sum = sum.plus(*weight, &known.normal)?;

@@ -113,7 +113,7 @@ fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)
             let is_sound = |rest: &Vector<f64>| rest.norm_squared() / variance < SOUND;
             let inverse = match rests.iter().filter(|(_, rest)| !is_sound(rest)).count() < MANY {
                 true => None,
-                false => factor.selected_inverse(),
+                false => Some(factor.selected_inverse()?),
             };
             let mut right = vec![0.0; 2 * nudges.len()];
             let mut solved = |datum: usize| {

@@ -10,6 +10,9 @@ use crate::separator::{Halves, NONE, separate};
 /// Nodes that are not cut any further.
 const LEAF: usize = 24;
 
+/// Nodes from which on both sides of a cut are dissected at the same time.
+const MANY: usize = 600;
+
 /// Shares of the nodes that a cut leaves on its first side, ascending.
 const SHARES: [f64; 3] = [0.42, 0.5, 0.58];
 
@@ -65,30 +68,17 @@ impl Dissection {
         made
     }
 
-    /// The order alone.
-    pub fn order(graph: &Graph, places: &[Place]) -> Vec<u32> {
-        Self::ordered(graph, places).order
-    }
-
     /// The fronts without their boundaries, in their order.
     fn ordered(graph: &Graph, places: &[Place]) -> Self {
         let nodes = graph.nodes();
         let (near, last): (Vec<u32>, Vec<u32>) =
             (0..nodes as u32).partition(|&node| places[node as usize].is_some());
-        let mut cut = Cut {
-            graph,
-            places: places.iter().map(|place| place.unwrap_or_default()).collect(),
-            seat: vec![NONE; nodes],
-            made: Self {
-                fronts: Vec::new(),
-                order: Vec::with_capacity(nodes),
-                position: vec![0; nodes],
-                roots: Vec::new(),
-            },
-        };
-        let children = cut.divide(near);
-        cut.made.roots = if last.is_empty() { children } else { vec![cut.front(last, children)] };
-        cut.made
+        let cut = Cut { graph, places: places.iter().map(|place| place.unwrap_or_default()).collect() };
+        let mut part = Part::default();
+        let children = cut.divide(near, &mut part, &mut vec![NONE; nodes]);
+        let roots = if last.is_empty() { children } else { vec![part.front(last, children)] };
+        let Part { fronts, order, .. } = part;
+        Self { fronts, order, position: vec![0; nodes], roots }
     }
 
     fn find_boundary(&mut self, index: usize, graph: &Graph) {
@@ -112,37 +102,70 @@ impl Dissection {
     }
 }
 
-/// A dissection in the making.
+/// What is to be dissected.
 struct Cut<'a> {
     graph: &'a Graph,
     places: Vec<[f64; 3]>,
-    /// Room for a number per node.
-    seat: Vec<u32>,
-    made: Dissection,
+}
+
+/// Part of a dissection in the making.
+#[derive(Default)]
+struct Part {
+    fronts: Vec<Front>,
+    order: Vec<u32>,
+    roots: Vec<usize>,
+}
+
+impl Part {
+    /// Adds a front.
+    fn front(&mut self, nodes: Vec<u32>, children: Vec<usize>) -> usize {
+        let (first, own) = (self.order.len(), nodes.len());
+        self.order.extend(nodes);
+        self.fronts.push(Front { first, own, boundary: Vec::new(), children });
+        self.fronts.len() - 1
+    }
+
+    /// Adds another part behind; tells its fronts at the top.
+    fn append(&mut self, other: Self) -> Vec<usize> {
+        let (fronts, nodes) = (self.fronts.len(), self.order.len());
+        self.order.extend(other.order);
+        self.fronts.extend(other.fronts.into_iter().map(|mut front| {
+            front.first += nodes;
+            front.children.iter_mut().for_each(|child| *child += fronts);
+            front
+        }));
+        other.roots.into_iter().map(|root| root + fronts).collect()
+    }
 }
 
 impl Cut<'_> {
-    /// Orders some nodes; tells the fronts at the top.
-    fn divide(&mut self, nodes: Vec<u32>) -> Vec<usize> {
+    /// Orders some nodes behind others; tells the fronts at the top. `seat` is room for a number per node.
+    fn divide(&self, nodes: Vec<u32>, part: &mut Part, seat: &mut Vec<u32>) -> Vec<usize> {
         if nodes.is_empty() {
             return Vec::new();
         }
         if nodes.len() <= LEAF {
-            return vec![self.front(nodes, Vec::new())];
+            return vec![part.front(nodes, Vec::new())];
         }
         let cuts = [0, 1, 2].into_iter().flat_map(|axis| self.cuts(&nodes, axis));
-        let cuts: Vec<[Vec<u32>; 2]> = cuts.collect();
-        let halves = cuts.into_iter().map(|sides| separate(self.graph, sides, &mut self.seat));
+        let halves = cuts.map(|sides| separate(self.graph, sides, seat));
         let best = halves.min_by(|a, b| a.cost().total_cmp(&b.cost()));
-        let Some(Halves { sides, separator }) = best else {
-            return vec![self.front(nodes, Vec::new())];
+        let Some(Halves { sides: [here, there], separator }) = best else {
+            return vec![part.front(nodes, Vec::new())];
         };
+        let is_large = nodes.len() >= MANY;
         drop(nodes);
-        let mut children = Vec::new();
-        for side in sides {
-            children.extend(self.divide(side));
+        let mut children;
+        if is_large {
+            let mut aside = Part::default();
+            let other = || aside.roots = self.divide(there, &mut aside, &mut vec![NONE; self.places.len()]);
+            (children, ()) = rayon::join(|| self.divide(here, part, seat), other);
+            children.extend(part.append(aside));
+        } else {
+            children = self.divide(here, part, seat);
+            children.extend(self.divide(there, part, seat));
         }
-        if separator.is_empty() { children } else { vec![self.front(separator, children)] }
+        if separator.is_empty() { children } else { vec![part.front(separator, children)] }
     }
 
     /// Cuts nodes across an axis, none of two nodes that are equally far along it.
@@ -163,13 +186,6 @@ impl Cut<'_> {
             .collect();
         ends.dedup();
         ends.into_iter().map(|end| [sorted[..end].to_vec(), sorted[end..].to_vec()]).collect()
-    }
-
-    fn front(&mut self, nodes: Vec<u32>, children: Vec<usize>) -> usize {
-        let (first, own) = (self.made.order.len(), nodes.len());
-        self.made.order.extend(nodes);
-        self.made.fronts.push(Front { first, own, boundary: Vec::new(), children });
-        self.made.fronts.len() - 1
     }
 }
 

@@ -15,12 +15,15 @@ mod arnoldi;
 mod block_sparse;
 mod cholesky;
 mod dense_eigen;
+mod dissected_cholesky;
 mod dissection;
 mod eigenpairs;
 mod error;
+mod fronts;
 mod graph;
 mod linear_system;
 mod partial_eigen;
+mod room;
 #[cfg(test)]
 mod sample;
 mod selected_inverse;
@@ -29,8 +32,9 @@ mod sparse_lu;
 mod symmetric_matrix;
 
 pub use block_sparse::BlockSparse;
-pub use cholesky::{Cholesky, CholeskyPattern};
+pub use cholesky::Cholesky;
 pub use dense_eigen::{Wanted, eigen};
+pub use dissected_cholesky::{DissectedCholesky, DissectedPattern};
 pub use eigenpairs::Eigenpairs;
 pub use error::Error;
 pub use linear_system::LinearSystem;

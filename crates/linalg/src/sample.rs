@@ -1,6 +1,6 @@
 //! Matrices for tests: the stencil of a tissue, with pseudo-random blocks.
 
-use crate::BlockSparse;
+use crate::{BlockSparse, SymmetricMatrix};
 
 /// A periodic triangular lattice of `side × side` sites coupled over two rings, which decays: a random symmetric part,
 /// dominated by its diagonal, and an antisymmetric part of a strength.
@@ -38,4 +38,23 @@ pub(crate) fn lattice(side: usize, antisymmetric: f64) -> BlockSparse {
 /// The places of the sites.
 pub(crate) fn places(side: usize) -> Vec<[f64; 2]> {
     (0..side * side).map(|i| [(i % side) as f64 + 0.5 * (i / side) as f64, (i / side) as f64]).collect()
+}
+
+/// A positive definite matrix of two unknowns for each node of a square lattice, coupled to all within two steps of the king.
+pub(crate) fn symmetric(side: usize) -> SymmetricMatrix {
+    let (mut start, mut row, mut value) = (vec![0], Vec::new(), Vec::new());
+    for unknown in 0..2 * side * side {
+        let (x, y) = (unknown / 2 % side, unknown / 2 / side);
+        row.push(unknown);
+        value.push(16.3 + (unknown as f64).sin());
+        let near = (y..side.min(y + 3))
+            .flat_map(|to_y| (x.saturating_sub(2)..side.min(x + 3)).map(move |to_x| to_y * side + to_x))
+            .flat_map(|node| [2 * node, 2 * node + 1]);
+        for other in near.filter(|other| *other > unknown) {
+            row.push(other);
+            value.push(-0.3 - 0.05 * ((unknown + other) as f64).cos());
+        }
+        start.push(row.len());
+    }
+    SymmetricMatrix::new(start, row, value).unwrap()
 }

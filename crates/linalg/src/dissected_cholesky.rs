@@ -1,0 +1,296 @@
+//! Sparse Cholesky factorisation by fronts (multifrontal, nested dissection).
+//!
+//! With the columns C of the own unknowns of a front and the rows R of those to which they couple
+//!
+//! ```text
+//! F_CC = L_CC L_CCᵀ        L_RC = F_RC L_CC⁻ᵀ        F_RR − L_RC L_RCᵀ  goes to the next front
+//! ```
+//!
+//! so that all work is on dense matrices. Fronts on the two sides of a separator do not know of each other and are made at the same time; what they
+//! leave is added in their order, so results do not depend on threads.
+
+use crate::fronts::Fronts;
+use crate::room::Room;
+use crate::{Error, SelectedInverse, SymmetricMatrix};
+use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
+use faer::linalg::matmul::matmul;
+use faer::linalg::matmul::triangular::{self, BlockStructure};
+use faer::linalg::triangular_solve::{solve_lower_triangular_in_place, solve_upper_triangular_in_place};
+use faer::reborrow::{Reborrow, ReborrowMut};
+use faer::{Accum, Mat, MatMut, Par};
+use std::sync::Arc;
+
+/// Multiplications from which on a product is shared out, and other work, and to how many: the same for any number of threads, so that results
+/// are.
+const SHARED: usize = 100_000_000;
+const DEAR: usize = 1_000_000_000;
+const TASKS: usize = 2;
+
+/// Multiplications below which fronts side by side are one thread's work.
+const SMALL: usize = 2_000_000;
+
+/// Entries from which on several factors at once would take much memory.
+const LARGE: usize = 40_000_000;
+
+/// How a product of so many multiplications is shared out.
+pub(crate) fn shared(work: usize) -> Par {
+    if work >= SHARED { Par::rayon(TASKS) } else { Par::Seq }
+}
+
+/// The same for what shares out worse.
+fn shared_if_dear(work: usize) -> Par {
+    if work >= DEAR { Par::rayon(TASKS) } else { Par::Seq }
+}
+
+/// The order of elimination for a sparsity pattern: reusable for matrices that differ in their values only.
+#[derive(Debug, Clone)]
+pub struct DissectedPattern {
+    fronts: Arc<Fronts>,
+}
+
+impl DissectedPattern {
+    /// Analyses the pattern of a matrix whose unknowns belong, in groups of one size that follow each other, to places in the plane or
+    /// in space and time; those of a place that is `None` are coupled to all. The order is that of nested dissection by planes.
+    ///
+    /// # Errors
+    /// [`Error::Malformed`] if unknowns cannot be shared out evenly.
+    pub fn new(matrix: &SymmetricMatrix, places: &[Option<[f64; 3]>]) -> Result<Self, Error> {
+        let order = matrix.order();
+        if places.is_empty() || !order.is_multiple_of(places.len()) {
+            return Err(Error::Malformed("places and unknowns do not fit together"));
+        }
+        Ok(Self { fronts: Arc::new(Fronts::new(matrix, places, order / places.len())) })
+    }
+
+    /// Whether factors are so large that several at once would take much memory.
+    pub fn is_large(&self) -> bool {
+        self.fronts.entries() >= LARGE
+    }
+
+    /// Factorises a matrix of this pattern.
+    ///
+    /// # Errors
+    /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`].
+    pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<DissectedCholesky, Error> {
+        let mut values = Room::new(self.fronts.entries())?;
+        let job = Job { fronts: &self.fronts, matrix: matrix.values() };
+        job.all(self.fronts.roots(), &mut values)?;
+        Ok(DissectedCholesky { fronts: Arc::clone(&self.fronts), values })
+    }
+}
+
+/// A factorised matrix `P A Pᵀ = L Lᵀ`, P a permutation by nested dissection.
+#[derive(Debug, Clone)]
+pub struct DissectedCholesky {
+    fronts: Arc<Fronts>,
+    /// Columns of L, one front after the other.
+    values: Room,
+}
+
+/// A factorisation at work.
+struct Job<'a> {
+    fronts: &'a Fronts,
+    /// Entries of the matrix.
+    matrix: &'a [f64],
+}
+
+/// What a front leaves to the next: a square matrix by columns, of which the lower triangle counts.
+type Update = Room;
+
+impl Job<'_> {
+    /// Some fronts side by side, with all below, in their part of a factor.
+    fn all(&self, fronts: &[usize], values: &mut [f64]) -> Result<Vec<Update>, Error> {
+        if let [one] = fronts {
+            return Ok(vec![self.one(*one, values)?]);
+        }
+        let (some, others) = fronts.split_at(fronts.len() / 2);
+        if others.is_empty() {
+            return Ok(Vec::new());
+        }
+        let sum = |own: &[usize], of: &dyn Fn(usize) -> usize| own.iter().map(|index| of(*index)).sum();
+        let (here, there) = values.split_at_mut(sum(some, &|index| self.fronts.entries_below(index)));
+        let work = |own: &[usize]| -> usize { sum(own, &|index| self.fronts.work(index)) };
+        let (a, b) = match work(some).min(work(others)) < SMALL {
+            true => (self.all(some, here), self.all(others, there)),
+            false => rayon::join(|| self.all(some, here), || self.all(others, there)),
+        };
+        let mut updates = a?;
+        updates.extend(b?);
+        Ok(updates)
+    }
+
+    /// A front with all below it.
+    fn one(&self, index: usize, values: &mut [f64]) -> Result<Update, Error> {
+        let (own, all) = self.fronts.sizes(index);
+        let (children, coupled) = (self.fronts.children(index), all - own);
+        let (below, columns) = values.split_at_mut(values.len() - own * all);
+        let updates = self.all(children, below)?;
+        columns.fill(0.0);
+        for (from, to) in self.fronts.entering(index) {
+            columns[*to as usize] += self.matrix[*from as usize];
+        }
+        let mut left = Room::new(coupled * coupled)?;
+        if !children.is_empty() {
+            let columns = left.chunks_exact_mut(coupled.max(1)).enumerate();
+            columns.for_each(|(k, column)| column[k..].fill(0.0));
+        }
+        for (child, update) in children.iter().zip(updates) {
+            self.add(*child, &update, (columns, all), (&mut left, own));
+        }
+        let columns = MatMut::from_column_major_slice_mut(columns, all, own);
+        let (mut diagonal, mut further) = columns.split_at_row_mut(own);
+        let tasks = shared_if_dear(own * own * own / 3);
+        let room = cholesky_in_place_scratch::<f64>(own, tasks, Default::default());
+        cholesky_in_place(
+            diagonal.rb_mut(),
+            Default::default(),
+            tasks,
+            MemStack::new(&mut MemBuffer::new(room)),
+            Default::default(),
+        )
+        .map_err(|_| Error::NotPositiveDefinite)?;
+        let tasks = shared_if_dear(own * own * coupled);
+        solve_lower_triangular_in_place(diagonal.rb(), further.rb_mut().transpose_mut(), tasks);
+        triangular::matmul(
+            MatMut::from_column_major_slice_mut(&mut left, coupled, coupled),
+            BlockStructure::TriangularLower,
+            if children.is_empty() { Accum::Replace } else { Accum::Add },
+            further.rb(),
+            BlockStructure::Rectangular,
+            further.rb().transpose(),
+            BlockStructure::Rectangular,
+            -1.0,
+            shared(own * coupled * coupled),
+        );
+        Ok(left)
+    }
+
+    /// Adds what a front leaves to the next one: to its columns, of some height, and to what that leaves behind so many own unknowns.
+    fn add(
+        &self,
+        child: usize,
+        update: &Update,
+        (columns, height): (&mut [f64], usize),
+        (left, own): (&mut [f64], usize),
+    ) {
+        let places = self.fronts.lifted(child);
+        for (j, from) in update.chunks_exact(places.len().max(1)).enumerate() {
+            let (to, offset) = match places[j].checked_sub(own) {
+                None => (&mut columns[places[j] * height..][..height], 0),
+                Some(column) => (&mut left[column * (height - own)..][..height - own], own),
+            };
+            for (value, row) in from[j..].iter().zip(&places[j..]) {
+                to[row - offset] += value;
+            }
+        }
+    }
+}
+
+impl DissectedCholesky {
+    /// Replaces right-hand sides by solutions: one or several vectors of the matrix' order, one after the other.
+    pub fn solve(&self, right_hand_sides: &mut [f64]) {
+        let (fronts, order) = (&*self.fronts, self.fronts.order());
+        let count = right_hand_sides.len() / order.max(1);
+        let places: Vec<usize> = fronts.unknowns().collect();
+        let mut x = Mat::from_fn(order, count, |row, column| right_hand_sides[column * order + places[row]]);
+        for index in 0..fronts.count() {
+            let own = fronts.own(index);
+            let (diagonal, further) = fronts.columns(index, &self.values).split_at_row(own.len());
+            let mut solved = x.as_mut().subrows_mut(own.start, own.len());
+            solve_lower_triangular_in_place(diagonal, solved.rb_mut(), Par::Seq);
+            let mut taken = Mat::<f64>::zeros(further.nrows(), count);
+            matmul(taken.as_mut(), Accum::Replace, further, solved.rb(), 1.0, Par::Seq);
+            for column in 0..count {
+                let (taken, x) = (taken.col_as_slice(column), x.col_as_slice_mut(column));
+                fronts.coupled(index).zip(taken).for_each(|(row, taken)| x[row] -= taken);
+            }
+        }
+        for index in (0..fronts.count()).rev() {
+            let own = fronts.own(index);
+            let (diagonal, further) = fronts.columns(index, &self.values).split_at_row(own.len());
+            let mut known = Mat::<f64>::zeros(further.nrows(), count);
+            for column in 0..count {
+                let (known, x) = (known.col_as_slice_mut(column), x.col_as_slice(column));
+                fronts.coupled(index).zip(known).for_each(|(row, known)| *known = x[row]);
+            }
+            let mut solved = x.as_mut().subrows_mut(own.start, own.len());
+            matmul(solved.rb_mut(), Accum::Add, further.transpose(), known.as_ref(), -1.0, Par::Seq);
+            solve_upper_triangular_in_place(diagonal.transpose(), solved, Par::Seq);
+        }
+        for (column, out) in right_hand_sides.chunks_exact_mut(order.max(1)).enumerate() {
+            x.col_as_slice(column).iter().zip(&places).for_each(|(x, place)| out[*place] = *x);
+        }
+    }
+
+    /// `log det A = 2 Σ log L_ii`: the determinant itself may be far outside the range of `f64`.
+    pub fn log_determinant(&self) -> f64 {
+        let of_front = |index: usize| {
+            let columns = self.fronts.columns(index, &self.values);
+            (0..columns.ncols()).map(|k| columns[(k, k)].ln()).sum::<f64>()
+        };
+        2.0 * (0..self.fronts.count()).map(of_front).sum::<f64>()
+    }
+
+    /// The inverse of the matrix where the factor has entries.
+    ///
+    /// # Errors
+    /// [`Error::OutOfMemory`].
+    pub fn selected_inverse(&self) -> Result<SelectedInverse, Error> {
+        SelectedInverse::new(Arc::clone(&self.fronts), &self.values)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{Cholesky, sample};
+
+    /// Entries of the factor's inverse, all of them, against solutions for unit vectors; solutions and determinant against another order. The
+    /// places of some nodes are not known.
+    #[test]
+    fn factor_and_inverse_are_those_of_another_order() {
+        for side in [1, 3, 14, 40] {
+            let matrix = sample::symmetric(side);
+            let n = matrix.order();
+            let places: Vec<Option<[f64; 3]>> = (0..side * side)
+                .map(|k| (k != 7).then_some([(k % side) as f64, (k / side) as f64, 0.0]))
+                .collect();
+            let pattern = DissectedPattern::new(&matrix, &places).unwrap();
+            let factor = pattern.factor(&matrix).unwrap();
+            let other = Cholesky::new(&matrix).unwrap();
+            let expected = other.log_determinant();
+            assert!((factor.log_determinant() - expected).abs() < 1e-12 * expected.abs().max(1.0));
+            let given: Vec<f64> = (0..3 * n).map(|i| (i as f64).sin()).collect();
+            let [mut x, mut y] = [given.clone(), given];
+            factor.solve(&mut x);
+            other.solve(&mut y);
+            assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-13));
+            let inverse = factor.selected_inverse().unwrap();
+            let mut known = 0;
+            for j in (0..n).step_by(37) {
+                let mut column = vec![0.0; n];
+                column[j] = 1.0;
+                other.solve(&mut column);
+                for (i, exact) in column.iter().enumerate() {
+                    let Some(entry) = inverse.entry(i, j) else { continue };
+                    known += 1;
+                    assert_eq!(inverse.entry(j, i), Some(entry));
+                    assert!((entry - exact).abs() < 1e-13, "{i} {j}: {entry} {exact}");
+                }
+            }
+            assert!(known >= n.min(25) * n / 37, "{known}");
+            let (start, row) = matrix.places();
+            let all = (0..n).flat_map(|j| row[start[j]..start[j + 1]].iter().map(move |i| (*i, j)));
+            assert!(all.clone().all(|(i, j)| inverse.entry(i, j).is_some()));
+        }
+    }
+
+    #[test]
+    fn an_indefinite_matrix_is_refused() {
+        let matrix = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![1.0, 2.0, 1.0]).unwrap();
+        let pattern = DissectedPattern::new(&matrix, &[Some([0.0; 3])]).unwrap();
+        assert_eq!(pattern.factor(&matrix).err(), Some(Error::NotPositiveDefinite));
+        assert!(DissectedPattern::new(&matrix, &[None; 3]).is_err());
+    }
+}
