@@ -29,7 +29,7 @@ const SHORTER: f64 = 0.3;
 const SHORTENINGS: usize = 4;
 
 /// A decrease of −2 log L that is none.
-const NO_GAIN: f64 = 0.01;
+pub(super) const NO_GAIN: f64 = 0.01;
 
 /// Noise levels and memory, as the likelihood is a function of them.
 #[derive(Debug, Clone, Copy)]

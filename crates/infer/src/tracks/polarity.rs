@@ -2,8 +2,8 @@
 
 use super::driven::Drive;
 use super::likely::{
-    LASTING, LESS_LIKELY, Likely, Place, QUANTILE, RATIO, TIMES, alignment_of, of_alignment, of_times,
-    times_of,
+    LASTING, LESS_LIKELY, Likely, NO_GAIN, Place, QUANTILE, RATIO, TIMES, alignment_of, of_alignment,
+    of_times, times_of,
 };
 use super::look::{Look, Seen};
 use super::memory::{Memory, NONE};
@@ -23,7 +23,7 @@ const FURTHER: u32 = 11;
 /// As many at once, until the likeliest is among them.
 const AT_ONCE: usize = 4;
 
-/// Steps towards the likeliest noise levels and memory of cells that do not align.
+/// Steps towards the likeliest noise levels and memory of cells that do not align, at most.
 const ROUNDS_WITHOUT: usize = 5;
 
 /// Step in log (x + c) for a derivative.
@@ -155,7 +155,11 @@ impl Fitted<'_> {
         for _ in 0..ROUNDS_WITHOUT {
             let likely = Seen { objective: without, ..*seen }.likely(look)?;
             look = Some(likely.look);
+            let before = least;
             least = least.min(likely.criterion);
+            if before - least < NO_GAIN {
+                break;
+            }
             without = MovieObjective { levels: likely.levels, memory: Some(likely.memory), ..without };
         }
         let error = QUANTILE * variance.max(0.0).sqrt();

@@ -19,8 +19,12 @@ use voronudge_report::discover_report::{ByModel, CheckReport, CheckedQuantity, S
 use voronudge_report::figure::{Trails, trails};
 use voronudge_report::page::Figure;
 
-/// Below this share a model does not make such cells.
+/// At most this share, and a model does not make such cells; up to the next it is in doubt.
 const REJECTED: f64 = 0.01;
+const DOUBTED: f64 = 0.05;
+
+/// Movies from which on a share can be so small.
+const FEWEST: usize = 99;
 
 /// How many quantities are named in the sentence.
 const NAMED: usize = 3;
@@ -110,7 +114,7 @@ impl Compared {
         let quantities: Vec<CheckedQuantity> =
             found.quantities.iter().map(|own| quantity(own, (prepared, units))).collect();
         let report = CheckReport {
-            words: words(&p, &quantities),
+            words: words(&p, &quantities, found.draws),
             frames: frames[found.first..].to_vec(),
             draws: found.draws,
             p,
@@ -151,29 +155,49 @@ fn quantity(own: &Checked, (prepared, units): (&Prepared, &Units)) -> CheckedQua
 }
 
 /// What the comparison comes to.
-fn words(p: &ByModel<f64>, quantities: &[CheckedQuantity]) -> String {
+fn words(p: &ByModel<f64>, quantities: &[CheckedQuantity], draws: usize) -> String {
     let told = |name: &str, p: f64, of: &dyn Fn(&CheckedQuantity) -> f64| {
-        if p > REJECTED {
-            return format!(
-                "Movies that {name} makes are like the measured one in all that was compared (p {}).",
-                probability(p)
-            );
-        }
-        let mut unusual: Vec<&CheckedQuantity> =
-            quantities.iter().filter(|own| of(own) <= REJECTED).collect();
-        unusual.sort_by(|a, b| of(a).total_cmp(&of(b)));
-        let names: Vec<&str> = unusual.iter().take(NAMED).map(|own| own.words).collect();
-        let more = unusual.len().saturating_sub(NAMED);
-        let others = if more > 0 { format!(" and {more} more") } else { String::new() };
-        let where_ = if names.is_empty() { String::new() } else { format!(": {}{others}", names.join(", ")) };
-        format!("{name} does not make such cells (p {}){where_}.", probability(p))
+        let all: Vec<(&str, f64)> = quantities.iter().map(|own| (own.words, of(own))).collect();
+        capital(&sentence(name, p, draws, &all))
     };
     let base = told("the base model", p.base, &|own| own.simulated.base.p);
     let extended = p.extended.map(|p| {
         told("the model with effects", p, &|own| own.simulated.extended.as_ref().map_or(1.0, |own| own.p))
     });
-    let sentences: Vec<String> = std::iter::once(base).chain(extended).map(|text| capital(&text)).collect();
-    sentences.join(" ")
+    std::iter::once(base).chain(extended).collect::<Vec<_>>().join(" ")
+}
+
+/// Whether a model makes such cells, by its p among so many simulated movies and that of each quantity.
+fn sentence(name: &str, p: f64, draws: usize, all: &[(&str, f64)]) -> String {
+    let p_in_words = probability(p);
+    let below = |level: f64| {
+        let mut unusual: Vec<&(&str, f64)> = all.iter().filter(|(_, own)| *own <= level).collect();
+        unusual.sort_by(|a, b| a.1.total_cmp(&b.1));
+        let names: Vec<&str> = unusual.iter().take(NAMED).map(|(words, _)| *words).collect();
+        match (names.is_empty(), unusual.len().saturating_sub(NAMED)) {
+            (true, _) => String::new(),
+            (false, 0) => format!(": {}", names.join(", ")),
+            (false, more) => format!(": {} and {more} more", names.join(", ")),
+        }
+    };
+    if p <= REJECTED {
+        return format!("{name} does not make such cells (p {p_in_words}){}.", below(REJECTED));
+    }
+    if p > DOUBTED {
+        return format!(
+            "nothing that was compared tells movies of {name} from the measured one (p {p_in_words})."
+        );
+    }
+    let few = match least_p(draws) > REJECTED {
+        true => format!("; {draws} movies are too few to say more, which takes {FEWEST}"),
+        false => String::new(),
+    };
+    format!("whether {name} makes such cells is in doubt (p {p_in_words}{few}){}.", below(DOUBTED))
+}
+
+/// The least p that so many movies can have.
+fn least_p(draws: usize) -> f64 {
+    1.0 / (draws + 1) as f64
 }
 
 fn capital(text: &str) -> String {
@@ -199,4 +223,27 @@ fn ways(found: &Check, (prepared, units): (&Prepared, &Units)) -> Figure {
         trails("ways of the cells", &panels, &units.length),
         "Ways of the cells from the first frame compared to the last, as measured and in one simulated movie of each model; a dot where each ends.",
     )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_sentence_claims_no_more_than_the_movies_tell() {
+        let all =
+            [("speeds", 0.4), ("shapes", 0.01), ("order", 0.02), ("flow", 0.03), ("displacements", 0.05)];
+        let own = |p: f64, draws: usize| sentence("the base model", p, draws, &all);
+        assert_eq!(own(0.01, 199), "the base model does not make such cells (p 0.010): shapes.");
+        assert_eq!(
+            own(0.02, 99),
+            "whether the base model makes such cells is in doubt (p 0.020): shapes, order, flow and 1 more."
+        );
+        assert_eq!(
+            own(0.05, 19),
+            "whether the base model makes such cells is in doubt (p 0.050; 19 movies are too few to say more, which takes 99): shapes, order, flow and 1 more."
+        );
+        assert!(own(0.3, 19).starts_with("nothing that was compared tells"));
+        assert!(least_p(FEWEST) <= REJECTED && least_p(FEWEST - 1) > REJECTED);
+    }
 }

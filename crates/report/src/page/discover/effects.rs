@@ -57,7 +57,8 @@ pub(super) fn coefficient_figure(report: &DiscoverReport) -> Option<Figure> {
     (!rows.is_empty()).then(figure)
 }
 
-fn rows(effect: &SelectedEffect) -> Vec<ParameterRow> {
+/// The coefficients of an effect.
+pub(super) fn rows(effect: &SelectedEffect) -> Vec<ParameterRow> {
     let named = effect.parameters();
     named.iter().map(|(name, parameter)| parameter_row(name, parameter, None, &parameter.words)).collect()
 }

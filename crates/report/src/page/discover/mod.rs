@@ -1,5 +1,6 @@
 //! The page of the command `discover`.
 
+mod answer;
 mod before_after;
 mod candidates;
 mod check;
@@ -9,6 +10,7 @@ mod remainder;
 
 use serde::Serialize;
 
+use self::answer::{Answer, answers};
 use self::before_after::{Comparison, NoiseRow, ParameterComparison, PredictionRow};
 use self::candidates::{CandidateRow, ranking_figure};
 use self::check::CheckView;
@@ -72,6 +74,7 @@ struct Context<'a> {
     meaning: &'static str,
     data: &'static str,
     mean_removed: &'static str,
+    answers: Vec<Answer>,
     is_extended: bool,
     added: String,
     comparison: Comparison,
@@ -122,6 +125,7 @@ impl DiscoverPage<'_> {
             meaning: report.verdict.meaning(),
             data: words::data(report.flow.as_ref()),
             mean_removed: words::mean_removed(report.models.before.nmse.mean_removed),
+            answers: answers(report),
             is_extended: report.is_extended(),
             added: self.added(),
             comparison: Comparison::new(report),
