@@ -7,6 +7,9 @@ use super::super::words::{effect_name, listed, probability, with_error};
 use super::effects::rows;
 use crate::discover_report::{DiscoverReport, ForecastReport, Gain, HeldOutError, SelectedEffect};
 
+/// Coefficients of an effect that are told one by one, at most.
+const MOST: usize = 2;
+
 /// A question and what the search says to it.
 #[derive(Serialize)]
 pub(super) struct Answer {
@@ -36,8 +39,13 @@ fn missing(report: &DiscoverReport) -> Vec<String> {
         return vec![format!("nothing that can be named ({})", report.verdict.name().replace('_', " "))];
     }
     let line = |effect: &SelectedEffect| {
+        let named = effect.parameters().into_iter().zip(rows(effect));
+        let mut values: Vec<String> =
+            named.map(|((name, _), row)| value(&effect.effect, &name, &TableRow::new(&row))).collect();
+        if values.len() > MOST {
+            values = vec![format!("{} coefficients", values.len())];
+        }
         let name = effect_name(&effect.effect);
-        let values: Vec<String> = rows(effect).iter().map(|row| value(&name, &TableRow::new(row))).collect();
         let others = match effect.class.is_empty() {
             true => String::new(),
             false => format!(", or {}", listed(&effect.class, "or")),
@@ -48,8 +56,8 @@ fn missing(report: &DiscoverReport) -> Vec<String> {
 }
 
 /// A coefficient with its interval; that of an effect with one alone needs no name.
-fn value(effect: &str, row: &TableRow) -> String {
-    let symbol = row.symbol.strip_prefix(effect).unwrap_or(&row.symbol).trim();
+fn value(effect: &str, name: &str, row: &TableRow) -> String {
+    let symbol = name.strip_prefix(effect).unwrap_or(name).trim();
     let equals = if symbol.is_empty() { String::new() } else { format!("{symbol} = ") };
     let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
     format!("{equals}{}{unit} (95 %: {})", row.value, row.interval)
@@ -74,8 +82,7 @@ fn sureness(report: &DiscoverReport) -> Vec<String> {
     let largest = report.selected.iter().map(|own| own.p_adjusted).fold(f64::NAN, f64::max);
     if largest.is_finite() {
         lines.push(format!(
-            "chance alone makes the best of {} candidates look as good with p {}",
-            report.ranking.len(),
+            "chance alone makes the best of all candidates look as good with p {}",
             probability(largest)
         ));
     }
