@@ -73,7 +73,8 @@ impl DissectedPattern {
     /// # Errors
     /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`].
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<DissectedCholesky, Error> {
-        let mut values = Room::new(self.fronts.entries())?;
+        let mut values =
+            Room::new(self.fronts.entries()).ok_or(Error::OutOfMemory { order: matrix.order() })?;
         let job = Job { fronts: &self.fronts, matrix: matrix.values() };
         job.all(self.fronts.roots(), &mut values)?;
         Ok(DissectedCholesky { fronts: Arc::clone(&self.fronts), values })
@@ -130,7 +131,8 @@ impl Job<'_> {
         for (from, to) in self.fronts.entering(index) {
             columns[*to as usize] += self.matrix[*from as usize];
         }
-        let mut left = Room::new(coupled * coupled)?;
+        let out_of_memory = Error::OutOfMemory { order: self.fronts.order() };
+        let mut left = Room::new(coupled * coupled).ok_or(out_of_memory)?;
         if !children.is_empty() {
             let columns = left.chunks_exact_mut(coupled.max(1)).enumerate();
             columns.for_each(|(k, column)| column[k..].fill(0.0));

@@ -1,6 +1,5 @@
 //! Memory for matrices that come and go: a page that is new to a process costs more than what is done with it.
 
-use crate::Error;
 use std::ops::{Deref, DerefMut};
 use std::sync::{Mutex, PoisonError};
 
@@ -14,39 +13,36 @@ const SPARES: usize = 64;
 const SMALL: usize = 16_000;
 
 /// Some numbers, of no particular value at first.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Room {
     values: Vec<f64>,
 }
 
 impl Room {
-    /// # Errors
-    /// [`Error::OutOfMemory`].
-    pub fn new(count: usize) -> Result<Self, Error> {
+    /// `None` if there is no memory for so many.
+    pub fn new(count: usize) -> Option<Self> {
         let mut values = spare(count);
         if values.len() < count {
-            values
-                .try_reserve_exact(count - values.len())
-                .map_err(|_| Error::OutOfMemory { order: count })?;
+            values.try_reserve_exact(count - values.len()).ok()?;
             values.resize(count, 0.0);
         }
         values.truncate(count);
-        Ok(Self { values })
+        Some(Self { values })
     }
 }
 
-/// The smallest spare piece that is large enough.
+/// The smallest spare piece that is large enough, or the largest that is not, to grow: so there are never more than were in use at once. One of quite
+/// another size is for something else.
 fn spare(count: usize) -> Vec<f64> {
     if count < SMALL {
         return Vec::new();
     }
     let mut spares = SPARE.lock().unwrap_or_else(PoisonError::into_inner);
-    let first = spares.partition_point(|own| own.capacity() < count);
-    // One that is far too large is for something else.
-    match spares.get(first).is_some_and(|own| own.capacity() <= 2 * count) {
-        true => spares.remove(first),
-        false => Vec::new(),
-    }
+    let larger = spares.partition_point(|own| own.capacity() < count);
+    let is_alike =
+        |at: &usize| spares.get(*at).is_some_and(|own| (count / 2..=2 * count).contains(&own.capacity()));
+    let found = Some(larger).filter(is_alike).or(larger.checked_sub(1).filter(is_alike));
+    found.map_or_else(Vec::new, |at| spares.remove(at))
 }
 
 impl Deref for Room {
@@ -60,12 +56,6 @@ impl Deref for Room {
 impl DerefMut for Room {
     fn deref_mut(&mut self) -> &mut [f64] {
         &mut self.values
-    }
-}
-
-impl Clone for Room {
-    fn clone(&self) -> Self {
-        Self { values: self.values.clone() }
     }
 }
 

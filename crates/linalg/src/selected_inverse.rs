@@ -28,7 +28,8 @@ pub struct SelectedInverse {
 
 impl SelectedInverse {
     pub(crate) fn new(fronts: Arc<Fronts>, factor: &[f64]) -> Result<Self, Error> {
-        let mut values = Room::new(fronts.entries())?;
+        let out_of_memory = Error::OutOfMemory { order: fronts.order() };
+        let mut values = Room::new(fronts.entries()).ok_or(out_of_memory)?;
         Job { fronts: &fronts, factor }.all(fronts.roots(), &Mat::new(), &mut values);
         Ok(Self { fronts, values })
     }

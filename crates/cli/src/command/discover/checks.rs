@@ -188,16 +188,11 @@ fn sentence(name: &str, p: f64, draws: usize, all: &[(&str, f64)]) -> String {
             "nothing that was compared tells movies of {name} from the measured one (p {p_in_words})."
         );
     }
-    let few = match least_p(draws) > REJECTED {
+    let few = match draws < FEWEST {
         true => format!("; {draws} movies are too few to say more, which takes {FEWEST}"),
         false => String::new(),
     };
     format!("whether {name} makes such cells is in doubt (p {p_in_words}{few}){}.", below(DOUBTED))
-}
-
-/// The least p that so many movies can have.
-fn least_p(draws: usize) -> f64 {
-    1.0 / (draws + 1) as f64
 }
 
 fn capital(text: &str) -> String {
@@ -244,6 +239,7 @@ mod tests {
             "whether the base model makes such cells is in doubt (p 0.050; 19 movies are too few to say more, which takes 99): shapes, order, flow and 1 more."
         );
         assert!(own(0.3, 19).starts_with("nothing that was compared tells"));
+        let least_p = |draws: usize| 1.0 / (draws + 1) as f64;
         assert!(least_p(FEWEST) <= REJECTED && least_p(FEWEST - 1) > REJECTED);
     }
 }

@@ -23,7 +23,6 @@ pub(super) fn answers(report: &DiscoverReport) -> Vec<Answer> {
         Answer { question: "What is missing", lines: missing(report) },
         Answer { question: "How sure that is", lines: sureness(report) },
     ];
-    // Of a single snapshot, or of cells without names, there is nothing to forecast.
     if let Some(forecast) = &report.forecast {
         all.push(Answer { question: "What it does to forecasts", lines: forecasts(forecast) });
     }
@@ -39,9 +38,9 @@ fn missing(report: &DiscoverReport) -> Vec<String> {
         return vec![format!("nothing that can be named ({})", report.verdict.name().replace('_', " "))];
     }
     let line = |effect: &SelectedEffect| {
-        let named = effect.parameters().into_iter().zip(rows(effect));
+        let named = effect.coefficients.iter().zip(rows(effect));
         let mut values: Vec<String> =
-            named.map(|((name, _), row)| value(&effect.effect, &name, &TableRow::new(&row))).collect();
+            named.map(|(own, row)| value(&own.name, &TableRow::new(&row))).collect();
         if values.len() > MOST {
             values = vec![format!("{} coefficients", values.len())];
         }
@@ -56,9 +55,8 @@ fn missing(report: &DiscoverReport) -> Vec<String> {
 }
 
 /// A coefficient with its interval; that of an effect with one alone needs no name.
-fn value(effect: &str, name: &str, row: &TableRow) -> String {
-    let symbol = name.strip_prefix(effect).unwrap_or(name).trim();
-    let equals = if symbol.is_empty() { String::new() } else { format!("{symbol} = ") };
+fn value(name: &str, row: &TableRow) -> String {
+    let equals = if name.is_empty() { String::new() } else { format!("{name} = ") };
     let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
     format!("{equals}{}{unit} (95 %: {})", row.value, row.interval)
 }
