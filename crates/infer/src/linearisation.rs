@@ -13,6 +13,10 @@
 //! Coordinates without a measured position (of cells that were not seen) have no row in H. They are unknowns of no
 //! distribution, as coefficients are, but for a stiffness that keeps them near where they were put.
 
+mod solved;
+
+pub(crate) use solved::Weighting;
+
 use crate::Error;
 use crate::gram::{Chosen, of_all};
 use crate::rows::{Group, Rows};
@@ -147,6 +151,11 @@ impl Linearisation {
         self.order() + 2 * self.left_out
     }
 
+    /// Number of measured coordinates.
+    pub fn measured_components(&self) -> f64 {
+        self.positions.components as f64
+    }
+
     /// The trace of JᵀJ.
     pub fn trace(&self) -> f64 {
         self.velocities.normal.diagonal().sum()
@@ -253,6 +262,16 @@ impl Linearisation {
 
     /// The same with the unknowns held otherwise.
     pub fn whiten_held(&self, spring: f64, held: &Held) -> Result<Whitened, Error> {
+        Ok(self.eliminate_data(spring, held)?.2)
+    }
+
+    /// The same with the factor of A = JᵀJ + kHᵀH and what stiffness there is beside, and `A⁻¹(JᵀX + kHᵀZ)` (n × p, by columns), then A⁻¹ times what
+    /// data add.
+    fn eliminate_data(
+        &self,
+        spring: f64,
+        held: &Held,
+    ) -> Result<(DissectedCholesky, Vec<f64>, Whitened), Error> {
         let factor = self.damped(spring, &[], held)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mixed = self.sum(spring, held, |group| &group.mixed);
@@ -264,13 +283,14 @@ impl Linearisation {
             free += &group.free_normal * weight;
             data += &group.free_data * weight;
         }
-        Ok(Whitened {
+        let whitened = Whitened {
             free: DMatrix::from_fn(p, p, |a, b| free[(a, b)] - dot(a, b)),
             mixed: DVector::from_fn(p, |a, _| data[a] - dot(a, p)),
             data: self.groups(spring, held).map(|(group, weight)| weight * group.data).sum::<f64>()
                 - dot(p, p),
-            log_determinant: factor.log_determinant() - self.positions.components as f64 * spring.ln(),
-        })
+            log_determinant: factor.log_determinant() - self.measured_components() * spring.ln(),
+        };
+        Ok((factor, solved, whitened))
     }
 
     /// Directions of the nudges that the data determine, `df = n − k tr (JᵀJ + kHᵀH)⁻¹HᵀH`, which is n less the derivative of

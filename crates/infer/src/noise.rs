@@ -197,7 +197,7 @@ impl Restricted<'_> {
     }
 
     /// n − p.
-    fn left(&self) -> f64 {
+    pub fn left(&self) -> f64 {
         (self.components - self.equations.dimension() as f64).max(1.0)
     }
 
@@ -208,11 +208,15 @@ impl Restricted<'_> {
 
     /// The same with the σ_v² that belongs to k.
     pub fn likelihood(&self, log_k: f64) -> Result<Likelihood, Error> {
-        let leftover = self.leftover(log_k)?;
+        Ok(self.of(log_k, self.leftover(log_k)?))
+    }
+
+    /// The same of what the best coefficients leave there.
+    pub fn of(&self, log_k: f64, leftover: Leftover) -> Likelihood {
         let left = self.left();
         let variance = self.known.variance(log_k).unwrap_or(leftover.misfit / left);
         let criterion = left * variance.ln() + leftover.log_determinant + leftover.misfit / variance;
-        Ok(Likelihood { criterion, variance })
+        Likelihood { criterion, variance }
     }
 
     fn leftover(&self, log_k: f64) -> Result<Leftover, Error> {

@@ -192,36 +192,61 @@ impl Job<'_> {
 impl DissectedCholesky {
     /// Replaces right-hand sides by solutions: one or several vectors of the matrix' order, one after the other.
     pub fn solve(&self, right_hand_sides: &mut [f64]) {
-        let (fronts, order) = (&*self.fronts, self.fronts.order());
-        let count = right_hand_sides.len() / order.max(1);
-        let places: Vec<usize> = fronts.unknowns().collect();
-        let mut x = Mat::from_fn(order, count, |row, column| right_hand_sides[column * order + places[row]]);
+        self.with_permuted(right_hand_sides, |x| {
+            self.eliminate(x);
+            self.substitute_back(x);
+        });
+    }
+
+    /// Replaces independent random numbers of unit variance by such of the covariance A⁻¹, `Pᵀ L⁻ᵀ z`: one or several vectors of the matrix'
+    /// order, one after the other.
+    pub fn draw(&self, independent: &mut [f64]) {
+        self.with_permuted(independent, |x| self.substitute_back(x));
+    }
+
+    /// Changes vectors whose entries are in the order of elimination, a column each.
+    fn with_permuted(&self, vectors: &mut [f64], change: impl FnOnce(&mut Mat<f64>)) {
+        let order = self.fronts.order();
+        let count = vectors.len() / order.max(1);
+        let places: Vec<usize> = self.fronts.unknowns().collect();
+        let mut x = Mat::from_fn(order, count, |row, column| vectors[column * order + places[row]]);
+        change(&mut x);
+        for (column, out) in vectors.chunks_exact_mut(order.max(1)).enumerate() {
+            x.col_as_slice(column).iter().zip(&places).for_each(|(x, place)| out[*place] = *x);
+        }
+    }
+
+    /// L⁻¹x
+    fn eliminate(&self, x: &mut Mat<f64>) {
+        let fronts = &*self.fronts;
         for index in 0..fronts.count() {
             let own = fronts.own(index);
             let (diagonal, further) = fronts.columns(index, &self.values).split_at_row(own.len());
             let mut solved = x.as_mut().subrows_mut(own.start, own.len());
             solve_lower_triangular_in_place(diagonal, solved.rb_mut(), Par::Seq);
-            let mut taken = Mat::<f64>::zeros(further.nrows(), count);
+            let mut taken = Mat::<f64>::zeros(further.nrows(), solved.ncols());
             matmul(taken.as_mut(), Accum::Replace, further, solved.rb(), 1.0, Par::Seq);
-            for column in 0..count {
+            for column in 0..x.ncols() {
                 let (taken, x) = (taken.col_as_slice(column), x.col_as_slice_mut(column));
                 fronts.coupled(index).zip(taken).for_each(|(row, taken)| x[row] -= taken);
             }
         }
+    }
+
+    /// L⁻ᵀx
+    fn substitute_back(&self, x: &mut Mat<f64>) {
+        let fronts = &*self.fronts;
         for index in (0..fronts.count()).rev() {
             let own = fronts.own(index);
             let (diagonal, further) = fronts.columns(index, &self.values).split_at_row(own.len());
-            let mut known = Mat::<f64>::zeros(further.nrows(), count);
-            for column in 0..count {
+            let mut known = Mat::<f64>::zeros(further.nrows(), x.ncols());
+            for column in 0..x.ncols() {
                 let (known, x) = (known.col_as_slice_mut(column), x.col_as_slice(column));
                 fronts.coupled(index).zip(known).for_each(|(row, known)| *known = x[row]);
             }
             let mut solved = x.as_mut().subrows_mut(own.start, own.len());
             matmul(solved.rb_mut(), Accum::Add, further.transpose(), known.as_ref(), -1.0, Par::Seq);
             solve_upper_triangular_in_place(diagonal.transpose(), solved, Par::Seq);
-        }
-        for (column, out) in right_hand_sides.chunks_exact_mut(order.max(1)).enumerate() {
-            x.col_as_slice(column).iter().zip(&places).for_each(|(x, place)| out[*place] = *x);
         }
     }
 
@@ -268,6 +293,12 @@ mod tests {
             factor.solve(&mut x);
             other.solve(&mut y);
             assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-13));
+            let mut drawn: Vec<f64> = (0..n).map(|i| (2.0 * i as f64).cos()).collect();
+            let independent: f64 = drawn.iter().map(|z| z * z).sum();
+            factor.draw(&mut drawn);
+            let twice = |i: usize, j: usize| if i == j { 1.0 } else { 2.0 };
+            let form: f64 = matrix.entries().map(|(i, j, a)| twice(i, j) * a * drawn[i] * drawn[j]).sum();
+            assert!((form - independent).abs() < 1e-11 * independent);
             let inverse = factor.selected_inverse().unwrap();
             let mut known = 0;
             for j in (0..n).step_by(37) {

@@ -80,6 +80,15 @@ impl SymmetricMatrix {
         self.places.column_start[..self.order()].iter().map(|&start| self.value[start])
     }
 
+    /// The entries of the lower triangle that are not zero: row, column and value.
+    pub fn entries(&self) -> impl Iterator<Item = (usize, usize, f64)> {
+        let columns = self.places.column_start.windows(2).enumerate();
+        let places = columns.flat_map(|(column, range)| (range[0]..range[1]).map(move |at| (at, column)));
+        places
+            .map(|(at, column)| (self.places.row[at], column, self.value[at]))
+            .filter(|entry| entry.2 != 0.0)
+    }
+
     /// Adds `shift` to every diagonal entry.
     pub fn shift_diagonal(&mut self, shift: f64) {
         self.add_to_diagonal(std::iter::repeat(shift));

@@ -85,7 +85,6 @@ impl<'a, 'w> Begun<'a, 'w> {
             _ => memory,
         });
         let mut course = Course::new(movie, request, space, watch, (rule, levels, memory));
-        course.look = earlier.look.filter(|_| earlier.states.polarities.align() == states.polarities.align());
         let naive = naive_coefficients(&course.objective(&states))?;
         states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
         let at = course.approach(&states, at)?;

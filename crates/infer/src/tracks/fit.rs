@@ -2,8 +2,7 @@
 
 use super::begun::Begun;
 use super::integrated::Integrated;
-use super::likely::held;
-use super::look::{Look, Seen};
+use super::look::{Seen, Way};
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -44,9 +43,10 @@ const ACCEPTED_EXCESS: f64 = 2.5;
 /// How often what integrating over the unknowns adds is found: where the first has led it is another.
 const INTEGRATIONS: usize = 2;
 
-/// Relative decrease of the objective that counts as none: at the end, and on the way.
+/// Relative decrease of the objective that counts as none: at the end, on the way, and until it is known whether noise levels are too low.
 const TOLERANCE: f64 = 5e-5;
 const TOLERANCE_ON_THE_WAY: f64 = 2e-4;
+const TOLERANCE_AT_LEVELS: f64 = 1e-3;
 
 /// Spacing of log k at which the likelihood is looked at.
 const SPACING: f64 = 1.0;
@@ -58,8 +58,6 @@ pub(super) struct Fit {
     pub parameters: Vec<f64>,
     pub levels: NoiseLevels,
     pub memory: Option<Memory>,
-    /// How the likelihood of levels and memory bends there.
-    pub look: Option<Look>,
     pub naive: Vec<f64>,
     pub value: f64,
     pub status: Status,
@@ -83,8 +81,6 @@ pub(super) struct Course<'a, 'w> {
     pub(super) rule: Rule,
     levels: NoiseLevels,
     pub(super) memory: Option<Memory>,
-    /// What was seen of the likelihood of levels and memory at the end of a settled fit.
-    pub(super) look: Option<Look>,
     value: f64,
     status: Status,
     steps: u64,
@@ -107,8 +103,8 @@ pub(super) fn fit(
     states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
     let at = course.integrate(&mut states, at)?;
     let (at, error) = course.finish(&states, at)?;
-    let Course { rule, levels, memory, look, value, status, steps, trace, .. } = course;
-    Ok(Fit { states, rule, parameters: at, levels, memory, look, naive, value, status, steps, trace, error })
+    let Course { rule, levels, memory, value, status, steps, trace, .. } = course;
+    Ok(Fit { states, rule, parameters: at, levels, memory, naive, value, status, steps, trace, error })
 }
 
 impl<'a, 'w> Course<'a, 'w> {
@@ -120,7 +116,7 @@ impl<'a, 'w> Course<'a, 'w> {
         (rule, levels, memory): (Rule, NoiseLevels, Option<Memory>),
     ) -> Self {
         let (value, status, steps, trace) = (f64::INFINITY, Status::StepLimit, 0, Vec::new());
-        Self { movie, request, space, watch, rule, levels, memory, look: None, value, status, steps, trace }
+        Self { movie, request, space, watch, rule, levels, memory, value, status, steps, trace }
     }
 }
 
@@ -154,8 +150,6 @@ impl<'a> Course<'a, '_> {
     fn settled(&mut self, states: &States, at: Vec<f64>, how: Settling) -> Result<Start, Error> {
         let mut start = (at, None);
         let mut last = None;
-        let held = held(&self.request.noise, states.polarities.align());
-        let mut look = self.look.filter(|_| how.resumes).and_then(|own| own.of_another(held));
         for round in 0..how.rounds {
             let optimum =
                 self.optimise(states, start, how.steps, TOLERANCE_ON_THE_WAY, (round, how.rounds))?;
@@ -170,8 +164,8 @@ impl<'a> Course<'a, '_> {
                     let placed = objective.place(&parameters)?;
                     let components = objective.explained_components(&placed, &parameters);
                     let known = self.request.noise;
-                    let likely = Seen { objective, equations: &equations, components, known }.likely(look)?;
-                    look = Some(likely.look);
+                    let seen = Seen { objective, equations: &equations, components, known };
+                    let likely = seen.likely(Way::Draws(how.draws))?;
                     let free = objective.free_share(&placed, &parameters, likely.memory.speed);
                     // What is expected depends on how free it is: the mean of both does not swing.
                     let free = (free * likely.memory.free).sqrt();
@@ -190,7 +184,6 @@ impl<'a> Course<'a, '_> {
                 break;
             }
         }
-        self.look = look.filter(|_| how.resumes);
         Ok(start)
     }
 
@@ -226,12 +219,14 @@ impl<'a> Course<'a, '_> {
             Method::Search { max_steps, .. } | Method::Descent { max_steps, .. } => max_steps,
         };
         for _ in 0..LOOSENINGS {
-            let optimum = self.optimise(states, start, most, TOLERANCE, (1, 1))?;
+            // How much is left shows long before the end.
+            let optimum = self.optimise(states, start, most, TOLERANCE_AT_LEVELS, (1, 1))?;
             let expected = self.objective(states).expected();
             let variance = self.levels.velocity.powi(2);
             let above = deviation(optimum.value / variance, expected / variance);
             if above < ACCEPTED_EXCESS || self.request.noise.velocity.is_some() {
-                return Ok((optimum.parameters, error));
+                start = (optimum.parameters, optimum.equations);
+                break;
             }
             self.levels.velocity *= optimum.value / expected;
             let equations = optimum.equations.map(|equations| self.renewed(states, equations));

@@ -164,10 +164,9 @@ pub(crate) fn follow(
         total,
     };
     let seen = Seen { objective, equations: &equations, components, known: request.noise };
-    let (polarity, look) = seen.polarity(displacements)?.unzip();
-    tracked.polarity = polarity;
+    tracked.polarity = seen.polarity(displacements)?;
     let held_out = held_out.map(|held_out| held_out.folds);
-    Ok((inference, Followed { tracked, held_out, fit: Fit { look, ..found } }))
+    Ok((inference, Followed { tracked, held_out, fit: found }))
 }
 
 /// Half the squared distances of the cells from where they were seen, of those whose motion is explained, in units of the usual one in

@@ -1,8 +1,8 @@
 //! Which noise levels and which memory of the polarities are likely, and how well they are known.
 
-use super::look::{Look, Seen};
+use super::look::{Look, Seen, Way};
 use super::memory::Memory;
-use super::surface::{Matrix, Point};
+use super::surface::{CLOSE, Matrix, Point};
 use crate::noise::{LARGEST_POSITION_NOISE, Likelihood, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
 use crate::{Error, KnownNoise, NoiseLevels, NoiseSource};
 
@@ -43,6 +43,9 @@ pub(super) struct Place {
     pub alignment: f64,
 }
 
+/// One so small that it needs no proof: a step well within a standard error.
+const SMALL_GAIN: f64 = 0.3;
+
 /// The surroundings of levels and memory, in units of the spacings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Spaced {
@@ -58,13 +61,14 @@ impl Spaced {
             log_k,
             within(of_times(memory.times), TIMES.map(of_times), SPACINGS[1]),
             within(ratio, RATIO, SPACINGS[2]),
-            within(of_alignment(memory.alignment), ALIGNMENT.map(of_alignment), 0.0),
+            within(of_alignment(memory.alignment), ALIGNMENT.map(of_alignment), CLOSE * SPACINGS[3]),
         ];
         Self { centre, align }
     }
 
-    pub fn centre(&self) -> Point {
-        Point::from_fn(|k, _| self.centre[k] / SPACINGS[k])
+    /// The derivative of log k by the unknowns.
+    pub fn of_log_k() -> Point {
+        Point::new(SPACINGS[0], 0.0, 0.0, 0.0)
     }
 
     /// So far from there.
@@ -90,8 +94,6 @@ pub(super) struct Likely {
     pub covariance: Matrix,
     /// Derivatives of log σ_v² by these, and its variance at given ones.
     pub of_variance: (Point, f64),
-    /// For the next round.
-    pub look: Look,
 }
 
 /// Which of the unknowns are not to be found.
@@ -110,19 +112,24 @@ impl Seen<'_> {
         }
     }
 
+    /// The surroundings of the present levels and some memory.
+    pub fn about(&self, memory: Memory) -> Spaced {
+        let Place { log_k, ratio, .. } = self.place(memory);
+        Spaced::about(log_k, ratio.ln(), memory, self.objective.states.polarities.align())
+    }
+
     /// Whether both noise levels were given.
     pub fn is_given(&self) -> bool {
         self.known.source() == NoiseSource::Given
     }
 
     /// Noise levels and memory of greatest restricted likelihood near the present ones: one step of Newton's method.
-    pub fn likely(&self, earlier: Option<Look>) -> Result<Likely, Error> {
+    pub fn likely(&self, way: Way) -> Result<Likely, Error> {
         let known = self.known;
         let memory = self.objective.memory.unwrap_or(Memory::FIRST);
         let align = self.objective.states.polarities.align();
-        let present = self.place(memory);
-        let spaced = Spaced::about(present.log_k, present.ratio.ln(), memory, align);
-        let look = self.look(&spaced, earlier)?;
+        let spaced = self.about(memory);
+        let look = self.look(&spaced, way)?;
         let held = held(&known, align);
         let step = look.criterion.newton(held);
         let (step, Likelihood { criterion, variance }) = self.stepped(&spaced, &look, step)?;
@@ -134,7 +141,7 @@ impl Seen<'_> {
         let scales = Matrix::from_diagonal(&Point::from(SPACINGS));
         let slope = match known.velocity {
             Some(_) => Point::zeros(),
-            None => Point::from_fn(|k, _| look.log_variance.slope[k] / SPACINGS[k]),
+            None => Point::from_fn(|k, _| look.log_variance[k] / SPACINGS[k]),
         };
         Ok(Likely {
             levels: NoiseLevels { position, velocity },
@@ -142,15 +149,20 @@ impl Seen<'_> {
             criterion,
             covariance: scales * look.criterion.covariance(held) * scales,
             of_variance: (slope, 2.0 / self.components),
-            look,
         })
     }
 
     /// A step, made shorter as long as it leads to less likely levels, with the likelihood at its end; none where it would hardly
     /// lead to likelier ones.
     fn stepped(&self, spaced: &Spaced, look: &Look, mut step: Point) -> Result<(Point, Likelihood), Error> {
-        if -0.5 * look.criterion.slope.dot(&step) < NO_GAIN {
+        let gain = -0.5 * look.criterion.slope.dot(&step);
+        if gain < NO_GAIN {
             return Ok((Point::zeros(), look.here));
+        }
+        if gain < SMALL_GAIN {
+            let log_variance = look.here.variance.ln() + look.log_variance.dot(&step);
+            let there = Likelihood { criterion: look.here.criterion - gain, variance: log_variance.exp() };
+            return Ok((step, there));
         }
         let mut reached = self.likelihood(spaced.at(step))?;
         for shorter in 1..=SHORTENINGS {

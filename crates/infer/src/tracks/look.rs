@@ -1,12 +1,19 @@
-//! The likelihood of noise levels and memory about a point, from factors at points around it.
+//! The likelihood of noise levels and memory about a point: from factors at points around it, or from one factor and draws.
 
 use super::likely::{Place, Spaced};
 use super::memory::Memory;
 use super::objective::MovieObjective;
-use super::surface::{CLOSE, ENOUGH, POINTS, Point, Surface};
+use super::surface::{CLOSE, Matrix, PAIRS_OF_SIDES, POINTS, Point, Surface};
+use crate::linearisation::{Held, Weighting};
 use crate::noise::{Likelihood, Restricted};
 use crate::normal_equations::NormalEquations;
 use crate::{Error, KnownNoise};
+use nalgebra::DMatrix;
+use rayon::prelude::*;
+
+/// Draws for traces of products, which need four solutions each, at least; and unknowns in all of them: sums over many scatter less.
+const FEWEST_FOR_PRODUCTS: usize = 3;
+const FOR_PRODUCTS: usize = 50_000;
 
 /// A linearised problem and what is known of its noise.
 #[derive(Clone, Copy)]
@@ -17,49 +24,39 @@ pub(super) struct Seen<'a> {
     pub known: KnownNoise,
 }
 
+/// How a likelihood is looked at.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Way {
+    /// At points a spacing away: for intervals, which are as wide.
+    Points,
+    /// By its derivatives, of which traces are found from so many draws of the unknowns: they err by standard errors over the root of that number.
+    Draws(usize),
+}
+
 /// What was seen about a point, in units of the spacings.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Look {
-    /// The point; none if it is of another linearised problem.
-    at: Option<Point>,
     /// The likelihood there.
     pub here: Likelihood,
     /// −2 log L
     pub criterion: Surface,
-    /// log σ_v²
-    pub log_variance: Surface,
-}
-
-impl Look {
-    /// For another fit of the same cells: how the likelihood bends, and nothing of where it was seen. `None` if all that is not held is not
-    /// so well known that the likelihood is that of a normal distribution.
-    pub fn of_another(self, held: [bool; 4]) -> Option<Self> {
-        self.criterion.is_sharp(held).then_some(Self { at: None, ..self })
-    }
+    /// The slope of log σ_v².
+    pub log_variance: Point,
 }
 
 impl Seen<'_> {
-    /// About a point: with second derivatives as they were if something was seen earlier.
-    pub fn look(&self, spaced: &Spaced, earlier: Option<Look>) -> Result<Look, Error> {
-        let points: Vec<Point> = match earlier {
-            None => POINTS.iter().map(|point| (*point).into()).collect(),
-            Some(_) => POINTS[..ENOUGH].iter().map(|point| Point::from(*point) * CLOSE).collect(),
-        };
-        let values = self.at_points(spaced, &points)?;
-        let criteria: Vec<f64> = values.iter().map(|own| own.criterion).collect();
-        let variances: Vec<f64> = values.iter().map(|own| own.variance.ln()).collect();
-        let at = spaced.centre();
-        let (criterion, log_variance) = match earlier {
-            None => (Surface::new(&criteria), Surface::new(&variances)),
-            Some(earlier) => (
-                match (Surface::again(&criteria, earlier.criterion.bend), earlier.at) {
-                    (own, Some(before)) => own.updated(&earlier.criterion, at - before),
-                    (own, None) => own,
-                },
-                Surface::again(&variances, earlier.log_variance.bend),
-            ),
-        };
-        Ok(Look { at: Some(at), here: values[0], criterion, log_variance })
+    /// About a point.
+    pub fn look(&self, spaced: &Spaced, way: Way) -> Result<Look, Error> {
+        match way {
+            Way::Draws(count) => self.derivatives(spaced, count),
+            Way::Points => {
+                let values = self.at_points(spaced, &POINTS.map(Point::from))?;
+                let criteria: Vec<f64> = values.iter().map(|own| own.criterion).collect();
+                let variances: Vec<f64> = values.iter().map(|own| own.variance.ln()).collect();
+                let log_variance = Surface::new(&variances).slope;
+                Ok(Look { here: values[0], criterion: Surface::new(&criteria), log_variance })
+            }
+        }
     }
 
     /// At some points; those that differ in an alignment alone that is none are one.
@@ -74,15 +71,148 @@ impl Seen<'_> {
         Ok(points.iter().map(|point| found[needed.binary_search(&first(point)).unwrap_or(0)]).collect())
     }
 
+    /// By derivatives, from one factor.
+    fn derivatives(&self, spaced: &Spaced, count: usize) -> Result<Look, Error> {
+        let [frame] = &self.equations.frames[..] else { return Err(Error::Degenerate) };
+        let points: Vec<(Weighting, f64)> = POINTS
+            .par_iter()
+            .map(|point| self.weighting(spaced.at(Point::from(*point) * CLOSE)))
+            .collect::<Result<_, _>>()?;
+        let about = |of: &dyn Fn(&Weighting, f64) -> f64| {
+            let values: Vec<f64> = points.iter().map(|(own, determinant)| of(own, *determinant)).collect();
+            Surface::new(&values).seen_from(CLOSE)
+        };
+        let directions = PAIRS_OF_SIDES
+            .map(|[above, below]| Weighting::slope(&points[below].0, &points[above].0, 2.0 * CLOSE));
+        let (solved, measured) = (frame.solved(&points[0].0)?, frame.measured_components());
+        let for_products = (FOR_PRODUCTS / frame.order().max(1)).max(FEWEST_FOR_PRODUCTS);
+        let draws = solved.draws(count.max(for_products));
+        let (rests, trace) = (solved.rests(), solved.trace(&draws));
+        let mut misfit = about(&|own, _| rests.of(own));
+        misfit.bend -= from_dense(&solved.responses(&directions)) * 2.0;
+        let mut criterion =
+            about(&|own, determinant| trace.of(own) - determinant - measured * own.spring.ln());
+        let some = &draws[..for_products * frame.order()];
+        criterion.bend -= from_dense(&solved.products(&directions, some));
+        let log_k = spaced.at(Point::zeros()).log_k;
+        let here = self.restricted(None).of(log_k, solved.leftover);
+        let (of_misfit, log_variance) = self.of_misfit(here.variance, solved.leftover.misfit, &misfit);
+        Ok(Look {
+            here: Likelihood { criterion: here.criterion - points[0].1, ..here },
+            criterion: criterion.plus(&of_misfit),
+            log_variance,
+        })
+    }
+
+    /// What a misfit m adds to −2 log L, `n log σ_v² + m/σ_v²`, and the slope of log σ_v², if that variance belongs to it.
+    fn of_misfit(&self, variance: f64, m: f64, misfit: &Surface) -> (Surface, Point) {
+        let left = self.restricted(None).left();
+        let Surface { slope, bend } = *misfit;
+        let log_variance = match (self.known.velocity, self.known.position) {
+            (Some(_), _) => Point::zeros(),
+            (None, Some(_)) => Spaced::of_log_k(),
+            (None, None) => slope / m,
+        };
+        let g = log_variance;
+        let of_variance = match self.known.variance(0.0) {
+            Some(_) => Matrix::zeros(),
+            None => bend / m - g * g.transpose(),
+        };
+        let surface = Surface {
+            slope: g * left + (slope - g * m) / variance,
+            bend: of_variance * left
+                + (bend - slope * g.transpose() - g * slope.transpose() + g * g.transpose() * m
+                    - of_variance * m)
+                    / variance,
+        };
+        (surface, log_variance)
+    }
+
     /// The likelihood at some levels and memory.
-    pub fn likelihood(&self, Place { log_k, times, ratio, alignment }: Place) -> Result<Likelihood, Error> {
-        let Self { objective, equations, components, known } = *self;
+    pub fn likelihood(&self, place: Place) -> Result<Likelihood, Error> {
+        let (Weighting { held, .. }, determinant) = self.weighting(place)?;
+        let own = self.restricted(Some(&held)).likelihood(place.log_k)?;
+        Ok(Likelihood { criterion: own.criterion - determinant, ..own })
+    }
+
+    fn restricted<'a>(&'a self, held: Option<&'a Held>) -> Restricted<'a> {
+        let Self { equations, components, known, .. } = *self;
+        Restricted { equations, components, known, held }
+    }
+
+    /// How data and unknowns are weighted at some levels and memory, and −log det of the covariance of the polarities.
+    fn weighting(&self, Place { log_k, times, ratio, alignment }: Place) -> Result<(Weighting, f64), Error> {
+        let objective = self.objective;
         let speed = objective.levels.velocity / ratio.sqrt();
         let memory = Memory { times, speed, alignment, ..objective.memory.unwrap_or(Memory::FIRST) };
         let held = MovieObjective { memory: Some(memory), ..objective }.held();
-        let own = Restricted { equations, components, known, held: Some(&held) }.likelihood(log_k)?;
         let of_lengths = ratio / objective.movie.interval().powi(2);
         let determinant = objective.states.polarities.log_determinant(memory, of_lengths)?;
-        Ok(Likelihood { criterion: own.criterion - determinant, ..own })
+        Ok((Weighting { spring: log_k.exp(), held }, determinant))
+    }
+}
+
+fn from_dense(matrix: &DMatrix<f64>) -> Matrix {
+    Matrix::from_fn(|i, j| matrix[(i, j)])
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::search::Watch;
+    use crate::tracks::follow;
+    use crate::tracks::sample::Filmed;
+    use crate::{Activity, Constraints, CrossValidation, Quantity, Request};
+    use std::ops::ControlFlow;
+
+    /// Slopes and bends from one factor and many draws are those of factors around the point: of cells that crawl and of such that align, with noise
+    /// levels estimated or one of them known.
+    #[test]
+    fn derivatives_are_those_of_the_likelihood() {
+        let (movie, _) =
+            Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
+        for activity in [Activity::Polarity, Activity::Alignment] {
+            let request = Request {
+                activity,
+                cross_validation: CrossValidation::Skipped,
+                ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
+            };
+            let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+            let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();
+            let space = request.space().unwrap();
+            let objective = followed.objective(&movie, &request.structure, &space);
+            let at = &followed.fit.parameters;
+            let equations = objective.linearise(at).unwrap();
+            let components = objective.explained_components(&objective.place(at).unwrap(), at);
+            for known in [
+                KnownNoise::default(),
+                KnownNoise { position: Some(0.006), velocity: None },
+                KnownNoise { position: None, velocity: Some(objective.levels.velocity) },
+            ] {
+                let seen = Seen { objective, equations: &equations, components, known };
+                // Not at the most likely memory, where slopes would be none.
+                let memory = objective.memory.unwrap();
+                let alignment = if activity == Activity::Alignment { 0.3 } else { 0.0 };
+                let memory = Memory { times: 1.5 * memory.times + 0.05, alignment, ..memory };
+                let spaced = seen.about(memory);
+                let look = seen.look(&spaced, Way::Draws(4000)).unwrap();
+                let near = seen.at_points(&spaced, &POINTS.map(|point| Point::from(point) * CLOSE)).unwrap();
+                let exact = |of: fn(&Likelihood) -> f64| {
+                    Surface::new(&near.iter().map(of).collect::<Vec<_>>()).seen_from(CLOSE)
+                };
+                let (criterion, variance) = (exact(|own| own.criterion), exact(|own| own.variance.ln()));
+                assert!((look.here.criterion - near[0].criterion).abs() < 1e-6 * near[0].criterion.abs());
+                let off = (look.log_variance - variance.slope).amax();
+                assert!(off < 1e-3 * variance.slope.amax().max(1.0), "{known:?} {variance:?} {look:?}");
+                // Slopes scatter by the root of a bend over that of the draws.
+                let scatter = |k: usize| (2.0 * criterion.bend[(k, k)].abs() / 4000.0).sqrt();
+                for k in 0..4 {
+                    let off = look.criterion.slope[k] - criterion.slope[k];
+                    assert!(off.abs() < 4.0 * scatter(k) + 1e-3, "{k}: {off} {criterion:?} {look:?}");
+                }
+                let off = (look.criterion.bend - criterion.bend).amax();
+                assert!(off < 0.2 * criterion.bend.amax(), "{criterion:?} {look:?}");
+            }
+        }
     }
 }

@@ -5,7 +5,7 @@ use super::likely::{
     LASTING, LESS_LIKELY, Likely, NO_GAIN, Place, QUANTILE, RATIO, TIMES, alignment_of, of_alignment,
     of_times, times_of,
 };
-use super::look::{Look, Seen};
+use super::look::{Seen, Way};
 use super::memory::{Memory, NONE};
 use super::objective::MovieObjective;
 use super::states::States;
@@ -25,6 +25,9 @@ const AT_ONCE: usize = 4;
 
 /// Steps towards the likeliest noise levels and memory of cells that do not align, at most.
 const ROUNDS_WITHOUT: usize = 5;
+
+/// Draws for these steps.
+const DRAWS: usize = 32;
 
 /// Step in log (x + c) for a derivative.
 const STEP: f64 = 0.01;
@@ -80,11 +83,11 @@ impl MovieObjective<'_> {
 }
 
 impl Seen<'_> {
-    /// The polarity of the cells at a fit, about which the problem is linearised, and how its likelihood bends there.
-    pub fn polarity(&self, displacements: &[f64]) -> Result<Option<(Polarity, Look)>, Error> {
+    /// The polarity of the cells at a fit, about which the problem is linearised.
+    pub fn polarity(&self, displacements: &[f64]) -> Result<Option<Polarity>, Error> {
         let objective = &self.objective;
         let Some(memory) = objective.memory else { return Ok(None) };
-        let Likely { covariance, look, of_variance: (of_variance, further), .. } = self.likely(None)?;
+        let Likely { covariance, of_variance: (of_variance, further), .. } = self.likely(Way::Points)?;
         let interval = objective.movie.interval();
         let root_mean_square = |memory: Memory| -> Result<f64, Error> {
             Ok(memory.root_mean_square() * objective.states.polarities.mean_variance(memory)?.sqrt())
@@ -123,7 +126,7 @@ impl Seen<'_> {
             evidence_of_memory: fitted.evidence_of_memory()?.min(evidence),
             evidence,
         };
-        Ok(Some((polarity, look)))
+        Ok(Some(polarity))
     }
 }
 
@@ -151,10 +154,9 @@ impl Fitted<'_> {
             memory: Some(Memory { alignment: 0.0, ..memory }),
             ..*objective
         };
-        let (mut look, mut least) = (None, f64::INFINITY);
+        let mut least = f64::INFINITY;
         for _ in 0..ROUNDS_WITHOUT {
-            let likely = Seen { objective: without, ..*seen }.likely(look)?;
-            look = Some(likely.look);
+            let likely = Seen { objective: without, ..*seen }.likely(Way::Draws(DRAWS))?;
             let before = least;
             least = least.min(likely.criterion);
             if before - least < NO_GAIN {

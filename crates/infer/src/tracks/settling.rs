@@ -12,14 +12,12 @@ pub(super) struct Settling {
     /// Whether the error of the dynamics falls in each round where cells crawl, be it likely or not: with a loose one, fits end that write
     /// off motions which a polarity explains.
     pub tightens: bool,
-    /// Whether it is near enough to the end for the likelihood to bend as it did when a fit was last settled.
-    pub resumes: bool,
+    /// Draws for the slopes of the likelihood, where cells crawl.
+    pub draws: usize,
 }
 
 /// At first; on the way; at the end.
-pub(super) const ROUGH: Settling =
-    Settling { rounds: 5, steps: 2, enough: 0.7, tightens: true, resumes: false };
+pub(super) const ROUGH: Settling = Settling { rounds: 5, steps: 2, enough: 0.7, tightens: true, draws: 16 };
 pub(super) const PASSING: Settling =
-    Settling { rounds: 1, steps: 2, enough: f64::INFINITY, tightens: false, resumes: false };
-pub(super) const FINAL: Settling =
-    Settling { rounds: 8, steps: 1, enough: 0.06, tightens: false, resumes: true };
+    Settling { rounds: 1, steps: 2, enough: f64::INFINITY, tightens: false, draws: 16 };
+pub(super) const FINAL: Settling = Settling { rounds: 8, steps: 1, enough: 0.06, tightens: false, draws: 48 };

@@ -272,7 +272,12 @@ impl States {
 
     /// Number of blocks of places, translations and polarities.
     pub fn unknowns_of_cells(&self) -> usize {
-        self.start.len() + self.drifts.1 + self.polarities.count()
+        self.polarities_begin() + self.polarities.count()
+    }
+
+    /// Number of places and translations, which stand before all polarities.
+    pub fn polarities_begin(&self) -> usize {
+        self.start.len() + self.drifts.1
     }
 
     /// The unknown of an interval's translation.
