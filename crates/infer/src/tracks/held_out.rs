@@ -7,7 +7,8 @@ use super::states::{Motion, States};
 use crate::Error;
 use crate::cross_validation::Folds;
 use crate::search::Watch;
-use std::collections::BTreeMap;
+use nalgebra::DMatrix;
+use std::collections::{BTreeMap, BTreeSet};
 use voronudge_geometry::Vector;
 
 /// Folds at most.
@@ -23,6 +24,10 @@ const FEW_STEPS: usize = 4;
 /// held so loosely that with more they would stay where the motions left out had put them.
 const DAMPING_OF_PLACES: f64 = 1e-6;
 const DAMPING: f64 = 1e-9;
+
+/// Share of the information of the fit to all by which its coefficients are kept where the rest of the data do not determine them: one step would lead
+/// far beyond where it is worth anything.
+const KNOWN: f64 = 0.05;
 
 /// The motions between the frames as they were measured, with the translations of a fit.
 pub(super) struct AsMeasured<'a> {
@@ -123,6 +128,7 @@ pub(super) fn cross_validate(
     let all = objective.states;
     let folds = folds(objective.movie, all);
     let numbers: Vec<usize> = (0..FOLDS).collect();
+    let known = objective.linearise(at)?.reduced()?.information * KNOWN;
     let tested = watch.each("cross-validation", &numbers, 1.0, |fold| {
         let left = |motion: &Motion| folds[motion.track as usize][motion.interval] != *fold;
         let motions: Vec<Motion> = all.motions.iter().filter(|m| left(m)).copied().collect();
@@ -130,8 +136,11 @@ pub(super) fn cross_validate(
         if motions.len() == all.motions.len() || motions.len() < 2 * p + 2 {
             return Ok(None);
         }
-        let states = States { motions, ..all.clone() };
-        let without = fitted_to(&MovieObjective { states: &states, ..*objective }, at)?;
+        let share = motions.len() as f64 / all.motions.len() as f64;
+        let integrated = all.integrated.as_ref().map(|own| own.of_share(share));
+        let states = States { motions, integrated, ..all.clone() };
+        let mut without = fitted_to(&MovieObjective { states: &states, ..*objective }, at, &known)?;
+        forget_unseen(all, &states.motions, &mut without[p..]);
         let (rule, point) = match objective.rule.steps() > FEW_STEPS {
             true => (objective.rule, without),
             false => (Rule::Trapezoid, measured.at(&without)),
@@ -162,11 +171,22 @@ pub(super) fn cross_validate(
     Ok((squares.len() >= 2).then(|| HeldOut { folds: Folds::of_squares(of_frames, squares), predicted }))
 }
 
-/// A Gauss–Newton step from some unknowns to those of a fit.
-fn fitted_to(objective: &MovieObjective<'_>, at: &[f64]) -> Result<Vec<f64>, Error> {
+/// A Gauss–Newton step from some unknowns to those of a fit, near some coefficients.
+fn fitted_to(objective: &MovieObjective<'_>, at: &[f64], known: &DMatrix<f64>) -> Result<Vec<f64>, Error> {
     let places = vec![DAMPING_OF_PLACES; objective.states.polarities_begin()];
-    let step = objective.linearise(at)?.step(DAMPING, &places)?.step;
+    let step = objective.linearise(at)?.step_near(DAMPING, &places, known)?.step;
     Ok(at.iter().zip(&step).map(|(at, step)| at + step).collect())
+}
+
+/// Polarities of cells none of whose motions are in a fit: nothing is known of these but what the forces on all cells say of first polarities, which is
+/// worth nothing where a cell stands oddly.
+fn forget_unseen(all: &States, fitted: &[Motion], displacements: &mut [f64]) {
+    let seen: BTreeSet<u32> = fitted.iter().map(|motion| motion.track).collect();
+    for motion in all.motions.iter().filter(|motion| !seen.contains(&motion.track)) {
+        for block in all.polarity(motion).into_iter().flatten() {
+            displacements[2 * block..2 * block + 2].fill(0.0);
+        }
+    }
 }
 
 fn intervals(movie: &Movie) -> usize {
@@ -231,7 +251,8 @@ mod tests {
         let polarities = own..own + 2 * states.polarities.count();
         let mut otherwise = at.clone();
         otherwise[polarities.clone()].iter_mut().for_each(|u| *u = 0.0);
-        let [one, other] = [at, &otherwise].map(|at| fitted_to(&objective, at).unwrap());
+        let unknown = DMatrix::zeros(space.dimension(), space.dimension());
+        let [one, other] = [at, &otherwise].map(|at| fitted_to(&objective, at, &unknown).unwrap());
         let of = |at: &[f64]| at[polarities.clone()].to_vec();
         let apart =
             |a: &[f64], b: &[f64]| of(a).iter().zip(of(b)).map(|(a, b)| (a - b).powi(2)).sum::<f64>().sqrt();

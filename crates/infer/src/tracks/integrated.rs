@@ -87,6 +87,13 @@ impl Integrated {
     }
 }
 
+impl Integrated {
+    /// Of a share of the data.
+    pub fn of_share(&self, share: f64) -> Self {
+        Self { about: self.about.clone(), slope: &self.slope * share }
+    }
+}
+
 impl MovieObjective<'_> {
     /// What holds the unknowns, and the first place of each cell where it is.
     fn held_at_first(&self) -> Held {
