@@ -175,15 +175,12 @@ impl NormalEquations {
     /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kHᵀH for nudges and
     /// of the diagonal of XᵀX for coefficients. Some places may be held harder, each by a damping of its own; none if there are none.
     pub fn step(&self, damping: f64, held: &[f64]) -> Result<Step, Error> {
-        self.step_with(damping, held, None)
+        let p = self.free.len();
+        self.step_near(damping, held, &DMatrix::zeros(p, p))
     }
 
     /// The same with coefficients that are also known, to be what they are, with some information in units of 1/σ_v².
     pub fn step_near(&self, damping: f64, held: &[f64], known: &DMatrix<f64>) -> Result<Step, Error> {
-        self.step_with(damping, held, Some(known))
-    }
-
-    fn step_with(&self, damping: f64, held: &[f64], known: Option<&DMatrix<f64>>) -> Result<Step, Error> {
         let count: usize = self.frames.iter().map(Linearisation::components).sum();
         let diagonal = |frame: &Linearisation| frame.trace() + self.spring * frame.stiffness();
         let unit = self.frames.iter().map(diagonal).sum::<f64>() / count as f64;
@@ -205,15 +202,12 @@ impl NormalEquations {
             .map(|(frame, shifts)| frame.eliminate(self.spring, shifts))
             .collect::<Result<_, _>>()?;
         let p = self.free.len();
-        let (mut schur, mut gradient) = (self.priors.normal.clone(), self.priors.gradient.clone());
+        let (mut schur, mut gradient) = (&self.priors.normal + known, self.priors.gradient.clone());
         let mut damped = DVector::zeros(p);
         for (frame, part) in self.frames.iter().zip(&eliminated) {
             schur += &part.schur;
             gradient += &part.gradient;
             damped += frame.free_normal().diagonal() * damping;
-        }
-        if let Some(known) = known {
-            schur += known;
         }
         let hessian = &schur + DMatrix::from_diagonal(&damped);
         let free_step = if p == 0 {

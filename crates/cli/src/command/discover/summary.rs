@@ -64,7 +64,7 @@ fn forecasts(report: &DiscoverReport) -> String {
     let Some(forecast) = &report.forecast else { return String::new() };
     let mut text = String::new();
     let mut row = |name: &str, cells: &[String]| {
-        let cells: Vec<String> = cells.iter().take(SHOWN).map(|cell| format!("{cell:>15}")).collect();
+        let cells: Vec<String> = cells.iter().take(SHOWN).map(|cell| format!("{cell:>18}")).collect();
         let _ = writeln!(text, "{name:<20}{}", cells.concat());
     };
     let ahead: Vec<String> = forecast.horizons.iter().map(|h| format!("{h} ahead")).collect();
