@@ -23,7 +23,7 @@ mod map;
 mod modes;
 mod outliers;
 mod pool;
-mod random_signs;
+pub(crate) mod random_signs;
 #[cfg(test)]
 mod sample;
 mod split;

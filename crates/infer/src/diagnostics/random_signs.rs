@@ -16,6 +16,17 @@ pub(super) enum Stream {
     Split = 5,
 }
 
+/// Draws random signs.
+pub(crate) fn draw(generator: &mut Pcg64, signs: &mut [f64]) {
+    for chunk in signs.chunks_mut(64) {
+        let mut bits = generator.next_u64();
+        for sign in chunk {
+            *sign = if bits & 1 == 0 { -1.0 } else { 1.0 };
+            bits >>= 1;
+        }
+    }
+}
+
 /// Statistics of the residuals as they are, and the probability under random signs of values at least as large.
 ///
 /// `statistics` is given the sign of each of `count` residuals. `p = (1 + number of draws not below) / (1 + draws)`, which
@@ -32,13 +43,7 @@ pub(super) fn upper_tail<const K: usize>(
     let observed = statistics(&signs);
     let mut reached = [1usize; K];
     for _ in 0..DRAWS {
-        for chunk in signs.chunks_mut(64) {
-            let mut bits = generator.next_u64();
-            for sign in chunk {
-                *sign = if bits & 1 == 0 { -1.0 } else { 1.0 };
-                bits >>= 1;
-            }
-        }
+        draw(&mut generator, &mut signs);
         for ((value, observed), reached) in statistics(&signs).iter().zip(&observed).zip(&mut reached) {
             // Equal but for rounding is equal.
             *reached += usize::from(*value >= observed - 1e-12 * observed.abs());

@@ -5,18 +5,20 @@
 //!
 //! ```text
 //! (min Q)_i = Q_i(ẑ)            (min Q)_ij = Q_ij(ẑ) − 2 r_iᵀ M⁻¹ r_j,            r_i = −½ ∂Q_i/∂z at ẑ
-//! (log det M)_i = tr M⁻¹M_i     (log det M)_ij = tr M⁻¹M_ij − tr M⁻¹M_i M⁻¹M_j
+//! (log det M)_i = tr M⁻¹M_i     (log det M)_ij ≈ tr M⁻¹M_ij − tr A⁻¹A_i A⁻¹A_j
 //! ```
 //!
-//! Traces of M⁻¹ are those of draws `x = L⁻ᵀz` of u, with random signs z (Hutchinson 1990), and of what β adds: exact, because it is few.
+//! Traces of M⁻¹ are those of draws `x = L⁻ᵀz` of u, with random signs z (Hutchinson 1990), and of what β adds: exact, because it is few. A is
+//! M without β, whose part in the last term is left out.
 
 use super::{Held, Linearisation, product};
 use crate::Error;
+use crate::diagnostics::random_signs;
 use crate::rows::Group;
 use crate::stiffness::Stiffness;
 use crate::whitened::Leftover;
 use nalgebra::{DMatrix, DVector};
-use rand::{RngCore, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use voronudge_linalg::DissectedCholesky;
@@ -166,13 +168,7 @@ impl Solved<'_> {
     pub fn draws(&self, count: usize) -> Vec<f64> {
         let mut generator = Pcg64::seed_from_u64(SEED);
         let mut draws = vec![1.0; count * self.order()];
-        for chunk in draws.chunks_mut(64) {
-            let mut bits = generator.next_u64();
-            for sign in chunk {
-                *sign = if bits & 1 == 0 { -1.0 } else { 1.0 };
-                bits >>= 1;
-            }
-        }
+        random_signs::draw(&mut generator, &mut draws);
         draws.par_chunks_mut(TOGETHER * self.order()).for_each(|some| self.factor.draw(some));
         draws
     }

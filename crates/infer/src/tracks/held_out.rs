@@ -112,7 +112,7 @@ pub(super) struct HeldOut {
 /// Mean velocities by interval and track.
 pub(super) type MeanVelocities = Vec<BTreeMap<u32, Vector<f64>>>;
 
-/// The error of displacements that were left out of the fit. `at` is the fit to all; `None` if there are too few motions.
+/// The error of displacements that were left out of the fit. `at` is the fit to all, with the information on its coefficients; `None` if there are too few motions.
 ///
 /// Whole intervals but the first are left out, no two in a row, or parts of the field where there are few. The fit without a fold, of
 /// coefficients and places, is one Gauss–Newton step from the fit to all. An error of a measured position must not pose as a prediction, as it
@@ -122,13 +122,14 @@ pub(super) type MeanVelocities = Vec<BTreeMap<u32, Vector<f64>>>;
 pub(super) fn cross_validate(
     measured: &AsMeasured<'_>,
     at: &[f64],
+    information: &DMatrix<f64>,
     watch: &mut Watch<'_>,
 ) -> Result<Option<HeldOut>, Error> {
     let objective = &measured.objective;
     let all = objective.states;
     let folds = folds(objective.movie, all);
     let numbers: Vec<usize> = (0..FOLDS).collect();
-    let known = objective.linearise(at)?.reduced()?.information * KNOWN;
+    let known = information * KNOWN;
     let tested = watch.each("cross-validation", &numbers, 1.0, |fold| {
         let left = |motion: &Motion| folds[motion.track as usize][motion.interval] != *fold;
         let motions: Vec<Motion> = all.motions.iter().filter(|m| left(m)).copied().collect();
@@ -219,24 +220,14 @@ fn folds(movie: &Movie, states: &States) -> Vec<Vec<usize>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::tracks::follow;
     use crate::tracks::memory::Memory;
-    use crate::tracks::sample::Filmed;
-    use crate::{Activity, Constraints, CrossValidation, NoiseLevels, Quantity, Request};
-    use std::ops::ControlFlow;
+    use crate::tracks::sample::followed;
+    use crate::{Activity, NoiseLevels};
 
     /// What is predicted of motions that were left out does not depend on the polarities that these had led to, however loosely polarities are held.
     #[test]
     fn motions_left_out_are_forgotten() {
-        let (movie, _) =
-            Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
-        let request = Request {
-            activity: Activity::Alignment,
-            cross_validation: CrossValidation::Skipped,
-            ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
-        };
-        let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
-        let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();
+        let (movie, request, followed) = followed(Activity::Alignment);
         let space = request.space().unwrap();
         let fitted = followed.objective(&movie, &request.structure, &space);
         let memory = Memory { times: 0.03, speed: 2.0, free: 0.99, alignment: 5.0 };

@@ -97,10 +97,11 @@ pub(crate) fn follow(
     let (value, expected) = (found.value / variance, objective.expected() / variance);
     let equations = objective.linearise(&found.parameters)?;
     let reduced = equations.reduced()?;
+    let information = reduced.information.clone();
     let variance_of_fit = variance * (value / expected).max(1.0);
     let estimated = estimates(&equations, reduced, &space, request, free, variance_of_fit, None)?;
     let held_out = match request.cross_validation {
-        CrossValidation::Done => cross_validate(&measured, &found.parameters, watch)?,
+        CrossValidation::Done => cross_validate(&measured, &found.parameters, &information, watch)?,
         CrossValidation::Skipped => None,
     };
     let noise_floor = match at_limit(&levels, &request.noise) {

@@ -85,9 +85,7 @@ impl Integrated {
         let slope = Ridge::new(*objective, parameters)?.slope()?;
         Ok(Self { about: DVector::from_column_slice(objective.split(parameters).0), slope })
     }
-}
 
-impl Integrated {
     /// Of a share of the data.
     pub fn of_share(&self, share: f64) -> Self {
         Self { about: self.about.clone(), slope: &self.slope * share }
@@ -126,25 +124,13 @@ impl MovieObjective<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::Watch;
-    use crate::tracks::follow;
-    use crate::tracks::sample::Filmed;
-    use crate::{Activity, Constraints, CrossValidation, Quantity, Request};
-    use std::ops::ControlFlow;
+    use crate::Activity;
+    use crate::tracks::sample::followed;
 
     /// The slope is that of the determinant, and pulls towards a stiffer tissue.
     #[test]
     fn a_soft_tissue_yields_more() {
-        let (movie, _) =
-            Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
-        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
-        let request = Request {
-            activity: Activity::Polarity,
-            cross_validation: CrossValidation::Skipped,
-            ..Request::new(constraints)
-        };
-        let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
-        let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();
+        let (movie, request, followed) = followed(Activity::Polarity);
         let space = request.space().unwrap();
         let objective = followed.objective(&movie, &request.structure, &space);
         let ridge = Ridge::new(objective, &followed.fit.parameters).unwrap();

@@ -159,26 +159,15 @@ fn from_dense(matrix: &DMatrix<f64>) -> Matrix {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::search::Watch;
-    use crate::tracks::follow;
-    use crate::tracks::sample::Filmed;
-    use crate::{Activity, Constraints, CrossValidation, Quantity, Request};
-    use std::ops::ControlFlow;
+    use crate::Activity;
+    use crate::tracks::sample::followed;
 
     /// Slopes and bends from one factor and many draws are those of factors around the point: of cells that crawl and of such that align, with noise
     /// levels estimated or one of them known.
     #[test]
     fn derivatives_are_those_of_the_likelihood() {
-        let (movie, _) =
-            Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
         for activity in [Activity::Polarity, Activity::Alignment] {
-            let request = Request {
-                activity,
-                cross_validation: CrossValidation::Skipped,
-                ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
-            };
-            let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
-            let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();
+            let (movie, request, followed) = followed(activity);
             let space = request.space().unwrap();
             let objective = followed.objective(&movie, &request.structure, &space);
             let at = &followed.fit.parameters;

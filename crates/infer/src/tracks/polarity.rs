@@ -198,7 +198,8 @@ impl Fitted<'_> {
             let aside = 0.5 * (before - after) / (before + after - 2.0 * without);
             without = without.min(at(points[least] + aside * STEP_OF_K)?);
         }
-        Ok((without - self.criterion).max(0.0))
+        let evidence = without - self.criterion;
+        Ok(if evidence < NO_GAIN { 0.0 } else { evidence })
     }
 
     /// Between which multiples of v₀ the likelihood falls by less than an interval of 95 % allows, k and memory held.

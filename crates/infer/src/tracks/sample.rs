@@ -1,7 +1,12 @@
 //! Movies of simulated tissues for the tests of this module.
 
+use super::follow;
+use super::inference::Followed;
 use super::movie::{Drift, Movie};
+use crate::search::Watch;
+use crate::{Activity, Constraints, CrossValidation, Quantity, Request};
 use rand_distr::{Distribution, Normal};
+use std::ops::ControlFlow;
 use voronudge_geometry::{CellPolygon, Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator};
@@ -108,4 +113,17 @@ impl Filmed {
         let times = (0..film.len()).map(|k| k as f64 * self.step).collect();
         (Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap(), unit)
     }
+}
+
+/// A small tissue that crawls, and a fit of it without cross-validation, K_A held at zero.
+pub fn followed(activity: Activity) -> (Movie, Request, Followed) {
+    let (movie, _) = Filmed { size: [64, 4], step: 0.05, error: 0.005, seed: 5 }.movie_of_crawling(2.0, 1.0);
+    let request = Request {
+        activity,
+        cross_validation: CrossValidation::Skipped,
+        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
+    };
+    let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
+    let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();
+    (movie, request, followed)
 }
