@@ -1,90 +1,205 @@
-//! Integrals of a Gaussian over polygons and along lines.
+//! Voronoi cells in Gaussian patches: integrals of a Gaussian over polygons and along their sides.
 
-use crate::{Scalar, Vector, cross, dot};
+use crate::overlap::{Side, bounds, by_square, sides};
+use crate::{BySquare, CellPolygon, Grid, Overlap, Tessellation, Vector, cross};
+use rayon::prelude::*;
 
-/// Nodes and weights of Gauss and Legendre's rule of five points on (0, 1), one half: the rest is symmetric.
-const NODES: [[f64; 2]; 3] = [
-    [0.5, 0.284_444_444_444_444_45],
-    [0.230_765_344_947_158_45, 0.239_314_335_249_683_24],
+/// Nodes and weights of Gauss and Legendre's rule of five points on (0, 1).
+const NODES: [[f64; 2]; 5] = [
     [0.046_910_077_030_668_004, 0.118_463_442_528_094_54],
+    [0.230_765_344_947_158_45, 0.239_314_335_249_683_24],
+    [0.5, 0.284_444_444_444_444_45],
+    [0.769_234_655_052_841_5, 0.239_314_335_249_683_24],
+    [0.953_089_922_969_332, 0.118_463_442_528_094_54],
 ];
 
 /// Most pieces of a side; longer sides are those of polygons at the rim of an open field.
 const MOST_PIECES: f64 = 64.0;
 
-/// `∫ f dt` for t from 0 to 1 along a side of some length, in pieces no longer than `scale`.
-fn along<T>(length: f64, scale: f64, zero: T, mut add: impl FnMut(T, f64, f64) -> T) -> T {
-    let pieces = (length / scale).ceil().clamp(1.0, MOST_PIECES);
-    let mut sum = zero;
-    for piece in 0..pieces as usize {
+/// Patches per task.
+const CHUNK: usize = 16;
+
+/// What two ways to the same image may differ by, as a share of them.
+const ROUNDING: f64 = 1e-9;
+
+/// Number of pieces of a side, no longer than the Gaussian is wide, along which it is integrated.
+fn pieces(length: f64, width: f64) -> u32 {
+    (length / width).ceil().clamp(1.0, MOST_PIECES) as u32
+}
+
+/// Visits the points of a line at which it is integrated, with their weights, 1 in all.
+fn along([from, to]: [Vector<f64>; 2], pieces: u32, mut visit: impl FnMut(Vector<f64>, f64)) {
+    let (step, part) = (to - from, 1.0 / f64::from(pieces));
+    for piece in 0..pieces {
         for [node, weight] in NODES {
-            let mirrored = if node == 0.5 { None } else { Some(1.0 - node) };
-            for place in [Some(node), mirrored].into_iter().flatten() {
-                sum = add(sum, (piece as f64 + place) / pieces, weight / pieces);
-            }
+            visit(from + step * ((f64::from(piece) + node) * part), weight * part);
         }
     }
-    sum
 }
 
-/// `∫ exp(−x²/2s²) dA` over a polygon, counter-clockwise, with the centre of the Gaussian at the origin.
+/// What a side from p to q contributes to `∫ exp(−x²/2s²) dA` over the polygon on its left, with the centre of the Gaussian at the
+/// origin, and the derivative by s.
 ///
-/// With `u = x²/2s²` the field `x (1 − e⁻ᵘ)/2u` has the divergence `e⁻ᵘ`, so that each side from p to q contributes
-/// `(p × q) ∫ (1 − e⁻ᵘ)/2u dt`.
-pub(crate) fn gaussian_area<S: Scalar>(vertices: impl Iterator<Item = Vector<f64>> + Clone, width: S) -> S {
-    let Some(last) = vertices.clone().last() else {
-        return S::constant(0.0);
-    };
-    let narrow = (width * width * 2.0).recip();
-    let (sum, _) = vertices.fold((S::constant(0.0), last), |(sum, p), q| {
-        let side = along((q - p).norm(), width.real(), S::constant(0.0), |sum, t, weight| {
-            sum + share(narrow * (p + (q - p) * t).norm_squared()) * weight
-        });
-        (sum + side * cross(p, q), q)
+/// With `u = x²/2s²` the field `x (1 − e⁻ᵘ)/2u` has the divergence `e⁻ᵘ`, so this is `(p × q) ∫ (1 − e⁻ᵘ)/2u dt`.
+fn area(ends: [Vector<f64>; 2], width: f64, pieces: u32) -> [f64; 2] {
+    let (mut shares, mut weights) = (0.0, 0.0);
+    let narrow = 0.5 / (width * width);
+    along(ends, pieces, |x, weight| {
+        let u = narrow * x.norm_squared();
+        let gaussian = (-u).exp();
+        shares += weight * share(u, gaussian);
+        weights += weight * gaussian;
     });
-    sum
+    // d/du (1 − e⁻ᵘ)/2u = (e⁻ᵘ − 2 (1 − e⁻ᵘ)/2u)/2u and du/ds = −2u/s
+    let cross = cross(ends[0], ends[1]);
+    [cross * shares, cross * (2.0 * shares - weights) / width]
 }
 
-/// u below which `1 − e⁻ᵘ` loses digits, and above which it is one.
+/// u below which `1 − e⁻ᵘ` loses digits.
 const SMALL: f64 = 1e-2;
-const LARGE: f64 = 37.0;
 
-/// `(1 − e⁻ᵘ)/2u`
-fn share<S: Scalar>(u: S) -> S {
-    match u.real() {
-        small if small < SMALL => {
-            let series = [1.0 / 720.0, -1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0];
-            series.into_iter().fold(S::constant(-1.0 / 5040.0), |sum, next| sum * u + next) * -0.5
-        }
-        large if large > LARGE => (u * 2.0).recip(),
-        _ => (S::constant(1.0) - (-u).exp()) / (u * 2.0),
+/// `(1 − e⁻ᵘ)/2u`, where e⁻ᵘ is known.
+fn share(u: f64, gaussian: f64) -> f64 {
+    if u < SMALL {
+        let series = [1.0 / 720.0, -1.0 / 120.0, 1.0 / 24.0, -1.0 / 6.0, 0.5, -1.0];
+        -0.5 * series.into_iter().fold(-1.0 / 5040.0, |sum, next| sum * u + next)
+    } else {
+        (1.0 - gaussian) / (2.0 * u)
     }
 }
 
 /// `∫ exp(−x²/2s²) dl` along a line from one end to the other, and the mean place of that weight, with the centre at the origin.
-pub(crate) fn gaussian_line([from, to]: [Vector<f64>; 2], width: f64) -> (f64, Vector<f64>) {
-    let length = (to - from).norm();
-    let zero = (0.0, Vector::zeros());
-    let (sum, moment) = along(length, width, zero, |(sum, moment): (f64, Vector<f64>), t, weight| {
-        let x = from + (to - from) * t;
-        let weight = weight * (-0.5 * dot(x, x) / (width * width)).exp();
-        (sum + weight, moment + x * weight)
+pub(crate) fn line(ends: [Vector<f64>; 2], width: f64) -> (f64, Vector<f64>) {
+    let length = (ends[1] - ends[0]).norm();
+    let narrow = 0.5 / (width * width);
+    let (mut sum, mut moment) = (0.0, Vector::zeros());
+    along(ends, pieces(length, width), |x, weight| {
+        let weight = weight * (-narrow * x.norm_squared()).exp();
+        sum += weight;
+        moment += x * weight;
     });
     (sum * length, moment / sum)
+}
+
+/// A cell that a patch meets, and the centre of the patch relative to it.
+#[derive(Debug, Clone, Copy)]
+struct Member {
+    cell: u32,
+    centre: Vector<f64>,
+}
+
+/// The weighted area of each cell in each Gaussian patch of a grid. Every side is integrated once for both of its cells.
+pub(crate) fn overlaps(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    grid: &Grid,
+    width: f64,
+) -> BySquare<Overlap> {
+    let members = by_square(tessellation, positions, grid, |_: &mut (), polygon, cell, found| {
+        let bounds = bounds(polygon);
+        grid.for_images(tessellation.domain(), positions[cell], bounds, |centres| {
+            centres.meeting(bounds, |square, centre| {
+                found.push((square, Member { cell: cell as u32, centre }));
+            });
+        });
+    });
+    let sides = all_sides(tessellation, positions, width);
+    let of_chunk = |chunk: usize| {
+        let (mut areas, mut overlaps) = (Vec::new(), Vec::new());
+        for square in chunk * CHUNK..((chunk + 1) * CHUNK).min(grid.len()) {
+            let patch = Filling { tessellation, sides: &sides, members: members.square(square), width };
+            patch.fill(&mut areas, |overlap| overlaps.push((square, overlap)));
+        }
+        overlaps
+    };
+    let chunks: Vec<_> = (0..grid.len().div_ceil(CHUNK)).into_par_iter().map(of_chunk).collect();
+    BySquare::new(grid.len(), &chunks)
+}
+
+/// The sides of all closed cells by half-edge, with the number of pieces of each.
+fn all_sides(tessellation: &Tessellation, positions: &[Vector<f64>], width: f64) -> Vec<Option<(Side, u32)>> {
+    let mut all = vec![None; tessellation.half_edges()];
+    let mut polygon = CellPolygon::default();
+    for cell in (0..tessellation.len()).filter(|&cell| tessellation.is_closed(cell)) {
+        polygon.fill(tessellation, positions, cell);
+        for (h, side) in sides(tessellation, &polygon, cell) {
+            all[h] = Some((side, pieces((side.to - side.from).norm(), width)));
+        }
+    }
+    all
+}
+
+/// A patch and the cells that it meets, in the order of their indices; a cell several times if several images are met.
+struct Filling<'a> {
+    tessellation: &'a Tessellation,
+    sides: &'a [Option<(Side, u32)>],
+    members: &'a [Member],
+    width: f64,
+}
+
+impl Filling<'_> {
+    /// Visits the cells of the patch; `areas` is memory that is used again.
+    fn fill(&self, areas: &mut Vec<[f64; 2]>, mut visit: impl FnMut(Overlap)) {
+        areas.clear();
+        areas.resize(self.members.len(), [0.0; 2]);
+        for (number, &Member { cell, centre }) in self.members.iter().enumerate() {
+            for h in self.tessellation.ring(cell as usize) {
+                let Some((side, pieces)) = &self.sides[h] else {
+                    continue;
+                };
+                let across = self.across(h, centre, side.displacement);
+                if across.is_some() && self.tessellation.twin(h) < h {
+                    continue;
+                }
+                let [area, by_width] = area([side.from - centre, side.to - centre], self.width, *pieces);
+                for (number, sign) in [(Some(number), 1.0), (across, -1.0)] {
+                    let Some(number) = number else { continue };
+                    areas[number][0] += sign * area;
+                    areas[number][1] += sign * by_width;
+                }
+            }
+        }
+        let mut areas = areas.iter();
+        for images in self.members.chunk_by(|one, other| one.cell == other.cell) {
+            let [area, by_width] = (areas.by_ref().take(images.len()))
+                .fold([0.0; 2], |[area, by_width], image| [area + image[0], by_width + image[1]]);
+            visit(Overlap { cell: images[0].cell, area, by_width });
+        }
+    }
+
+    /// The member across a half-edge of another one, by its number.
+    fn across(&self, h: usize, centre: Vector<f64>, displacement: Vector<f64>) -> Option<usize> {
+        let cell = self.tessellation.neighbour(h) as u32;
+        let first = self.members.partition_point(|member| member.cell < cell);
+        let mut images = self.members[first..].iter().take_while(|member| member.cell == cell);
+        let (expected, rounding) = (centre - displacement, ROUNDING * (centre.norm() + displacement.norm()));
+        let met = images.position(|image| (image.centre - expected).norm() <= rounding);
+        met.map(|number| first + number)
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use num_dual::Dual64;
+    use crate::dot;
+
+    /// `∫ exp(−x²/2s²) dA` over a polygon, and its derivative by s.
+    fn polygon_area(polygon: &[Vector<f64>], width: f64) -> [f64; 2] {
+        let after = polygon.iter().cycle().skip(1);
+        polygon.iter().zip(after).fold([0.0; 2], |sum, (&p, &q)| {
+            let side = area([p, q], width, pieces((q - p).norm(), width));
+            [sum[0] + side[0], sum[1] + side[1]]
+        })
+    }
 
     /// Over a large square, and over a part of the plane, against sums over a fine mesh.
     #[test]
     fn areas_are_those_of_a_fine_mesh() {
         let width = 0.7;
         let square = [[-9.0, -8.0], [8.0, -8.0], [8.0, 9.0], [-9.0, 9.0]].map(|[x, y]| Vector::new(x, y));
-        let all = gaussian_area(square.into_iter(), width);
+        let [all, growth] = polygon_area(&square, width);
         assert!((all / (std::f64::consts::TAU * width * width) - 1.0).abs() < 1e-9, "{all}");
+        assert!((growth / (2.0 * std::f64::consts::TAU * width) - 1.0).abs() < 1e-9, "{growth}");
         let triangle = [[0.2, -0.6], [1.4, 0.3], [-0.3, 0.8]].map(|[x, y]| Vector::new(x, y));
         let inside = |x: Vector<f64>| {
             (0..3).all(|k| cross(triangle[(k + 1) % 3] - triangle[k], x - triangle[k]) > 0.0)
@@ -98,26 +213,24 @@ mod tests {
                 expected += (-0.5 * dot(x, x) / (width * width)).exp() * (3.0 / f64::from(mesh)).powi(2);
             }
         }
-        let found = gaussian_area(triangle.into_iter(), Dual64::from_re(width).derivative());
-        assert!((found.re - expected).abs() < 1e-4, "{} {expected}", found.re);
-        let [above, below] = [1e-5, -1e-5].map(|step| gaussian_area(triangle.into_iter(), width + step));
-        assert!((found.eps - (above - below) / 2e-5).abs() < 1e-8);
+        let [found, slope] = polygon_area(&triangle, width);
+        assert!((found - expected).abs() < 1e-4, "{found} {expected}");
+        let [above, below] = [1e-5, -1e-5].map(|step| polygon_area(&triangle, width + step)[0]);
+        assert!((slope - (above - below) / 2e-5).abs() < 1e-8);
     }
 
     #[test]
     fn shares_join_smoothly() {
-        for u in [1e-9, 1e-4, 9.999e-3, 1.0001e-2, 0.3, 5.0, 36.9, 37.1, 400.0] {
-            let found = share(Dual64::from_re(u).derivative());
+        for u in [1e-9, 1e-4, 9.999e-3, 1.0001e-2, 0.3, 5.0, 36.9, 400.0] {
+            let found = share(u, f64::exp(-u));
             let expected = -f64::exp_m1(-u) / (2.0 * u);
-            let slope = if u < 1e-3 { -0.25 + u / 6.0 } else { ((-u).exp() / 2.0 - expected) / u };
-            assert!((found.re / expected - 1.0).abs() < 1e-13 && (found.eps - slope).abs() < 1e-8, "{u}");
+            assert!((found / expected - 1.0).abs() < 1e-13, "{u}");
         }
     }
 
     #[test]
     fn lines_have_the_weight_of_their_points() {
-        let (from, to) = (Vector::new(-6.0, 0.4), Vector::new(6.0, 0.4));
-        let (weight, mean) = gaussian_line([from, to], 0.8);
+        let (weight, mean) = line([Vector::new(-6.0, 0.4), Vector::new(6.0, 0.4)], 0.8);
         let expected = 0.8 * std::f64::consts::TAU.sqrt() * (-0.5 * (0.4f64 / 0.8).powi(2)).exp();
         assert!((weight - expected).abs() < 1e-9, "{weight} {expected}");
         assert!((mean - Vector::new(0.0, 0.4)).norm() < 1e-9);

@@ -1,7 +1,7 @@
 //! How much of each Voronoi cell lies in each square of a grid, or in Gaussian patches around its points, and how that changes as
 //! the cells move and the squares grow.
 
-use crate::gaussian_patch::{gaussian_area, gaussian_line};
+use crate::gaussian_patch;
 use crate::grid::Centres;
 use crate::{CellPolygon, Grid, Patch, Scalar, Tessellation, Vector, cross};
 use num_dual::Dual64;
@@ -19,7 +19,7 @@ pub struct BySquare<T> {
 
 impl<T: Copy> BySquare<T> {
     /// Takes entries with the index of their square; those of one square keep their order.
-    fn new(squares: usize, parts: &[Vec<(usize, T)>]) -> Self {
+    pub(crate) fn new(squares: usize, parts: &[Vec<(usize, T)>]) -> Self {
         let mut start = vec![0; squares + 1];
         for (square, _) in parts.iter().flatten() {
             start[square + 1] += 1;
@@ -126,25 +126,10 @@ impl SidePiece {
 /// # Ok::<(), voronudge_geometry::Error>(())
 /// ```
 pub fn overlaps(tessellation: &Tessellation, positions: &[Vector<f64>], grid: &Grid) -> BySquare<Overlap> {
-    by_square(tessellation, positions, grid, |scratch: &mut Clipper, polygon, cell, found| {
-        scratch.vertices.clear();
-        let constant = |c: Vector<f64>| Vector::new(Dual64::from_re(c.x), Dual64::from_re(c.y));
-        scratch.vertices.extend(polygon.vertices().map(constant));
-        let [x, y] = [0, 1].map(|axis| range(&scratch.vertices, axis));
-        let bounds = [Vector::new(x[0], y[0]), Vector::new(x[1], y[1])];
-        let first = found.len();
-        let mut add = |square: usize, area: Dual64| {
-            found.push((square, Overlap { cell: cell as u32, area: area.re, by_width: area.eps }));
-        };
-        grid.for_images(tessellation.domain(), positions[cell], bounds, |centres| match grid.patch() {
-            Patch::Square(side) => scratch.areas(&centres, Dual64::from_re(side).derivative(), &mut add),
-            Patch::Gaussian(width) => centres.meeting(bounds, |square, centre| {
-                let width = Dual64::from_re(width).derivative();
-                add(square, gaussian_area(polygon.vertices().map(|c| c - centre), width));
-            }),
-        });
-        merge(found, first);
-    })
+    match grid.patch() {
+        Patch::Square(side) => square_overlaps(tessellation, positions, grid, side),
+        Patch::Gaussian(width) => gaussian_patch::overlaps(tessellation, positions, grid, width),
+    }
 }
 
 /// The pieces of the Voronoi sides of N cells at `positions` in each square of a grid.
@@ -171,16 +156,12 @@ pub fn side_pieces(
     grid: &Grid,
 ) -> BySquare<SidePiece> {
     by_square(tessellation, positions, grid, |_: &mut (), polygon, cell, found| {
-        let corners = polygon.corners();
-        let mut previous = corners.len() - 1;
-        for (m, h) in tessellation.ring(cell).enumerate() {
-            let (neighbour, displacement) = (tessellation.neighbour(h), polygon.ring()[m]);
-            let side = Side { from: corners[previous].centre, to: corners[m].centre };
-            previous = m;
+        for (h, side) in sides(tessellation, polygon, cell) {
+            let neighbour = tessellation.neighbour(h);
             if tessellation.is_closed(neighbour) && tessellation.twin(h) < h {
                 continue;
             }
-            let (length, distance) = ((side.to - side.from).norm(), displacement.norm());
+            let (length, distance) = ((side.to - side.from).norm(), side.displacement.norm());
             let bounds = [side.from.inf(&side.to), side.from.sup(&side.to)];
             let mut add = |square: usize, length: f64, middle: Vector<f64>| {
                 let piece = SidePiece {
@@ -188,7 +169,7 @@ pub fn side_pieces(
                     neighbour: neighbour as u32,
                     length,
                     from_cell: middle,
-                    from_neighbour: middle - displacement,
+                    from_neighbour: middle - side.displacement,
                     distance,
                 };
                 found.push((square, piece));
@@ -198,7 +179,8 @@ pub fn side_pieces(
                     side.pieces(&centres, |square, share, middle| add(square, share * length, middle));
                 }
                 Patch::Gaussian(width) => centres.meeting(bounds, |square, centre| {
-                    let (length, middle) = gaussian_line([side.from - centre, side.to - centre], width);
+                    let (length, middle) =
+                        gaussian_patch::line([side.from - centre, side.to - centre], width);
                     if length > 0.0 {
                         add(square, length, middle + centre);
                     }
@@ -208,8 +190,52 @@ pub fn side_pieces(
     })
 }
 
+fn square_overlaps(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    grid: &Grid,
+    side: f64,
+) -> BySquare<Overlap> {
+    let side = Dual64::from_re(side).derivative();
+    by_square(tessellation, positions, grid, |scratch: &mut Clipper, polygon, cell, found| {
+        scratch.vertices.clear();
+        let constant = |c: Vector<f64>| Vector::new(Dual64::from_re(c.x), Dual64::from_re(c.y));
+        scratch.vertices.extend(polygon.vertices().map(constant));
+        let first = found.len();
+        let mut add = |square: usize, area: Dual64| {
+            found.push((square, Overlap { cell: cell as u32, area: area.re, by_width: area.eps }));
+        };
+        grid.for_images(tessellation.domain(), positions[cell], bounds(polygon), |centres| {
+            scratch.areas(&centres, side, &mut add);
+        });
+        merge(found, first);
+    })
+}
+
+/// The least rectangle around a polygon: its lower left and its upper right corner.
+pub(crate) fn bounds(polygon: &CellPolygon<f64>) -> [Vector<f64>; 2] {
+    let Some(first) = polygon.vertices().next() else {
+        return [Vector::zeros(); 2];
+    };
+    polygon.vertices().fold([first; 2], |[low, high], vertex| [low.inf(&vertex), high.sup(&vertex)])
+}
+
+/// The half-edges of a closed cell, with the sides that they cross.
+pub(crate) fn sides(
+    tessellation: &Tessellation,
+    polygon: &CellPolygon<f64>,
+    cell: usize,
+) -> impl Iterator<Item = (usize, Side)> {
+    let last = polygon.vertices().last();
+    let before = last.into_iter().chain(polygon.vertices());
+    let ends = before.zip(polygon.vertices()).zip(polygon.ring());
+    let side =
+        |((from, to), displacement): ((_, _), &Vector<f64>)| Side { from, to, displacement: *displacement };
+    tessellation.ring(cell).zip(ends.map(side))
+}
+
 /// Collects what `visit` finds for each closed cell, with the index of its square.
-fn by_square<S: Default, T: Copy + Send + Sync>(
+pub(crate) fn by_square<S: Default, T: Copy + Send + Sync>(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
     grid: &Grid,
@@ -329,10 +355,12 @@ fn area<S: Scalar>(polygon: &[Vector<S>]) -> S {
     polygon.windows(2).fold(S::constant(0.0), |sum, pair| sum + double(pair) * 0.5)
 }
 
-/// A side from one vertex to the next, relative to the cell.
-struct Side {
-    from: Vector<f64>,
-    to: Vector<f64>,
+/// A side from one vertex to the next, and the neighbour across it, relative to the cell.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Side {
+    pub from: Vector<f64>,
+    pub to: Vector<f64>,
+    pub displacement: Vector<f64>,
 }
 
 impl Side {

@@ -65,9 +65,12 @@ const CUT: f64 = 5.0;
 /// Least share of a window that trusted cells must fill for its velocity to be used.
 const FILLED: f64 = 0.999;
 
-/// The averages at given positions: sparse weights of cells for each grid point, and how they change.
+/// The averages at given positions: sparse weights of cells for each grid point.
 #[derive(Debug, Clone)]
 pub(crate) struct Sampling {
+    /// The grid with the patches that windows of areas stand for.
+    grid: Grid,
+    window: Window,
     /// First entry of each grid point, and the number of entries at the end.
     start: Vec<usize>,
     cell: Vec<u32>,
@@ -75,19 +78,11 @@ pub(crate) struct Sampling {
     weight: Vec<f64>,
     /// Derivative of the weight by the width of the window.
     by_width: Vec<f64>,
+    /// From the centres of cells to the grid point, where they have the weight.
+    displacement: Vec<Vector<f64>>,
+    /// Weight of all trusted cells of each window.
+    total: Vec<f64>,
     filled: Vec<bool>,
-    shift_start: Vec<usize>,
-    shifts: Vec<Shift>,
-}
-
-/// `dv_g += (u_to − u_from) (direction · dr_moved)` with `u_i = v_i − v_g` for trusted cells and zero for others: what
-/// moving a cell gains for one cell, at the expense of another.
-#[derive(Debug, Clone, Copy)]
-struct Shift {
-    to: u32,
-    from: Option<u32>,
-    moved: u32,
-    direction: Vector<f64>,
 }
 
 impl Sampling {
@@ -99,12 +94,28 @@ impl Sampling {
     ) -> Self {
         let trusted = |cell: u32| visibility[cell as usize] == Visibility::Counted;
         let Window { kind, width } = flow.window;
-        let of_area = |patch| Self::of_area(&flow.grid.with_patch(patch), tessellation, positions, trusted);
+        let mut sampling = Self {
+            grid: match kind {
+                WindowKind::Square => flow.grid.with_patch(Patch::Square(width)),
+                WindowKind::GaussianArea => flow.grid.with_patch(Patch::Gaussian(width)),
+                WindowKind::Gaussian => flow.grid,
+            },
+            window: flow.window,
+            start: vec![0],
+            cell: Vec::new(),
+            weight: Vec::new(),
+            by_width: Vec::new(),
+            displacement: Vec::new(),
+            total: Vec::new(),
+            filled: Vec::new(),
+        };
         match kind {
-            WindowKind::Square => of_area(Patch::Square(width)),
-            WindowKind::GaussianArea => of_area(Patch::Gaussian(width)),
-            WindowKind::Gaussian => Self::gaussian(flow, tessellation.domain(), positions, width, trusted),
+            WindowKind::Gaussian => sampling.fill_by_centres(tessellation.domain(), positions, trusted),
+            WindowKind::Square | WindowKind::GaussianArea => {
+                sampling.fill_by_area(tessellation, positions, trusted);
+            }
         }
+        sampling
     }
 
     /// Grid points whose window is filled by trusted cells.
@@ -113,59 +124,39 @@ impl Sampling {
     }
 
     /// Averages over patches of the plane.
-    fn of_area(
-        grid: &Grid,
+    fn fill_by_area(
+        &mut self,
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
         trusted: impl Fn(u32) -> bool,
-    ) -> Self {
-        let overlaps = overlaps(tessellation, positions, grid);
-        let pieces = side_pieces(tessellation, positions, grid);
-        let whole = grid.patch_area();
-        let mut sampling = Self::empty();
-        for square in 0..grid.len() {
+    ) {
+        let overlaps = overlaps(tessellation, positions, &self.grid);
+        let whole = self.grid.patch_area();
+        for square in 0..self.grid.len() {
             let entries = overlaps.square(square).iter().filter(|entry| trusted(entry.cell));
             let (area, growth) = entries
                 .clone()
                 .fold((0.0, 0.0), |(area, growth), entry| (area + entry.area, growth + entry.by_width));
-            sampling.filled.push(area > FILLED * whole);
             if area > 0.0 {
                 for entry in entries {
                     let weight = entry.area / area;
-                    sampling.cell.push(entry.cell);
-                    sampling.weight.push(weight);
-                    sampling.by_width.push((entry.by_width - weight * growth) / area);
-                }
-                for piece in pieces.square(square) {
-                    let (to, from) = (piece.cell, piece.neighbour);
-                    for (moved, gradient) in [to, from].into_iter().zip(piece.area_gradient()) {
-                        sampling.shifts.push(Shift {
-                            to,
-                            from: Some(from),
-                            moved,
-                            direction: gradient / area,
-                        });
-                    }
+                    self.cell.push(entry.cell);
+                    self.weight.push(weight);
+                    self.by_width.push((entry.by_width - weight * growth) / area);
                 }
             }
-            sampling.end_row();
+            self.end_row(area, area > FILLED * whole);
         }
-        sampling
     }
 
-    fn gaussian(
-        flow: &Flow,
-        domain: Domain,
-        positions: &[Vector<f64>],
-        width: f64,
-        trusted: impl Fn(u32) -> bool,
-    ) -> Self {
-        let mut rows: Vec<Vec<(u32, Vector<f64>)>> = vec![Vec::new(); flow.velocities.len()];
+    /// Averages over the cells' centres.
+    fn fill_by_centres(&mut self, domain: Domain, positions: &[Vector<f64>], trusted: impl Fn(u32) -> bool) {
+        let width = self.window.width;
+        let mut rows: Vec<Vec<(u32, Vector<f64>)>> = vec![Vec::new(); self.grid.len()];
         for (cell, r) in positions.iter().enumerate() {
-            flow.grid
+            self.grid
                 .for_centres_near(domain, *r, CUT * width, |datum, d| rows[datum].push((cell as u32, d)));
         }
-        let mut sampling = Self::empty();
         for row in rows {
             let weighted: Vec<(u32, Vector<f64>, f64)> = row
                 .into_iter()
@@ -173,38 +164,24 @@ impl Sampling {
                 .collect();
             let all: f64 = weighted.iter().map(|entry| entry.2).sum();
             let sum: f64 = weighted.iter().filter(|entry| trusted(entry.0)).map(|entry| entry.2).sum();
-            sampling.filled.push(sum > 0.0 && sum > FILLED * all);
             // ∂w/∂s = w d²/s³
             let growth = |d: Vector<f64>| d.norm_squared() / width.powi(3);
             let counted = weighted.into_iter().filter(|entry| trusted(entry.0));
             let mean = counted.clone().map(|(_, d, w)| growth(d) * w / sum).sum::<f64>();
             for (cell, d, w) in counted {
-                sampling.cell.push(cell);
-                sampling.weight.push(w / sum);
-                sampling.by_width.push((growth(d) - mean) * w / sum);
-                let direction = d * (w / (sum * width * width));
-                sampling.shifts.push(Shift { to: cell, from: None, moved: cell, direction });
+                self.cell.push(cell);
+                self.weight.push(w / sum);
+                self.by_width.push((growth(d) - mean) * w / sum);
+                self.displacement.push(d);
             }
-            sampling.end_row();
-        }
-        sampling
-    }
-
-    fn empty() -> Self {
-        Self {
-            start: vec![0],
-            cell: Vec::new(),
-            weight: Vec::new(),
-            by_width: Vec::new(),
-            filled: Vec::new(),
-            shift_start: vec![0],
-            shifts: Vec::new(),
+            self.end_row(sum, sum > 0.0 && sum > FILLED * all);
         }
     }
 
-    fn end_row(&mut self) {
+    fn end_row(&mut self, total: f64, filled: bool) {
         self.start.push(self.cell.len());
-        self.shift_start.push(self.shifts.len());
+        self.total.push(total);
+        self.filled.push(filled);
     }
 
     fn entries(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
@@ -229,9 +206,24 @@ impl Sampling {
         (0..self.filled.len()).map(of_row).collect()
     }
 
-    /// `∂v_g/∂r_j` from the velocities of the cells and their Jacobian.
-    pub fn jacobian(&self, velocities: &[Vector<f64>], of_cells: &BlockMatrix) -> BlockMatrix {
+    /// `∂v_g/∂r_j` from the velocities of the cells and their Jacobian, at the positions of the averages.
+    ///
+    /// What moving a cell gains for cell i, at the expense of cell j, changes the average by `(u_i − u_j) (direction · dr)` with
+    /// `u_i = v_i − v_g` for trusted cells and zero for others.
+    pub fn jacobian(
+        &self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        velocities: &[Vector<f64>],
+        of_cells: &BlockMatrix,
+    ) -> BlockMatrix {
         let averages = self.average(velocities);
+        let sides = match self.window.kind {
+            WindowKind::Gaussian => None,
+            WindowKind::Square | WindowKind::GaussianArea => {
+                Some(side_pieces(tessellation, positions, &self.grid))
+            }
+        };
         let mut matrix = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
         let mut place = vec![usize::MAX; velocities.len()];
         let mut trusted = vec![false; velocities.len()];
@@ -251,14 +243,31 @@ impl Sampling {
                 trusted[cell] = true;
                 of_cells.row(cell).for_each(|(column, block)| add(column, block.map(|b| w * b)));
             }
-            for shift in &self.shifts[self.shift_start[row]..self.shift_start[row + 1]] {
-                let excess = |cell: u32| match trusted[cell as usize] {
-                    true => velocities[cell as usize] - average,
-                    false => Vector::zeros(),
-                };
-                let u = excess(shift.to) - shift.from.map_or(Vector::zeros(), excess);
-                let d = shift.direction;
-                add(shift.moved as usize, [u.x * d.x, u.x * d.y, u.y * d.x, u.y * d.y]);
+            let mut shift = |moved: usize, u: Vector<f64>, direction: Vector<f64>| {
+                let d = direction;
+                add(moved, [u.x * d.x, u.x * d.y, u.y * d.x, u.y * d.y]);
+            };
+            match &sides {
+                Some(sides) if self.total[row] > 0.0 => {
+                    let excess = |cell: usize| match trusted[cell] {
+                        true => velocities[cell] - average,
+                        false => Vector::zeros(),
+                    };
+                    for piece in sides.square(row) {
+                        let cells = [piece.cell as usize, piece.neighbour as usize];
+                        let u = excess(cells[0]) - excess(cells[1]);
+                        for (moved, gradient) in cells.into_iter().zip(piece.area_gradient()) {
+                            shift(moved, u, gradient / self.total[row]);
+                        }
+                    }
+                }
+                Some(_) => {}
+                None => {
+                    let displacements = &self.displacement[self.start[row]..self.start[row + 1]];
+                    for ((cell, w), d) in self.entries(row).zip(displacements) {
+                        shift(cell, velocities[cell] - average, *d * (w / self.window.width.powi(2)));
+                    }
+                }
             }
             matrix.column[first..].iter().for_each(|&column| place[column as usize] = usize::MAX);
             self.entries(row).for_each(|(cell, _)| trusted[cell] = false);
@@ -306,7 +315,8 @@ mod tests {
             let sampling = Sampling::new(&flow, &tessellation, &positions, &visibility);
             assert!(sampling.filled().iter().all(|filled| *filled));
             let v = velocities(&tessellation, &positions, &model);
-            let exact = sampling.jacobian(&v, &jacobian(&tessellation, &positions, &model));
+            let of_cells = jacobian(&tessellation, &positions, &model);
+            let exact = sampling.jacobian(&tessellation, &positions, &v, &of_cells);
             let scale = exact.block.iter().flatten().fold(0.0, |max: f64, b| max.max(b.abs()));
             let at_width = |width: f64| {
                 let flow = Flow { window: Window { width, ..window }, ..flow.clone() };

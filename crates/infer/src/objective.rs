@@ -127,7 +127,9 @@ impl<'a> Nudged<'a> {
         let of_cells = jacobian(&self.tessellation, &self.positions, &model);
         match &self.sampling {
             None => of_cells,
-            Some(sampling) => sampling.jacobian(&evaluated.of_cells, &of_cells),
+            Some(sampling) => {
+                sampling.jacobian(&self.tessellation, &self.positions, &evaluated.of_cells, &of_cells)
+            }
         }
     }
 }

@@ -2,7 +2,8 @@
 
 use crate::samples::{difference, honeycomb, periodic, random, sheared, squares};
 use voronudge_geometry::{
-    BySquare, Domain, Error, Grid, Overlap, Tessellation, Vector, areas, overlaps, perimeters, side_pieces,
+    BySquare, Domain, Error, Grid, Overlap, Patch, Tessellation, Vector, areas, overlaps, perimeters,
+    side_pieces,
 };
 
 /// A grid that covers a box once, its lower left corner anywhere.
@@ -145,6 +146,8 @@ fn check_derivatives(positions: &[Vector<f64>], domain: Domain, grid: &Grid) -> 
     let tessellation = Tessellation::new(positions, domain)?;
     let pieces = side_pieces(&tessellation, positions, grid);
     let step = 1e-6;
+    // Gaussian patches end where their weight is 4e-6.
+    let tolerance = if matches!(grid.patch(), Patch::Gaussian(_)) { 1e-5 } else { 1e-6 };
     let mut largest: f64 = 0.0;
     for moved in 0..cells {
         for axis in 0..2 {
@@ -170,7 +173,10 @@ fn check_derivatives(positions: &[Vector<f64>], domain: Domain, grid: &Grid) -> 
             for (k, found) in derivative.iter().enumerate() {
                 let expected = (after[k] - before[k]) / (2.0 * step);
                 if tessellation.is_closed(k % cells) {
-                    assert!((found - expected).abs() < 1e-6 * (1.0 + expected.abs()), "{found} {expected}");
+                    assert!(
+                        (found - expected).abs() < tolerance * (1.0 + expected.abs()),
+                        "{found} {expected}"
+                    );
                     largest = largest.max(expected.abs());
                 }
             }
@@ -194,6 +200,49 @@ fn derivatives_of_areas_agree_with_differences() -> Result<(), Error> {
     let (hexagons, lengths) = honeycomb(4, 4);
     check_derivatives(&hexagons, periodic(lengths)?, &Grid::new([0.1, 0.2], [0.7, 0.8], [5, 5])?)?;
     check_derivatives(&random(40, [6.0, 6.0], 19), Domain::Open, &Grid::new([1.0, 1.0], [1.3, 0.9], [4, 5])?)
+}
+
+/// As before, of Gaussian patches: narrow ones, and some that meet the same cell in several images.
+#[test]
+fn derivatives_of_gaussian_patches_agree_with_differences() -> Result<(), Error> {
+    let lengths = [5.0, 4.0];
+    let grid =
+        |width: f64| Ok(Grid::new([-0.4, 0.3], [1.3, 1.1], [4, 4])?.with_patch(Patch::Gaussian(width)));
+    for (cells, width) in [(20, 0.4), (20, 1.1), (3, 0.6)] {
+        check_derivatives(&random(cells, lengths, 13), sheared(lengths, 1.7)?, &grid(width)?)?;
+    }
+    check_derivatives(&random(40, [6.0, 6.0], 19), Domain::Open, &grid(0.4)?)
+}
+
+/// All cells together fill a Gaussian patch, each its share of the plane by a sum over a mesh.
+#[test]
+fn cells_share_a_gaussian_patch() -> Result<(), Error> {
+    let (lengths, width) = ([5.0, 4.0], 0.6);
+    for cells in [1, 3, 25] {
+        let positions = random(cells, lengths, 29);
+        let tessellation = Tessellation::new(&positions, sheared(lengths, 1.7)?)?;
+        let grid = Grid::new([0.3, 1.2], [1.0, 1.0], [2, 1])?.with_patch(Patch::Gaussian(width));
+        let overlaps = overlaps(&tessellation, &positions, &grid);
+        for square in 0..grid.len() {
+            assert!((overlaps.covered(square) / grid.patch_area() - 1.0).abs() < 1e-5);
+            let mut expected = vec![0.0; cells];
+            let (mesh, step) = (300, 12.0 * width / 300.0);
+            for (ix, iy) in (0..mesh).flat_map(|ix| (0..mesh).map(move |iy| (ix, iy))) {
+                let from_centre = Vector::new(f64::from(ix) + 0.5, f64::from(iy) + 0.5) * step
+                    - Vector::new(6.0 * width, 6.0 * width);
+                let x = grid.centre(square) + from_centre;
+                let distance = |cell: &usize| tessellation.domain().shortest(positions[*cell] - x).norm();
+                let nearest = (0..cells).min_by(|i, j| distance(i).total_cmp(&distance(j)));
+                let weight = (-0.5 * from_centre.norm_squared() / (width * width)).exp();
+                expected[nearest.unwrap()] += weight * step * step;
+            }
+            for overlap in overlaps.square(square) {
+                let expected = expected[overlap.cell as usize];
+                assert!((overlap.area - expected).abs() < 0.01 * grid.patch_area(), "{overlap:?} {expected}");
+            }
+        }
+    }
+    Ok(())
 }
 
 /// Two cells of a square lattice approach each other, then part: their neighbours change at the perfect lattice.
