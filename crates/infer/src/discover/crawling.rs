@@ -8,6 +8,10 @@ use super::steps::{Model, Setting};
 use crate::Estimate;
 use crate::tracks::{Alignment, Drive, Polarity};
 
+/// Least evidence of what turns a polarity, as a share of that of both together. How polarities turn is a model of the simplest kind, and less
+/// than this is what it may be wrong by.
+const LEAST_SHARE: f64 = 0.01;
+
 /// Coefficients of a polarity: its speed and how fast it is forgotten; of what turns it: one.
 fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
     if setting.candidates[candidate].turns_polarity() { 1 } else { 2 }
@@ -80,11 +84,18 @@ impl<'a> Crawling<'a> {
         })
     }
 
-    /// Why it is none, if it is a polarity that is forgotten within an interval as far as these tracks can tell, beside so many other effects.
+    /// Why it is none beside so many other effects, if it is a polarity that is forgotten within an interval as far as these tracks can tell,
+    /// or turns one too little.
     pub fn reason_against(&self, setting: &Setting<'_>, others: usize) -> Option<&'static str> {
+        if let Some(Turn { evidence, .. }) = self.turn {
+            let all = self.polarity.evidence + evidence;
+            return (evidence < LEAST_SHARE * all).then_some(
+                "it explains less than a hundredth of what the polarity does, whose own form is not known as well as that",
+            );
+        }
         let level = setting.level(others) / setting.named(&[]).len() as f64;
         let lasts = self.polarity.evidence_of_memory >= critical_chi_squared(level, 1.0);
-        (self.turn.is_none() && !lasts).then_some(
+        (!lasts).then_some(
             "it is forgotten within an interval, as far as these tracks can tell: that is random motion",
         )
     }

@@ -8,6 +8,7 @@ use super::classes::LEAD;
 use super::growth::{Grown, Growth};
 use super::lineup::{added_places, upper_chi_squared};
 use super::ranking::{self, by_evidence, untested};
+use super::resilience::weakness_of_difference;
 use super::result::{Fate, Ranked, Selected};
 use super::steps::{Model, Setting};
 use crate::search::Watch;
@@ -120,6 +121,17 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
             let against = match evidence_of_field(&objective, &at, known) {
                 Ok(smooth) => (smooth > most + PRICE_OF_FIELD).then_some(SMOOTH),
                 Err(_) => Some(UNTOLD),
+            };
+            let parameter = setting.candidates[candidate].differing();
+            let against = match (against, parameter) {
+                (None, Some(parameter)) => {
+                    let left = |frames: &[Observation]| {
+                        evidence(&model.objective_on(frames), &at, known, &[], parameter).ok()
+                    };
+                    let is_chance = |fall| adjusted_p(setting, fall) >= setting.level(model.added.len());
+                    weakness_of_difference(setting, model, most, left, is_chance)?
+                }
+                (against, _) => against,
             };
             if let Some(reason) = against {
                 let own = sought.ranked.iter_mut().filter(|own| own.fate == Fate::Explained);

@@ -1,5 +1,5 @@
-//! Whether an effect stands without the data that could decide for it alone: those that speak most for it, those around one place,
-//! those near cells that were put in, and those at the rim of what is certain.
+//! Whether an effect, or that cells differ, stands without the data that could decide for it alone: those that speak most for it, those
+//! around one place, those near cells that were put in, and those at the rim of what is certain.
 
 use super::chance::Chance;
 use super::lineup::{Lineup, Score};
@@ -25,6 +25,11 @@ const ENOUGH: f64 = 0.3;
 
 /// Least statistic of an effect there, as a share of what is expected of it.
 const LEAST: f64 = 0.25;
+
+/// Why effects do not stand.
+const ONE_PLACE: &str = "it rests on one place, where a cell that was not detected could be as well: without the velocities within two cells of \
+                         it, it is no more than chance";
+const AT_UNSEEN: &str = "it is not there away from the cells that were not detected";
 
 /// Which velocities of each frame are left out.
 type Mask = Vec<Vec<bool>>;
@@ -68,11 +73,7 @@ impl Member<'_> {
                 speaking.most(),
                 "it rests on a few velocities: without the 2 % that speak most for it, it is no more than chance",
             ),
-            (
-                speaking.around_one_place(),
-                "it rests on one place, where a cell that was not detected could be as well: without the velocities within two cells of it, \
-                 it is no more than chance",
-            ),
+            (speaking.around_one_place(), ONE_PLACE),
         ];
         for (out, reason) in tests {
             let Rest { score, adjusted_p, .. } = self.without(setting, base, model, &out)?;
@@ -82,7 +83,7 @@ impl Member<'_> {
         }
         let acts_at_edge = setting.candidates[self.candidate].effect.acts_at_edge();
         let doubtful = [
-            (near_unseen(setting.frames), "it is not there away from the cells that were not detected"),
+            (near_unseen(setting.frames), AT_UNSEEN),
             (
                 if acts_at_edge { Mask::new() } else { at_the_rim(setting.frames) },
                 "it is not there away from the rim of what is seen for certain",
@@ -119,6 +120,30 @@ impl Member<'_> {
     }
 }
 
+/// Why it does not stand that cells differ beside a model, if it does not. `evidence` is how much speaks for it in frames from which some
+/// velocities are left out, `all` how much in all, and `is_chance` whether so much is no more than chance.
+pub(super) fn weakness_of_difference(
+    setting: &Setting<'_>,
+    model: &Model,
+    all: f64,
+    evidence: impl Fn(&[Observation]) -> Option<f64>,
+    is_chance: impl Fn(f64) -> bool,
+) -> Result<Option<&'static str>, Error> {
+    let frames = model.frames(setting.frames);
+    let left_of = |out: &Mask| -> Option<f64> {
+        let rest: Vec<Observation> = frames.iter().zip(out).map(|(frame, out)| without(frame, out)).collect();
+        evidence(&rest)
+    };
+    if left_of(&Speaking::of_rest(setting, model)?.around_one_place()).is_some_and(is_chance) {
+        return Ok(Some(ONE_PLACE));
+    }
+    let unseen = near_unseen(frames);
+    let share = left(frames, &unseen);
+    let is_known = share < 1.0 && share > ENOUGH;
+    let fails = is_known && left_of(&unseen).is_some_and(|left| left < LEAST * share * all);
+    Ok(fails.then_some(AT_UNSEEN))
+}
+
 /// How much each velocity speaks for an effect of a model.
 struct Speaking<'a> {
     frames: &'a [Observation],
@@ -132,10 +157,25 @@ impl<'a> Speaking<'a> {
         let data =
             frames.iter().enumerate().flat_map(|(index, own)| own.targets().map(move |own| (index, own.0)));
         let own = partial(setting, model, places)?.into_iter().zip(data);
-        let mut all: Vec<(f64, usize, usize)> =
-            own.map(|([predicted, rest], (index, datum))| (predicted.dot(&rest), index, datum)).collect();
+        let all = own.map(|([predicted, rest], (index, datum))| (predicted.dot(&rest), index, datum));
+        Ok(Self::sorted(frames, all.collect()))
+    }
+
+    /// By what a model leaves of them.
+    fn of_rest(setting: &Setting<'a>, model: &Model) -> Result<Self, Error> {
+        let mut all = Vec::new();
+        let objective = model.objective(setting.frames);
+        for (index, nudges) in nudges(setting.frames, &model.inference).iter().enumerate() {
+            let evaluated = objective.place(index, nudges)?.evaluate(model.inference.coefficients.as_slice());
+            let rests = residuals(&setting.frames[index], &evaluated.predicted);
+            all.extend(rests.into_iter().map(|(datum, rest)| (rest.norm_squared(), index, datum)));
+        }
+        Ok(Self::sorted(setting.frames, all))
+    }
+
+    fn sorted(frames: &'a [Observation], mut all: Vec<(f64, usize, usize)>) -> Self {
         all.sort_by(|a, b| b.0.total_cmp(&a.0).then((a.1, a.2).cmp(&(b.1, b.2))));
-        Ok(Self { frames, all })
+        Self { frames, all }
     }
 
     fn nothing(&self) -> Mask {

@@ -280,8 +280,10 @@ impl Search<'_> {
             .par_iter_mut()
             .map(|scene| {
                 scene.explain(&evidence.law);
+                // Each is compared with what is around it then: two could take turns without end.
+                let most = scene.changes.len();
                 let (mut made, mut index) = (0, 0);
-                while index < scene.changes.len() {
+                while index < scene.changes.len() && made < most {
                     match rearranged(scene, index, &evidence)? {
                         Some(changes) => {
                             scene.change(changes)?;

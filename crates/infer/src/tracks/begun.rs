@@ -87,6 +87,8 @@ impl<'a, 'w> Begun<'a, 'w> {
         let mut course = Course::new(movie, request, space, watch, (rule, levels, memory));
         let naive = naive_coefficients(&course.objective(&states))?;
         states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
+        let integrated = earlier.states.integrated.as_ref().filter(|_| course.memory.is_some());
+        states.integrated = integrated.filter(|own| own.is_of(space.dimension())).cloned();
         let at = course.approach(&states, at)?;
         Ok(Self { course, at, naive, states })
     }

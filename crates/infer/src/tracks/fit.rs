@@ -40,7 +40,7 @@ pub(super) fn least_scatter(position: f64, interval: f64) -> f64 {
 const LOOSENINGS: usize = 5;
 const ACCEPTED_EXCESS: f64 = 2.5;
 
-/// How often what integrating over the unknowns adds is found: where the first has led it is another.
+/// How often what integrating over the unknowns adds is found: where the first has led it is another. That of a similar model is a first.
 const INTEGRATIONS: usize = 2;
 
 /// Relative decrease of the objective that counts as none: at the end, on the way, and until it is known whether noise levels are too low.
@@ -192,7 +192,7 @@ impl<'a> Course<'a, '_> {
         if self.memory.is_none() {
             return Ok(at);
         }
-        for _ in 0..INTEGRATIONS {
+        for _ in usize::from(states.integrated.is_some())..INTEGRATIONS {
             at = self.settle(states, at, FINAL)?;
             match Integrated::at(&self.objective(states), &at) {
                 Ok(integrated) => states.integrated = Some(integrated),

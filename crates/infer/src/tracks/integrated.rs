@@ -86,6 +86,11 @@ impl Integrated {
         Ok(Self { about: DVector::from_column_slice(objective.split(parameters).0), slope })
     }
 
+    /// Whether it is one of a model with so many free coefficients.
+    pub fn is_of(&self, coefficients: usize) -> bool {
+        self.about.len() == coefficients
+    }
+
     /// Of a share of the data.
     pub fn of_share(&self, share: f64) -> Self {
         Self { about: self.about.clone(), slope: &self.slope * share }
