@@ -214,10 +214,8 @@ fn square_overlaps(
 
 /// The least rectangle around a polygon: its lower left and its upper right corner.
 pub(crate) fn bounds(polygon: &CellPolygon<f64>) -> [Vector<f64>; 2] {
-    let Some(first) = polygon.vertices().next() else {
-        return [Vector::zeros(); 2];
-    };
-    polygon.vertices().fold([first; 2], |[low, high], vertex| [low.inf(&vertex), high.sup(&vertex)])
+    let none = [f64::INFINITY, f64::NEG_INFINITY].map(|end| Vector::new(end, end));
+    polygon.vertices().fold(none, |[low, high], vertex| [low.inf(&vertex), high.sup(&vertex)])
 }
 
 /// The half-edges of a closed cell, with the sides that they cross.
