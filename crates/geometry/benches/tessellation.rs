@@ -1,4 +1,5 @@
-//! Tessellation of disordered periodic tissues, per cell and against the number of cells. One thread.
+//! Tessellation of disordered periodic tissues, per cell and against the number of cells, and the parts of cells in the patches of a grid, per
+//! patch. One thread.
 //!
 //! `cargo bench -p voronudge-geometry`
 
@@ -7,7 +8,9 @@
 use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Tessellation, Vector};
+use voronudge_geometry::{
+    Domain, Grid, MovingTessellation, Patch, PeriodicBox, Tessellation, Vector, overlaps, side_pieces,
+};
 
 fn main() {
     divan::main();
@@ -71,4 +74,37 @@ fn follow(bencher: Bencher, (side, order): (usize, Order)) {
         there = !there;
         moving.renew(divan::black_box(if there { &moved } else { &positions }))
     });
+}
+
+/// Patches a half apart that overlap, as windows of a flow field do, over all of a tissue.
+fn patches(side: usize, patch: Patch) -> Grid {
+    let grid = Grid::new([0.25; 2], [0.5; 2], [2 * side; 2]).expect("positive spacings");
+    grid.with_patch(patch)
+}
+
+const PATCHES: [(usize, Patch); 4] = [
+    (10, Patch::Square(1.0)),
+    (100, Patch::Square(1.0)),
+    (10, Patch::Gaussian(0.7)),
+    (100, Patch::Gaussian(0.7)),
+];
+
+/// The area of each cell in each patch.
+#[divan::bench(args = PATCHES, sample_count = 10)]
+fn areas_in_patches(bencher: Bencher, (side, patch): (usize, Patch)) {
+    let ((positions, domain), grid) = (tissue(side, Order::Rows, 0.3), patches(side, patch));
+    let tessellation = Tessellation::new(&positions, domain).expect("distinct cells");
+    bencher
+        .counter(ItemsCount::new(grid.len()))
+        .bench_local(|| overlaps(&tessellation, divan::black_box(&positions), &grid));
+}
+
+/// The pieces of sides in each patch, by which these areas change.
+#[divan::bench(args = PATCHES, sample_count = 10)]
+fn sides_in_patches(bencher: Bencher, (side, patch): (usize, Patch)) {
+    let ((positions, domain), grid) = (tissue(side, Order::Rows, 0.3), patches(side, patch));
+    let tessellation = Tessellation::new(&positions, domain).expect("distinct cells");
+    bencher
+        .counter(ItemsCount::new(grid.len()))
+        .bench_local(|| side_pieces(&tessellation, divan::black_box(&positions), &grid));
 }
