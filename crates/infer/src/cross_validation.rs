@@ -22,6 +22,8 @@ pub(crate) struct Folds {
     pub of_frames: bool,
     /// Squared error and sum of squares of each.
     folds: Vec<(f64, f64)>,
+    /// Perhaps the same of each region of the field, of all folds together: folds can be too few to tell how much they scatter.
+    regions: Vec<(f64, f64)>,
     /// For each frame and datum what was predicted of its velocity; `None` where it has no target or was in no fold.
     pub velocities: Vec<Vec<Option<Vector<f64>>>>,
 }
@@ -53,27 +55,44 @@ impl Folds {
             velocities[*frame][*datum] = Some(*v);
         }
         let folds = tested.iter().map(|fold| fold.squares).filter(|(_, total)| *total > 0.0).collect();
-        Self { of_frames, folds, velocities }
+        Self { of_frames, folds, regions: Vec::new(), velocities }
     }
 
-    /// From squared errors and sums of squares alone.
-    pub fn of_squares(of_frames: bool, folds: Vec<(f64, f64)>) -> Self {
-        Self { of_frames, folds, velocities: Vec::new() }
+    /// From the squared errors and sums of squares of each region in each fold alone.
+    pub fn of_regions(of_frames: bool, folds: &[Vec<(f64, f64)>]) -> Self {
+        let add = |sum: (f64, f64), part: &(f64, f64)| (sum.0 + part.0, sum.1 + part.1);
+        let count = folds.iter().map(Vec::len).min().unwrap_or(0);
+        let region = |k: usize| folds.iter().map(|fold| &fold[k]).fold((0.0, 0.0), add);
+        Self {
+            of_frames,
+            folds: folds.iter().map(|fold| fold.iter().fold((0.0, 0.0), add)).collect(),
+            regions: (0..count).map(region).collect(),
+            velocities: Vec::new(),
+        }
     }
 
     pub fn count(&self) -> usize {
         self.folds.len()
     }
 
-    /// Normalised error, pooled, and its standard error over folds.
+    /// Normalised error, pooled, and its standard error: over folds, or over regions if these scatter more.
     pub fn error(&self) -> [f64; 2] {
-        ratio(self.folds.iter().copied())
+        larger(ratio(self.folds.iter().copied()), ratio(self.regions.iter().copied()))
     }
 
     /// By how much another model's error is less, on the same folds.
     pub fn gain(&self, other: &Self) -> [f64; 2] {
-        ratio(self.folds.iter().zip(&other.folds).map(|(a, b)| (a.0 - b.0, a.1)))
+        let gain = |own: &[(f64, f64)], other: &[(f64, f64)]| {
+            let pairs: Vec<(f64, f64)> = own.iter().zip(other).map(|(a, b)| (a.0 - b.0, a.1)).collect();
+            ratio(pairs.into_iter())
+        };
+        larger(gain(&self.folds, &other.folds), gain(&self.regions, &other.regions))
     }
+}
+
+/// A value with the larger of two standard errors; of fewer than two parts there is none.
+fn larger([value, error]: [f64; 2], [_, other]: [f64; 2]) -> [f64; 2] {
+    [value, error.max(other)]
 }
 
 /// A ratio of sums over folds with its standard error.
@@ -217,4 +236,22 @@ pub(crate) fn without(frame: &Observation, held_out: &[bool]) -> Observation {
     }
     let degree = training.background_degree();
     training.with_background(degree)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Two folds may happen to be alike where their parts are not.
+    #[test]
+    fn folds_that_are_alike_do_not_hide_what_regions_scatter() {
+        let fold = vec![(1.0, 2.0), (3.0, 2.0)];
+        let before = Folds::of_regions(true, &[fold.clone(), fold]);
+        assert_eq!(before.error(), [1.0, 0.5]);
+        let after = Folds::of_regions(true, &[vec![(1.0, 2.0), (1.0, 2.0)], vec![(1.0, 2.0), (1.0, 2.0)]]);
+        assert_eq!(before.gain(&after), [0.5, 0.5]);
+        // Folds that scatter more are believed.
+        let apart = Folds::of_regions(true, &[vec![(1.0, 2.0), (1.0, 2.0)], vec![(3.0, 2.0), (3.0, 2.0)]]);
+        assert_eq!(apart.error(), [1.0, 0.5]);
+    }
 }

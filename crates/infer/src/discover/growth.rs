@@ -14,6 +14,9 @@ use crate::search::Watch;
 /// Effects refused because of velocities held out before the search ends.
 const MOST_REFUSED: usize = 3;
 
+/// Why a candidate is refused that cannot be fitted.
+const UNFITTED: &str = "the fit with it fails";
+
 /// A search under way.
 pub(super) struct Growth<'a> {
     pub setting: Setting<'a>,
@@ -108,7 +111,17 @@ impl<'a> Growth<'a> {
                 hinted.into_iter().partition(|ranked| ranked.effect.id == id);
             others.into_iter().for_each(|ranked| self.ranking.put(ranked));
             let added = current.added.iter().copied().chain([candidate]).collect();
-            let model = self.setting.fit(added, Some(current), watch)?;
+            let model = match self.setting.fit(added, Some(current), watch) {
+                Ok(model) => model,
+                Err(Error::Interrupted) => return Err(Error::Interrupted),
+                // One candidate that leads a fit astray is no end of a search.
+                Err(_) => {
+                    own.into_iter().for_each(|ranked| self.ranking.put(ranked));
+                    self.refuse(candidate, UNFITTED);
+                    refused.push(candidate);
+                    continue;
+                }
+            };
             let after = Unseen::new(&self.setting, (&model, &model), self.split, watch)?;
             let against = match current.is_plain() && model.is_plain() {
                 true => before.reason_against(&after),

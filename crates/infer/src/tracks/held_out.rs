@@ -17,6 +17,10 @@ const FOLDS: usize = 4;
 /// Fewest intervals of which some are left out as a whole.
 const FEWEST_INTERVALS: usize = 3;
 
+/// Regions of the field along each axis, over which errors scatter beside folds; and parts that are left out where intervals are few.
+const REGIONS: usize = 4;
+const PARTS: usize = 2;
+
 /// Steps of integration from frame to frame up to which cells hardly relax in between.
 const FEW_STEPS: usize = 4;
 
@@ -130,6 +134,7 @@ pub(super) fn cross_validate(
     let folds = folds(objective.movie, all);
     let numbers: Vec<usize> = (0..FOLDS).collect();
     let known = information * KNOWN;
+    let regions = Regions::new(all, REGIONS);
     let tested = watch.each("cross-validation", &numbers, 1.0, |fold| {
         let left = |motion: &Motion| folds[motion.track as usize][motion.interval] != *fold;
         let motions: Vec<Motion> = all.motions.iter().filter(|m| left(m)).copied().collect();
@@ -149,18 +154,19 @@ pub(super) fn cross_validate(
         let objective = MovieObjective { rule, ..*objective };
         let placed = objective.place(&point)?;
         let displacements = objective.split(&point).1;
-        let (mut error, mut total, mut predicted) = (0.0, 0.0, Vec::new());
+        let (mut squares, mut predicted) = (vec![(0.0, 0.0); regions.count()], Vec::new());
         for (motion, seen) in all.motions.iter().zip(&measured.velocities).filter(|(motion, _)| !left(motion))
         {
             let Some(seen) = seen else { continue };
             let mean = objective.mean_velocity(&placed, motion, displacements);
             // Without a polygon nothing is predicted.
             let mean = if mean.norm_squared().is_finite() { mean } else { Vector::zeros() };
-            error += (seen - mean).norm_squared();
-            total += seen.norm_squared();
+            let (error, total) = &mut squares[regions.of(all, motion)];
+            *error += (seen - mean).norm_squared();
+            *total += seen.norm_squared();
             predicted.push((motion.interval, motion.track, mean));
         }
-        Ok((total > 0.0).then_some(((error, total), predicted)))
+        Ok(squares.iter().any(|(_, total)| *total > 0.0).then_some((squares, predicted)))
     })?;
     let tested: Vec<_> = tested.into_iter().flatten().collect();
     let mut predicted = vec![BTreeMap::new(); objective.movie.frames() - 1];
@@ -168,8 +174,8 @@ pub(super) fn cross_validate(
         predicted[*interval].insert(*track, *v);
     }
     let of_frames = intervals(objective.movie) >= FEWEST_INTERVALS;
-    let squares: Vec<(f64, f64)> = tested.iter().map(|fold| fold.0).collect();
-    Ok((squares.len() >= 2).then(|| HeldOut { folds: Folds::of_squares(of_frames, squares), predicted }))
+    let squares: Vec<Vec<(f64, f64)>> = tested.into_iter().map(|fold| fold.0).collect();
+    Ok((squares.len() >= 2).then(|| HeldOut { folds: Folds::of_regions(of_frames, &squares), predicted }))
 }
 
 /// A Gauss–Newton step from some unknowns to those of a fit, near some coefficients.
@@ -198,23 +204,45 @@ fn intervals(movie: &Movie) -> usize {
 fn folds(movie: &Movie, states: &States) -> Vec<Vec<usize>> {
     let intervals = intervals(movie);
     let mut folds = vec![vec![usize::MAX; intervals]; movie.tracks.len()];
-    let median = |axis: usize| {
-        let mut all: Vec<f64> = states.start.iter().map(|r| r[axis]).collect();
-        all.sort_unstable_by(f64::total_cmp);
-        all.get(all.len() / 2).copied().unwrap_or(0.0)
-    };
-    let middle = Vector::new(median(0), median(1));
+    let parts = Regions::new(states, PARTS);
     for motion in &states.motions {
         let fold = if intervals >= FEWEST_INTERVALS {
             // The first finds where the cells are.
             if motion.interval == 0 { usize::MAX } else { motion.interval % FOLDS.min(intervals - 1) }
         } else {
-            let r = states.instants[motion.interval].cells.positions[motion.cells[0] as usize];
-            usize::from(r.x > middle.x) + 2 * usize::from(r.y > middle.y)
+            parts.of(states, motion)
         };
         folds[motion.track as usize][motion.interval] = fold;
     }
     folds
+}
+
+/// Parts of the field between quantiles of where the cells are at first.
+struct Regions {
+    ends: [Vec<f64>; 2],
+}
+
+impl Regions {
+    /// So many along each axis.
+    fn new(states: &States, along: usize) -> Self {
+        let ends = [0, 1].map(|axis| {
+            let mut all: Vec<f64> = states.start.iter().map(|r| r[axis]).collect();
+            all.sort_unstable_by(f64::total_cmp);
+            (1..along).filter_map(|k| all.get(k * all.len() / along).copied()).collect()
+        });
+        Self { ends }
+    }
+
+    fn count(&self) -> usize {
+        (self.ends[0].len() + 1) * (self.ends[1].len() + 1)
+    }
+
+    /// That in which a motion begins.
+    fn of(&self, states: &States, motion: &Motion) -> usize {
+        let r = states.instants[motion.interval].cells.positions[motion.cells[0] as usize];
+        let [x, y] = [0, 1].map(|axis| self.ends[axis].partition_point(|end| *end < r[axis]));
+        x + (self.ends[0].len() + 1) * y
+    }
 }
 
 #[cfg(test)]
