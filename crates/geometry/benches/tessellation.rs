@@ -89,22 +89,27 @@ const PATCHES: [(usize, Patch); 4] = [
     (100, Patch::Gaussian(0.7)),
 ];
 
-/// The area of each cell in each patch.
-#[divan::bench(args = PATCHES, sample_count = 10)]
-fn areas_in_patches(bencher: Bencher, (side, patch): (usize, Patch)) {
+/// What is found in each patch of a tissue.
+fn in_patches<T>(
+    bencher: Bencher,
+    (side, patch): (usize, Patch),
+    find: impl Fn(&Tessellation, &[Vector<f64>], &Grid) -> T,
+) {
     let ((positions, domain), grid) = (tissue(side, Order::Rows, 0.3), patches(side, patch));
     let tessellation = Tessellation::new(&positions, domain).expect("distinct cells");
     bencher
         .counter(ItemsCount::new(grid.len()))
-        .bench_local(|| overlaps(&tessellation, divan::black_box(&positions), &grid));
+        .bench_local(|| find(&tessellation, divan::black_box(&positions), &grid));
+}
+
+/// The area of each cell in each patch.
+#[divan::bench(args = PATCHES, sample_count = 10)]
+fn areas_in_patches(bencher: Bencher, tissue: (usize, Patch)) {
+    in_patches(bencher, tissue, overlaps);
 }
 
 /// The pieces of sides in each patch, by which these areas change.
 #[divan::bench(args = PATCHES, sample_count = 10)]
-fn sides_in_patches(bencher: Bencher, (side, patch): (usize, Patch)) {
-    let ((positions, domain), grid) = (tissue(side, Order::Rows, 0.3), patches(side, patch));
-    let tessellation = Tessellation::new(&positions, domain).expect("distinct cells");
-    bencher
-        .counter(ItemsCount::new(grid.len()))
-        .bench_local(|| side_pieces(&tessellation, divan::black_box(&positions), &grid));
+fn sides_in_patches(bencher: Bencher, tissue: (usize, Patch)) {
+    in_patches(bencher, tissue, side_pieces);
 }

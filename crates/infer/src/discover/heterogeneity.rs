@@ -117,21 +117,22 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
         if adjusted_p(setting, most) >= setting.level(model.added.len() + beside.len()) {
             break;
         }
+        let place = open.iter().position(|own| own.0 == candidate).unwrap_or_default();
+        let (candidate, parameter) = open.remove(place);
         if beside.is_empty() {
             let against = match evidence_of_field(&objective, &at, known) {
                 Ok(smooth) => (smooth > most + PRICE_OF_FIELD).then_some(SMOOTH),
                 Err(_) => Some(UNTOLD),
             };
-            let parameter = setting.candidates[candidate].differing();
-            let against = match (against, parameter) {
-                (None, Some(parameter)) => {
+            let against = match against {
+                None => {
                     let left = |frames: &[Observation]| {
                         evidence(&model.objective_on(frames), &at, known, &[], parameter).ok()
                     };
                     let is_chance = |fall| adjusted_p(setting, fall) >= setting.level(model.added.len());
                     weakness_of_difference(setting, model, most, left, is_chance)?
                 }
-                (against, _) => against,
+                against => against,
             };
             if let Some(reason) = against {
                 let own = sought.ranked.iter_mut().filter(|own| own.fate == Fate::Explained);
@@ -141,8 +142,6 @@ fn sought(setting: &Setting<'_>, model: &Model, watch: &mut Watch<'_>) -> Result
         }
         let is_close = |own: &&(usize, f64)| own.0 != candidate && own.1 > most - LEAD;
         let class = told.iter().filter(is_close).map(|own| own.0).collect();
-        let place = open.iter().position(|own| own.0 == candidate).unwrap_or_default();
-        let (candidate, parameter) = open.remove(place);
         sought.found.push(Difference { candidate, parameter, evidence: most, class });
     }
     Ok(sought)
