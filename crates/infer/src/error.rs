@@ -38,6 +38,14 @@ pub enum Error {
     /// Nothing can be forecast.
     #[error("nothing can be forecast: {0}")]
     NoForecast(&'static str),
+    /// Simulated cells that do not stay together.
+    #[error("simulated cells of the {model} fly apart before frame {frame}")]
+    FliesApart {
+        /// Which model.
+        model: &'static str,
+        /// The frame.
+        frame: usize,
+    },
     /// Frames that are no movie.
     #[error(
         "{frames} frames at {times} times are no movie: it takes two frames or more, at times that ascend"
@@ -123,6 +131,9 @@ impl Error {
             Self::TooFewFrames { .. } => Some("choose more frames"),
             Self::NoForecast(_) => {
                 Some("give the fit fewer of the frames with --frames, so that some are left to be forecast")
+            }
+            Self::FliesApart { .. } => {
+                Some("forces with a negative K_P or K_A have no state of rest: fix them, or fit more frames")
             }
             Self::TooFewPatternCells { .. } => Some(
                 "ask for fewer wave vectors, or choose frames in which more cells are tracked throughout",

@@ -101,8 +101,32 @@ fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, 
     }
 }
 
-/// Decompresses what begins like gzip, whatever its name; hands on anything else.
+/// How files of other kinds begin.
+const OTHER_KINDS: [(&[u8], &str); 11] = [
+    (b"PAR1", "a Parquet file"),
+    (b"{", "JSON"),
+    (b"[{", "JSON"),
+    (b"[[", "JSON"),
+    (b"<", "XML or HTML"),
+    (b"PK\x03\x04", "a zip archive or a spreadsheet"),
+    (b"\x89HDF", "an HDF5 file"),
+    (b"\x93NUMPY", "a .npy array"),
+    (b"II*\0", "a TIFF image"),
+    (b"MM\0*", "a TIFF image"),
+    (b"\x89PNG", "a PNG image"),
+];
+
+/// The text of a table, decompressed if it begins like gzip, whatever its name.
 fn decompress(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TableFault> {
+    let text = decompressed(bytes)?;
+    let begin = text.trim_ascii_start();
+    match OTHER_KINDS.iter().find(|(first, _)| begin.starts_with(first)) {
+        Some((_, kind)) => Err(TableFault::AnotherKind { kind }),
+        None => Ok(text),
+    }
+}
+
+fn decompressed(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TableFault> {
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(Cow::Borrowed(bytes));
     }

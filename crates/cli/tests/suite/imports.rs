@@ -122,6 +122,11 @@ fn columns_that_are_missing_are_named() {
     let without = tracks().replacen("track,frame,x,y", "track,when,x,y", 1);
     let facts = ["cells.csv", "no column for the frame", "found track, when, x, y"];
     assert_table_refused("tracks", without.as_bytes(), &[], &facts);
+    for (bytes, kind) in
+        [(&b" {\"x\": [1, 2]}"[..], "JSON"), (b"PAR1\x15\x04\x00", "a Parquet file"), (b"<?xml ?>", "XML")]
+    {
+        assert_table_refused("tracks", bytes, &[], &["cells.csv", kind, "comma-separated"]);
+    }
     let facts = ["cells.csv", "no column for the track", "number"];
     assert_table_refused("tracks", tracks().as_bytes(), &["--track-column", "number"], &facts);
     let without = trackmate().replace("TRACK_ID", "OTHER");

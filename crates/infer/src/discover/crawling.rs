@@ -71,7 +71,7 @@ impl<'a> Crawling<'a> {
         };
         let driven = drive.map(|Drive { value, interval, evidence }| Turn { value, interval, evidence });
         let aligned = polarity.alignment.filter(|_| own.is_alignment());
-        let turn = driven.or(aligned.map(|Alignment { rate, interval, evidence }| Turn {
+        let turn = driven.or(aligned.map(|Alignment { rate, interval, evidence, .. }| Turn {
             value: rate,
             interval,
             evidence,

@@ -1,15 +1,15 @@
 //! A tissue that goes on by a model, in a box or in an open field of view.
 
 use super::Forecaster;
-use super::crawl::{Crawl, Turning};
 use super::start::{Begun, Start, of_neighbours};
+use super::turning::Turning;
 use crate::Error;
 use rand::SeedableRng;
 use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::effect::away_from_contacts;
-use voronudge_model::{Model, jacobian, velocities};
+use voronudge_model::{Model, velocities};
 
 /// Rounds in which cells at the rim learn from their neighbours how they move.
 const ROUNDS: usize = 2;
@@ -37,11 +37,6 @@ impl<'a> Tissue<'a> {
         Self { start, model, scatter }
     }
 
-    /// Standard deviation, per component, of the mean velocity of a cell over an interval that nothing predicts.
-    pub fn scatter(&self) -> f64 {
-        self.scatter
-    }
-
     /// Velocities by the forces alone; `None` of cells that do not have all their neighbours in view.
     pub fn forces(&self, positions: &[Vector<f64>]) -> Result<(Tessellation, Known), Error> {
         let Start { frame, movie, in_view, .. } = self.start;
@@ -52,17 +47,6 @@ impl<'a> Tissue<'a> {
             |(v, in_view): (Vector<f64>, &bool)| (*in_view && v.norm_squared().is_finite()).then_some(v);
         let v = v.into_iter().zip(in_view).map(known).collect();
         Ok((tessellation, v))
-    }
-
-    /// Root mean square, over the cells in view, of the derivative of a component of the velocity by all positions.
-    pub fn sensitivity(&self) -> f64 {
-        let Start { cells, in_view, .. } = self.start;
-        let jacobian = jacobian(&cells.tessellation, &cells.positions, &self.model);
-        let of_cell = |cell: usize| {
-            jacobian.row(cell).map(|(_, b)| b.iter().map(|d| d * d).sum::<f64>()).sum::<f64>() / 2.0
-        };
-        let all: Vec<f64> = (0..in_view.len()).filter(|cell| in_view[*cell]).map(of_cell).collect();
-        (all.iter().sum::<f64>() / all.len().max(1) as f64).sqrt()
     }
 
     /// Velocities with what cells crawl by. Cells at the rim are led, or go with their neighbours.
@@ -87,15 +71,12 @@ impl<'a> Tissue<'a> {
         Ok(known.into_iter().map(|v| v.unwrap_or_else(Vector::zeros)).collect())
     }
 
-    /// What drives the polarities of cells in view, with b and κ; none if nothing does.
+    /// What drives the polarities of cells in view, with b and κ.
     fn drive(
         &self,
         positions: &[Vector<f64>],
         [inhibition, alignment]: [f64; 2],
     ) -> Result<Vec<Vector<f64>>, Error> {
-        if inhibition == 0.0 && alignment == 0.0 {
-            return Ok(Vec::new());
-        }
         let (tessellation, forces) = self.forces(positions)?;
         let (column, sign) = away_from_contacts();
         let away = Model::with_coefficients(&[], &[]).with(column, sign * inhibition);
@@ -104,6 +85,22 @@ impl<'a> Tissue<'a> {
             force.map_or(Vector::zeros(), |force| turned + force * alignment)
         };
         Ok(forces.into_iter().zip(turned).map(of_cell).collect())
+    }
+
+    /// What drives polarities where cells will be after half of a time, if they go on as they do.
+    fn drive_half_way(
+        &self,
+        (positions, polarities): (&[Vector<f64>], &[Vector<f64>]),
+        time: f64,
+        led: &[Option<Vector<f64>>],
+        drives: [f64; 2],
+    ) -> Result<Vec<Vector<f64>>, Error> {
+        if drives == [0.0; 2] {
+            return Ok(Vec::new());
+        }
+        let v = self.velocities(positions, polarities, led)?;
+        let half_way: Vec<Vector<f64>> = positions.iter().zip(v).map(|(r, v)| r + v * (0.5 * time)).collect();
+        self.drive(&half_way, drives)
     }
 
     /// Goes on for a time, in so many steps of the classical Runge–Kutta method; cells at the rim at the velocities at which they are led.
@@ -117,26 +114,27 @@ impl<'a> Tissue<'a> {
     ) -> Result<(), Error> {
         let h = time / steps as f64;
         let Moving { positions, polarities } = moving;
-        for _ in 0..steps {
+        let begin = std::mem::take(polarities);
+        *polarities = match turning {
+            Some(turning) => {
+                let drive = self.drive_half_way((positions, &begin), time, led, turning.drives)?;
+                turning.next(&begin, time, &drive, || Vector::new(normal(), normal()))
+            }
+            None => begin.clone(),
+        };
+        let polarities_at = |share: f64| -> Vec<Vector<f64>> {
+            begin.iter().zip(&*polarities).map(|(from, to)| from.lerp(to, share)).collect()
+        };
+        for step in 0..steps {
+            let [from, middle, to] =
+                [0.0, 0.5, 1.0].map(|of| polarities_at((step as f64 + of) / steps as f64));
             let moved = |v: &[Vector<f64>], by: f64| -> Vec<Vector<f64>> {
                 positions.iter().zip(v).map(|(r, v)| r + v * by).collect()
             };
-            let first = self.velocities(positions, polarities, led)?;
-            let drive = self.drive(positions, turning.map_or([0.0; 2], |turning| turning.drives))?;
-            let driven = |polarities: &mut [Vector<f64>]| {
-                polarities.iter_mut().zip(&drive).for_each(|(p, drive)| *p += drive * (0.5 * h));
-            };
-            if let Some(turning) = turning {
-                turning.go_on(polarities, 0.5 * h, || Vector::new(normal(), normal()));
-                driven(polarities);
-            }
-            let second = self.velocities(&moved(&first, 0.5 * h), polarities, led)?;
-            let third = self.velocities(&moved(&second, 0.5 * h), polarities, led)?;
-            if let Some(turning) = turning {
-                turning.go_on(polarities, 0.5 * h, || Vector::new(normal(), normal()));
-                driven(polarities);
-            }
-            let fourth = self.velocities(&moved(&third, h), polarities, led)?;
+            let first = self.velocities(positions, &from, led)?;
+            let second = self.velocities(&moved(&first, 0.5 * h), &middle, led)?;
+            let third = self.velocities(&moved(&second, 0.5 * h), &middle, led)?;
+            let fourth = self.velocities(&moved(&third, h), &to, led)?;
             for (cell, r) in positions.iter_mut().enumerate() {
                 *r += (first[cell] + (second[cell] + third[cell]) * 2.0 + fourth[cell]) * (h / 6.0);
             }
@@ -147,23 +145,20 @@ impl<'a> Tissue<'a> {
         Ok(())
     }
 
-    /// Displacements of the cells since the start after each of so many frames, in so many steps from one to the next; if a seed is given, with noise, and with
-    /// so much error of a coordinate at the start.
+    /// Displacements of the cells since the start after each of so many frames, in so many steps from one to the next; with noise if a seed is given.
     pub fn run(
         &self,
-        (begun, crawl): (&Begun, Option<&Crawl>),
+        (begun, turning): (&Begun, Option<&Turning>),
         (horizon, steps): (usize, usize),
-        drawn: Option<(u64, f64)>,
+        seed: Option<u64>,
     ) -> Result<Vec<Vec<Vector<f64>>>, Error> {
         let from = &self.start.cells.positions;
-        let mut rng = drawn.map(|(seed, _)| Pcg64::seed_from_u64(seed));
+        let mut rng = seed.map(Pcg64::seed_from_u64);
         let mut normal = || rng.as_mut().map_or(0.0, |rng| StandardNormal.sample(rng));
-        let astray = drawn.map_or(0.0, |(_, astray)| astray);
-        let mut moving = Moving::begin((begun, crawl), astray, &mut normal);
+        let mut moving = Moving::begin(begun, turning, &mut normal);
         let mut all = Vec::with_capacity(horizon);
         for ahead in 0..horizon {
             let interval = self.start.interval(ahead);
-            let turning = crawl.map(|crawl| &crawl.turning);
             self.go_on(&mut moving, turning, (interval, steps), &[], &mut normal)?;
             all.push(moving.positions.iter().zip(from).map(|(to, from)| to - from).collect());
         }
@@ -178,20 +173,13 @@ pub(super) struct Moving {
 }
 
 impl Moving {
-    /// From where they are thought to be, with so much error of a coordinate.
-    pub fn begin(
-        (begun, crawl): (&Begun, Option<&Crawl>),
-        astray: f64,
-        mut normal: impl FnMut() -> f64,
-    ) -> Self {
-        let mut positions = begun.positions.clone();
-        for r in &mut positions {
-            *r += Vector::new(normal(), normal()) * astray;
-        }
-        let polarities = match crawl {
-            Some(crawl) => crawl.begin(|| Vector::new(normal(), normal())),
-            None => vec![Vector::zeros(); positions.len()],
+    /// From the start; polarities of which nothing is known are drawn.
+    pub fn begin(begun: &Begun, turning: Option<&Turning>, mut normal: impl FnMut() -> f64) -> Self {
+        let mut unknown = || {
+            let drawn = Vector::new(normal(), normal());
+            turning.map_or_else(Vector::zeros, |turning| turning.unknown(drawn))
         };
-        Self { positions, polarities }
+        let polarities = begun.polarities.iter().map(|own| own.unwrap_or_else(&mut unknown));
+        Self { polarities: polarities.collect(), positions: begun.positions.clone() }
     }
 }

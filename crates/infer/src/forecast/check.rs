@@ -8,7 +8,7 @@
 use super::ranks::ranks;
 use super::replica::{Places, Stage, measured};
 use super::start::Start;
-use super::{Ahead, Forecaster, PAST, Tissue, steps};
+use super::{Ahead, Forecaster, PAST, steps};
 use crate::search::Watch;
 use crate::tracks::Drift;
 use crate::{Error, Movie, Progress};
@@ -19,6 +19,9 @@ use voronudge_observables::{Curve, Images, Plan, Quantity, Recording, correlatio
 
 /// Longest waves only: up to this wave number, in units of the inverse spacing.
 const LARGEST_WAVE_NUMBER: f64 = std::f64::consts::PI;
+
+/// What errors call the models, the last of them all others.
+const NAMES: [&str; 2] = ["base model", "model with effects"];
 
 /// The quantiles of the simulated movies that are given.
 const QUANTILES: [f64; 3] = [0.05, 0.5, 0.95];
@@ -59,7 +62,8 @@ pub struct Check {
 /// Compares a movie with movies that models make of its cells, `ahead.draws` of each.
 ///
 /// # Errors
-/// [`Error::NoForecast`] if there are too few frames or cells, [`Error`] if cells cannot be tessellated or the caller stops.
+/// [`Error::NoForecast`] if there are too few frames or cells, [`Error::FliesApart`] if simulated cells do not stay together, [`Error`] if cells cannot be
+/// tessellated or the caller stops.
 pub fn check(
     ahead: &Ahead<'_>,
     models: &[Forecaster<'_>],
@@ -90,15 +94,15 @@ pub fn check(
     let (mut p, mut places) = (Vec::new(), vec![seen]);
     for (number, model) in models.iter().enumerate() {
         let steps = steps(ahead, first, model)?;
-        let tissue = Tissue::new(&starts[0], model);
-        let outset = model.outset(ahead, (&starts[0], &tissue), steps)?;
+        let outset = model.outset(ahead, &starts[0], steps)?;
         let noise = ahead.noise.position;
-        let stage = Stage { movie, model, starts: &starts, outset, steps, noise };
+        let name = NAMES[number.min(NAMES.len() - 1)];
+        let stage = Stage { movie, model, name, starts: &starts, outset, steps, noise };
         let seed = |draw: usize| starts[0].seed(ahead.seed.wrapping_add(number as u64), draw as u64);
-        places.push(stage.play(seed(0))?);
+        places.push(stage.play(0, seed(0))?);
         let draws: Vec<usize> = (0..ahead.draws).collect();
         let simulated = watch.each("simulate", &draws, 1.0, |draw| {
-            let own = recording(movie, &starts, stage.play(seed(*draw))?)?.counted_as(&filmed);
+            let own = recording(movie, &starts, stage.play(*draw, seed(*draw))?)?.counted_as(&filmed);
             let found = look(&own)?;
             // In the order of what was measured; what was not seen is nothing.
             let of = |wanted: &Curve| {

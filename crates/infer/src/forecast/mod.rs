@@ -13,14 +13,13 @@
 mod ahead;
 mod baselines;
 mod check;
-mod crawl;
-mod past;
 mod ranks;
 mod replica;
 mod score;
 mod start;
 #[cfg(test)]
 mod tests;
+mod turning;
 
 use crate::search::Watch;
 use crate::tracks::{Dynamics, Movie, Polarity, Tracked};
@@ -28,13 +27,15 @@ use crate::{Error, NoiseLevels, Progress};
 use ahead::Tissue;
 use baselines::Regression;
 pub use check::{Check, Checked, Expected, check};
-use crawl::Crawl;
-use past::left_of_position;
+use rand::SeedableRng;
+use rand_distr::{Distribution, StandardNormal};
+use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use score::{Row, Tally};
 use start::{Begun, Start};
 use std::ops::ControlFlow;
-use voronudge_geometry::Vector;
+use turning::Turning;
+use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Structure;
 
 /// Frames before the start from which it follows where the cells are and how they crawl.
@@ -191,30 +192,37 @@ impl Forecaster<'_> {
     }
 }
 
-/// What is known when cells go on by a model: where they are, how they crawl, and how far astray a coordinate may be.
+/// What is known when cells go on by a model: where they are and how they crawl, what may be instead, and how polarities go on.
 struct Outset {
     begun: Begun,
-    crawl: Option<Crawl>,
-    astray: f64,
+    drawn: Vec<Begun>,
+    turning: Option<Turning>,
 }
 
 impl Forecaster<'_> {
-    fn outset(
-        &self,
-        ahead: &Ahead<'_>,
-        (start, tissue): (&Start<'_>, &Tissue<'_>),
-        steps: usize,
-    ) -> Result<Outset, Error> {
+    fn outset(&self, ahead: &Ahead<'_>, start: &Start<'_>, steps: usize) -> Result<Outset, Error> {
         let dynamics = self.dynamics(ahead, steps);
         let from = start.frame.saturating_sub(PAST);
-        let present =
-            dynamics.present(ahead.movie, (from, start.frame), self.structure, self.coefficients)?;
-        let begun = start.begun(&present);
-        let intervals: Vec<f64> = (from..start.frame).map(|frame| start.time(frame, frame + 1)).collect();
-        let noise = ahead.noise.position;
-        let crawl = Crawl::new(start, (self, tissue), &intervals, noise, &begun)?;
-        let astray = left_of_position(&intervals, dynamics.scatter(), noise).sqrt();
-        Ok(Outset { begun, crawl, astray })
+        // The number after those of the runs.
+        let mut rng = Pcg64::seed_from_u64(start.seed(ahead.seed, ahead.draws as u64));
+        let normal = || StandardNormal.sample(&mut rng);
+        let (present, drawn) = dynamics.present(
+            ahead.movie,
+            (from, start.frame),
+            (self.structure, self.coefficients),
+            (ahead.draws, normal),
+        )?;
+        Ok(Outset {
+            begun: start.begun(&present),
+            drawn: drawn.iter().map(|own| start.begun(own)).collect(),
+            turning: self.turning(start, &start.cells.tessellation),
+        })
+    }
+
+    /// How polarities go on among the cells of a start, where they are then.
+    fn turning(&self, start: &Start<'_>, tessellation: &Tessellation) -> Option<Turning> {
+        let usual = start.movie.interval();
+        self.polarity().map(|own| Turning::new(own, usual, tessellation, &start.in_view))
     }
 }
 
@@ -226,13 +234,15 @@ fn by_model(
     steps: usize,
 ) -> Result<Said, Error> {
     let tissue = Tissue::new(start, model);
-    let Outset { begun, crawl, astray } = model.outset(ahead, (start, &tissue), steps)?;
-    let run = |draw: Option<u64>| {
-        tissue.run((&begun, crawl.as_ref()), (ahead.horizon, steps), draw.zip(Some(astray)))
+    let Outset { begun, drawn, turning } = model.outset(ahead, start, steps)?;
+    let run = |begun: &Begun, seed: Option<u64>| {
+        tissue.run((begun, turning.as_ref()), (ahead.horizon, steps), seed)
     };
-    let mean = run(None)?;
-    let seeds: Vec<u64> = (0..ahead.draws as u64).map(|k| start.seed(ahead.seed, k)).collect();
-    let drawn = seeds.par_iter().map(|seed| run(Some(*seed))).collect::<Result<Vec<_>, Error>>()?;
+    let mean = run(&begun, None)?;
+    let drawn = drawn.par_iter().enumerate();
+    let drawn = drawn
+        .map(|(k, begun)| run(begun, Some(start.seed(ahead.seed, k as u64))))
+        .collect::<Result<Vec<_>, Error>>()?;
     let variances = (0..mean.len()).map(|h| {
         let of_cell = |cell: usize| {
             let all = drawn.iter().map(|own| (own[h][cell] - mean[h][cell]).norm_squared());

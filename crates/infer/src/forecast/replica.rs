@@ -2,8 +2,8 @@
 //! go.
 
 use super::ahead::{Known, Moving, Tissue};
-use super::crawl::Turning;
 use super::start::{Start, of_neighbours};
+use super::turning::Turning;
 use super::{Forecaster, Outset};
 use crate::{Error, Movie};
 use rand::SeedableRng;
@@ -18,6 +18,8 @@ pub(super) type Places = Vec<Vec<Option<Vector<f64>>>>;
 pub(super) struct Stage<'a> {
     pub movie: &'a Movie,
     pub model: &'a Forecaster<'a>,
+    /// What errors call it.
+    pub name: &'static str,
     /// The frames of the movie from the first on.
     pub starts: &'a [Start<'a>],
     /// What is known of the first.
@@ -29,12 +31,13 @@ pub(super) struct Stage<'a> {
 }
 
 impl Stage<'_> {
-    /// One replica.
-    pub fn play(&self, seed: u64) -> Result<Places, Error> {
+    /// One replica, from one of the draws of the outset.
+    pub fn play(&self, draw: usize, seed: u64) -> Result<Places, Error> {
         let mut rng = Pcg64::seed_from_u64(seed);
         let mut normal = || -> f64 { StandardNormal.sample(&mut rng) };
-        let Outset { begun, crawl, astray } = &self.outset;
-        let mut moving = Moving::begin((begun, crawl.as_ref()), *astray, &mut normal);
+        let Outset { begun, drawn, turning } = &self.outset;
+        let begun = drawn.get(draw).unwrap_or(begun);
+        let mut moving = Moving::begin(begun, turning.as_ref(), &mut normal);
         let mut earlier: Known =
             (0..moving.positions.len()).map(|cell| self.starts[0].velocity_before(cell)).collect();
         let mut all = Vec::with_capacity(self.starts.len());
@@ -45,13 +48,17 @@ impl Stage<'_> {
             let Some(next) = self.starts.get(k + 1) else { break };
             let time = start.time(start.frame, next.frame);
             let tissue = Tissue::after(start, self.model, std::mem::take(&mut earlier));
-            let polarity = self.model.polarity();
-            let turning = polarity.map(|own| Turning::new(own, &tessellation, &start.in_view));
+            let turning = self.model.turning(start, &tessellation);
             let led = self.led(start, next);
             let from = moving.positions.clone();
             tissue.go_on(&mut moving, turning.as_ref(), (time, self.steps), &led, &mut normal)?;
-            let moved =
-                moving.positions.iter().zip(&from).map(|(to, from)| Some((to - from) / time)).collect();
+            let moved: Vec<Vector<f64>> =
+                moving.positions.iter().zip(&from).map(|(to, from)| to - from).collect();
+            let width = from.iter().map(|r| (r - from[0]).norm()).fold(0.0, f64::max);
+            if !moved.iter().all(|moved| moved.norm() <= width) {
+                return Err(Error::FliesApart { model: self.name, frame: next.frame });
+            }
+            let moved = moved.into_iter().map(|moved| Some(moved / time)).collect();
             (moving, earlier) = self.change(start, next, (moving, moved), turning.as_ref(), &mut normal);
         }
         Ok(all)

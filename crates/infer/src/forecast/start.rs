@@ -20,10 +20,10 @@ pub(super) struct Start<'a> {
     pub before: Vec<Option<Vector<f64>>>,
 }
 
-/// Where the cells are, as far as that can be known, and their polarities.
+/// Where the cells are, and their polarities where anything is known of them.
 pub(super) struct Begun {
     pub positions: Vec<Vector<f64>>,
-    pub polarities: Vec<Vector<f64>>,
+    pub polarities: Vec<Option<Vector<f64>>>,
 }
 
 /// The mean over those neighbours of a cell of which something is known.
@@ -66,10 +66,7 @@ impl<'a> Start<'a> {
 
     /// The cells where they were seen.
     pub fn as_measured(&self) -> Begun {
-        Begun {
-            positions: self.cells.positions.clone(),
-            polarities: vec![Vector::zeros(); self.tracks.len()],
-        }
+        Begun { positions: self.cells.positions.clone(), polarities: vec![None; self.tracks.len()] }
     }
 
     /// The cells where they are thought to be.
@@ -78,7 +75,7 @@ impl<'a> Start<'a> {
         for Present { track, position, polarity } in present {
             if let Ok(cell) = self.tracks.binary_search(track) {
                 begun.positions[cell] = *position;
-                begun.polarities[cell] = polarity.unwrap_or_else(Vector::zeros);
+                begun.polarities[cell] = *polarity;
             }
         }
         begun

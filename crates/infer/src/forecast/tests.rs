@@ -53,8 +53,12 @@ const FITTED: usize = 5;
 
 impl Crawling {
     fn filmed(frames: usize, seed: u64) -> Self {
-        let filmed = Filmed { size: [100, frames], step: 0.1, error: 0.01, seed };
         let driving = Driving { speed: 2.5, rotational_diffusion: 0.3, ..Driving::default() };
+        Self::driven((frames, seed), driving, Activity::Polarity)
+    }
+
+    fn driven((frames, seed): (usize, u64), driving: Driving, crawling: Activity) -> Self {
+        let filmed = Filmed { size: [100, frames], step: 0.1, error: 0.01, seed };
         let (movie, [twist, speed, rate]) = filmed.movie_of_driven(driving);
         let request = Request {
             noise: KnownNoise::default(),
@@ -66,7 +70,7 @@ impl Crawling {
         let fit = |activity| {
             infer_tracks(&beginning, &Request { activity, ..request.clone() }, &mut SILENT.clone()).unwrap()
         };
-        let fits = [fit(Activity::None), fit(Activity::Polarity)];
+        let fits = [fit(Activity::None), fit(crawling)];
         let mut truth_of = fits[1].1.clone();
         let fitted_polarity = truth_of.polarity.take().unwrap();
         truth_of.polarity = Some(Polarity { speed, rate, ..fitted_polarity });
@@ -110,6 +114,27 @@ fn a_polarity_that_was_seen_before_helps() {
     }
 }
 
+/// Of cells that take on the polarity of their neighbours within two intervals, fits say how wrong they will be, too.
+#[test]
+fn polarities_that_align_go_on_as_in_the_fit() {
+    let driving = Driving {
+        speed: 2.5,
+        rotational_diffusion: 2.0,
+        alignment: 10.0,
+        free_speed: true,
+        ..Driving::default()
+    };
+    let crawling = Crawling::driven((11, 8), driving, Activity::Alignment);
+    let models = crawling.models();
+    let found = forecast(&crawling.ahead(16), &models[..2], &mut SILENT.clone()).unwrap();
+    let own = skills(&found, Forecast::Model(1));
+    for (h, gain) in found.gain.iter().enumerate().take(2) {
+        assert!(gain[0] > 2.0 * gain[1], "{h} {gain:?}");
+        let of_errors = own.error[h] / own.expected_error[h];
+        assert!((0.75..1.33).contains(&of_errors), "{h} {of_errors}");
+    }
+}
+
 /// Simulated movies of cells that do not crawl are not like one of cells that do; those of cells that do are.
 #[test]
 fn a_model_without_the_polarity_does_not_make_such_cells() {
@@ -128,16 +153,16 @@ fn a_model_without_the_polarity_does_not_make_such_cells() {
     assert!(found.places.iter().all(|places| seen(places) == seen(&found.places[0])));
 }
 
+/// Cells that repel ever more strongly the larger they are do not stay together, and that is said.
 #[test]
-fn what_is_not_known_of_a_polarity_is_that_of_linear_prediction() {
-    let noise = past::Noise { scatter: 0.0, position: 0.0, sensitivity: 0.0 };
-    // Seen over one short interval without error, the end of it is known but for what was forgotten within it.
-    let (variance, rate, interval) = (0.4, 0.5, 1e-3);
-    let left = past::left_of_polarity((variance, rate), &[interval], noise).unwrap();
-    assert!((left / (2.0 / 3.0 * variance * rate * interval) - 1.0).abs() < 1e-3, "{left}");
-    let far = past::Noise { position: 1000.0, ..noise };
-    let unknown = past::left_of_polarity((variance, rate), &[0.1; 4], far).unwrap();
-    assert!((unknown / variance - 1.0).abs() < 1e-4);
-    // Seen five times at rest.
-    assert!((past::left_of_position(&[0.1; 4], 0.0, 0.02) - 0.02_f64.powi(2) / 5.0).abs() < 1e-12);
+fn a_tissue_without_a_state_of_rest_flies_apart() {
+    let filmed = Filmed { size: [64, 8], step: 0.1, error: 0.0, seed: 5 };
+    let (movie, [twist, ..]) = filmed.movie_of_driven(Driving::default());
+    let mut coefficients = truth(twist / TRUTH[1]);
+    coefficients.iter_mut().for_each(|own| *own *= -30.0);
+    let structure = Structure::base(1.0);
+    let model = Forecaster { structure: &structure, coefficients: &coefficients, tracked: None };
+    let ahead = Ahead { movie: &movie, first: 1, horizon: 1, noise: NOISE, draws: 2, seed: 1 };
+    let found = check(&ahead, &[model], &mut SILENT.clone());
+    assert!(matches!(found, Err(Error::FliesApart { model: "base model", .. })), "{found:?}");
 }

@@ -18,7 +18,7 @@ use crate::stiffness::Stiffness;
 use voronudge_linalg::{Cholesky, SymmetricMatrix};
 
 /// Neighbours of a cell on average.
-const USUAL: f64 = 6.0;
+pub(crate) const USUAL_NEIGHBOURS: f64 = 6.0;
 
 /// Polarities of which the variance is computed, at most: evenly chosen ones.
 const SAMPLES: usize = 300;
@@ -86,7 +86,7 @@ impl Polarities {
         let ties = &self.ties[block as usize - self.range().start];
         let mut row = vec![(block, factor)];
         for other in ties.iter().filter(|other| chosen(**other)) {
-            let share = factor * a / USUAL;
+            let share = factor * a / USUAL_NEIGHBOURS;
             row[0].1 -= share;
             match row.iter_mut().find(|own| own.0 == *other) {
                 Some(own) => own.1 += share,

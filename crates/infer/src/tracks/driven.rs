@@ -27,7 +27,7 @@ pub(crate) struct HintsOfDrives {
 
 impl Memory {
     /// Which share of what drives a polarity over the usual interval is left of it at the end: (1 − e^{−x})/x.
-    fn kept(self) -> f64 {
+    pub(crate) fn kept(self) -> f64 {
         -(-self.times).exp_m1() / self.times
     }
 }

@@ -1,9 +1,10 @@
 //! Displacements predicted: from the measured positions, and from places that were fitted without them.
 
+use super::motions::Motion;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
-use super::states::{Motion, States};
+use super::states::States;
 use crate::Error;
 use crate::cross_validation::Folds;
 use crate::search::Watch;

@@ -2,10 +2,11 @@
 
 use super::anchors::{Anchors, Share};
 use super::drive::DriveRows;
+use super::motions::Motion;
 use super::objective::{MovieObjective, Placed};
 use super::outset::Outset;
 use super::row_builder::{IDENTITY, RowBuilder};
-use super::states::{Motion, Place};
+use super::states::Place;
 use super::tangent::Tangent;
 use crate::Error;
 use crate::least_squares::combined;

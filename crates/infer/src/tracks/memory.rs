@@ -14,11 +14,12 @@
 //! σ_u, τ and both noise levels follow together from the restricted likelihood. Errors of positions cannot pose as memory, because they are in the
 //! same fit: they make successive displacements *anti*-correlated.
 
-use super::alignment::Ties;
+use super::alignment::{Ties, share};
 use super::drive::Driven;
+use super::motions::Motion;
 use super::movie::Movie;
 use super::objective::MovieObjective;
-use super::states::{Instant, Motion};
+use super::states::Instant;
 use crate::linearisation::Held;
 use crate::stiffness::Stiffness;
 use crate::{Drives, Error};
@@ -55,6 +56,18 @@ impl Memory {
     pub fn root_mean_square(self) -> f64 {
         let half = 0.5 * self.times;
         self.speed * 2.0_f64.sqrt() * half / half.tanh()
+    }
+
+    /// Of cells with this v₀ that do not align, and of which D_r T and J T are these.
+    pub fn of(root_mean_square: f64, times: f64, alignment: f64) -> Self {
+        let unit = Self { times, speed: 1.0, free: 1.0, alignment };
+        Self { speed: root_mean_square / unit.root_mean_square(), ..unit }
+    }
+
+    /// ρ, a, and the standard deviation of what is new in a component, as a velocity, after so many usual intervals.
+    pub fn step(self, since: f64) -> [f64; 3] {
+        let (own, rho) = innovation(since, self.times);
+        [rho, share(self, since), self.speed / own.sqrt()]
     }
 
     /// The correlation of the mean polarities of successive intervals.

@@ -10,10 +10,11 @@
 //! with the time, so that σ_v is the error of a mean velocity over T.
 
 use super::memory::Memory;
+use super::motions::Motion;
 use super::movie::Movie;
 use super::passage::Passage;
 use super::rule::Rule;
-use super::states::{Motion, States};
+use super::states::States;
 use crate::normal_equations::NormalEquations;
 use crate::objective::{Evaluated, Nudged};
 use crate::position_rows::squares;

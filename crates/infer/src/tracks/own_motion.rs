@@ -12,8 +12,8 @@
 //! coupled to the motions of its own cell alone, and separators of a dissection have places only. The rows of V are those of the inverse of U among the cells near
 //! by. U is that at one point of a fit, kept while it goes on: any V is as good a measure of what is left, if it is near the inverse.
 
+use super::motions::Motion;
 use super::objective::MovieObjective;
-use super::states::Motion;
 use super::tangent::{Block, Tangent, accumulate};
 use crate::Error;
 use nalgebra::DMatrix;

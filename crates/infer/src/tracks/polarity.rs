@@ -64,6 +64,8 @@ pub struct Alignment {
     pub rate: f64,
     /// Its 95 % interval.
     pub interval: [f64; 2],
+    /// What v₀ would be without it, the noise being the same.
+    pub speed_apart: f64,
     /// By how much −2 log L, restricted, falls from none to this one.
     pub evidence: f64,
 }
@@ -169,6 +171,7 @@ impl Fitted<'_> {
         Ok(Some(Alignment {
             rate: memory.alignment / interval,
             interval: [-error, error].map(|aside| alignment_of(log + aside) / interval),
+            speed_apart: memory.root_mean_square(),
             evidence: (least - criterion).max(0.0),
         }))
     }

@@ -1,6 +1,7 @@
 //! Where cells are, and how they crawl, at the end of a part of a movie, by a model that is known.
 
 use super::memory::Memory;
+use super::motions::Explained;
 use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
@@ -25,6 +26,7 @@ pub(crate) struct Dynamics {
 }
 
 /// A cell in the last of some frames.
+#[derive(Debug, Clone, Copy)]
 pub(crate) struct Present {
     pub track: usize,
     pub position: Vector<f64>,
@@ -42,7 +44,8 @@ impl Dynamics {
         self.levels.velocity
     }
 
-    /// Where the cells are in a frame, given what was seen of them since another one and not later.
+    /// Where the cells are in a frame, given what was seen of them since another one and not later: what is likeliest, and so many draws of what
+    /// else may be, about which the problem is linearised.
     ///
     /// # Errors
     /// [`Error`] if cells cannot be tessellated.
@@ -50,11 +53,11 @@ impl Dynamics {
         self,
         movie: &Movie,
         (from, to): (usize, usize),
-        structure: &Structure,
-        coefficients: &[f64],
-    ) -> Result<Vec<Present>, Error> {
+        (structure, coefficients): (&Structure, &[f64]),
+        (draws, mut normal): (usize, impl FnMut() -> f64),
+    ) -> Result<(Vec<Present>, Vec<Vec<Present>>), Error> {
         let (part, numbers) = movie.between(from, to);
-        let mut states = States::new(&part)?;
+        let mut states = States::of(&part, Explained::All)?;
         if let Some(memory) = self.memory {
             states = states.crawling(&part, BASE);
             if memory.alignment > 0.0 {
@@ -67,14 +70,29 @@ impl Dynamics {
             MovieObjective { movie: &part, states: &states, rule, structure, space: &space, levels, memory };
         let start = vec![0.0; 2 * states.blocks()];
         let found = optimise(&objective, start, STEPS, TOLERANCE, &mut |_, _| ControlFlow::Continue(()))?;
-        let (_, displacements) = objective.split(&found.parameters);
         let last = part.frames() - 1;
-        let positions = objective.positions(last, displacements);
-        let polarities = objective.polarities(displacements).pop().unwrap_or_default();
-        let of_cell = |(cell, track): (usize, &u32)| {
-            let polarity = polarities.get(cell).copied().flatten();
-            Present { track: numbers[*track as usize], position: positions[cell], polarity }
+        let cells = |displacements: &[f64]| -> Vec<Present> {
+            let positions = objective.positions(last, displacements);
+            let polarities = objective.polarities(displacements).pop().unwrap_or_default();
+            let of_cell = |(cell, track): (usize, &u32)| {
+                let polarity = polarities.get(cell).copied().flatten();
+                Present { track: numbers[*track as usize], position: positions[cell], polarity }
+            };
+            states.instants[last].tracks.iter().enumerate().map(of_cell).collect()
         };
-        Ok(states.instants[last].tracks.iter().enumerate().map(of_cell).collect())
+        let likeliest = objective.split(&found.parameters).1;
+        let mut astray: Vec<f64> = (0..draws * likeliest.len()).map(|_| normal()).collect();
+        if draws > 0 {
+            let equations = objective.linearise(&found.parameters)?;
+            for frame in &equations.frames {
+                frame.factor(levels.spring())?.draw(&mut astray);
+            }
+        }
+        let drawn = astray.chunks_exact(likeliest.len().max(1)).map(|astray| {
+            let all: Vec<f64> =
+                likeliest.iter().zip(astray).map(|(u, own)| u + own * levels.velocity).collect();
+            cells(&all)
+        });
+        Ok((cells(likeliest), drawn.collect()))
     }
 }

@@ -5,11 +5,12 @@
 
 use super::integrated::Integrated;
 use super::memory::{NONE, Polarities};
+use super::motions::{ABSENT, Explained, Motion, explained, indices, motions};
 use super::movie::{Drift, Movie};
 use super::own_motion::OwnMotion;
 use crate::{Drives, Error, Observation};
 use rayon::prelude::*;
-use voronudge_geometry::{Vector, Visibility};
+use voronudge_geometry::Vector;
 
 /// The cells that are there at a frame.
 #[derive(Debug, Clone)]
@@ -56,19 +57,6 @@ pub(crate) struct Interval {
     pub led: Vec<bool>,
 }
 
-/// One cell over the time between two frames.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Motion {
-    /// Frame at the beginning.
-    pub interval: usize,
-    /// Number of the track.
-    pub track: u32,
-    /// Index among the cells of both frames.
-    pub cells: [u32; 2],
-    /// Index among the cells of the interval.
-    pub between: u32,
-}
-
 /// The unknowns of a movie and the motions that are explained.
 #[derive(Debug, Clone)]
 pub(crate) struct States {
@@ -89,20 +77,25 @@ pub(crate) struct States {
     pub integrated: Option<Integrated>,
 }
 
-/// Marks an absent cell.
-const ABSENT: u32 = u32::MAX;
-
 impl States {
-    /// The unknowns.
+    /// The unknowns of a fit.
     ///
     /// # Errors
     /// [`Error::Geometry`].
     pub fn new(movie: &Movie) -> Result<Self, Error> {
+        Self::of(movie, Explained::Certain)
+    }
+
+    /// The unknowns.
+    ///
+    /// # Errors
+    /// [`Error::Geometry`].
+    pub fn of(movie: &Movie, which: Explained) -> Result<Self, Error> {
         let mut instants = instants(movie)?;
         let mut intervals = intervals(movie, &instants)?;
         let found: Vec<Vec<Motion>> = (0..intervals.len())
             .into_par_iter()
-            .map(|interval| motions(movie, interval, &instants, &intervals[interval]))
+            .map(|interval| motions(movie, interval, (&instants, &intervals[interval]), which))
             .collect();
         let motions: Vec<Motion> = found.into_iter().flatten().collect();
         for motion in &motions {
@@ -286,18 +279,6 @@ impl States {
     }
 }
 
-/// Which cells of each frame have a motion to or from there.
-fn explained(instants: &[Instant], motions: &[Motion]) -> Vec<Vec<bool>> {
-    let mut explained: Vec<Vec<bool>> =
-        instants.iter().map(|instant| vec![false; instant.tracks.len()]).collect();
-    for motion in motions {
-        for (end, cell) in motion.cells.iter().enumerate() {
-            explained[motion.interval + end][*cell as usize] = true;
-        }
-    }
-    explained
-}
-
 /// The frames with the cells that are there.
 pub(super) fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
     let instant = |frame: usize| {
@@ -344,48 +325,4 @@ fn intervals(movie: &Movie, instants: &[Instant]) -> Result<Vec<Interval>, Error
         Ok(Interval { halfway: still(movie, frame, positions)?, ends, led })
     };
     instants.par_windows(2).enumerate().map(interval).collect()
-}
-
-/// Where each track stands in a list of some of them.
-fn indices(movie: &Movie, tracks: impl Iterator<Item = u32>) -> Vec<u32> {
-    let mut index = vec![ABSENT; movie.tracks.len()];
-    (0..).zip(tracks).for_each(|(cell, track)| index[track as usize] = cell);
-    index
-}
-
-/// The motions over one interval that the model can explain: of cells whose surroundings are certain at both frames and half-way, and are
-/// the same cells from beginning to end.
-fn motions(movie: &Movie, interval: usize, instants: &[Instant], between: &Interval) -> Vec<Motion> {
-    let [first, last] = [&instants[interval], &instants[interval + 1]];
-    let of_both: Vec<u32> = between.ends.iter().map(|ends| first.tracks[ends[0] as usize]).collect();
-    let all: [(&Observation, &[u32]); 3] =
-        [(&first.cells, &first.tracks), (&last.cells, &last.tracks), (&between.halfway, &of_both)];
-    let index = all.map(|(_, tracks)| indices(movie, tracks.iter().copied()));
-    let stays = |track: u32| index.iter().all(|own| own[track as usize] != ABSENT);
-    // Cells whose polygon lacks a neighbour at some time.
-    let mut doubtful = vec![false; movie.tracks.len()];
-    for (cells, tracks) in &all {
-        for (cell, track) in tracks.iter().enumerate() {
-            let neighbours = cells.tessellation.neighbours(cell);
-            doubtful[*track as usize] |=
-                !(stays(*track) && neighbours.iter().all(|n| stays(tracks[*n as usize])));
-        }
-    }
-    let is_explained = |track: &u32| {
-        all.iter().zip(&index).all(|((cells, tracks), own)| {
-            let cell = own[*track as usize];
-            let certain = |n: &u32| !doubtful[tracks[*n as usize] as usize];
-            cell != ABSENT
-                && cells.visibility[cell as usize] == Visibility::Counted
-                && !doubtful[*track as usize]
-                && cells.tessellation.neighbours(cell as usize).iter().all(certain)
-        })
-    };
-    (0..movie.tracks.len() as u32)
-        .filter(is_explained)
-        .map(|track| {
-            let [begin, end, between] = [0, 1, 2].map(|time: usize| index[time][track as usize]);
-            Motion { interval, track, cells: [begin, end], between }
-        })
-        .collect()
 }

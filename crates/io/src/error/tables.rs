@@ -1,5 +1,27 @@
 //! Faults of tables of tracks and of vectors.
 
+/// The most names, and the most characters of a name or a field, that a message repeats.
+const MOST_NAMES: usize = 10;
+const MOST_CHARACTERS: usize = 40;
+
+/// A text of a file as a message can show it: without control characters, and not longer than a line.
+fn shown(text: &str) -> String {
+    let mut own: String = text.chars().take(MOST_CHARACTERS).flat_map(char::escape_debug).collect();
+    if text.chars().nth(MOST_CHARACTERS).is_some() {
+        own.push('…');
+    }
+    own
+}
+
+/// The first of some names, and how many more there are.
+fn few(names: &[String]) -> String {
+    let first: Vec<String> = names.iter().take(MOST_NAMES).map(|name| shown(name)).collect();
+    match names.len().saturating_sub(MOST_NAMES) {
+        0 => first.join(", "),
+        more => format!("{} and {more} more", first.join(", ")),
+    }
+}
+
 /// Why a table of tracks or of vectors cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -26,7 +48,7 @@ pub enum TableFault {
     #[error("has a header but no data rows")]
     NoRows,
     /// Rows, but none belongs to a track.
-    #[error("none of its {spots} spots belongs to a track (column \"{column}\" has no numbers)")]
+    #[error("none of its {spots} spots belongs to a track (column \"{}\" has no numbers)", shown(column))]
     NoTracks {
         /// Spots read.
         spots: usize,
@@ -34,7 +56,7 @@ pub enum TableFault {
         column: String,
     },
     /// A column is not there.
-    #[error("no column for the {role}: looked for {}, found {}", looked.join(", "), found.join(", "))]
+    #[error("no column for the {role}: looked for {}, found {}", few(looked), few(found))]
     MissingColumn {
         /// What the column is needed for.
         role: &'static str,
@@ -54,7 +76,7 @@ pub enum TableFault {
         expected: u64,
     },
     /// A field that is not the number it should be.
-    #[error("column \"{column}\" holds \"{text}\", {expected} is needed")]
+    #[error("column \"{}\" holds \"{}\", {expected} is needed", shown(column), shown(text))]
     NotANumber {
         /// The column.
         column: String,
@@ -85,6 +107,12 @@ pub enum TableFault {
         /// The most bytes taken.
         limit: u64,
     },
+    /// A file of another kind, as its first bytes tell.
+    #[error("is {kind}, a table of text is needed")]
+    AnotherKind {
+        /// Which.
+        kind: &'static str,
+    },
     /// A file of bytes that are no text.
     #[error("is not text, a table is needed")]
     NotText,
@@ -92,7 +120,7 @@ pub enum TableFault {
     #[error("begins with numbers, so it has no header in which to look for columns by name")]
     NoHeader,
     /// One component of a displacement present, the other not.
-    #[error("half of the displacement is missing (\"{u}\", \"{v}\")")]
+    #[error("half of the displacement is missing (\"{}\", \"{}\")", shown(u), shown(v))]
     HalfMissing {
         /// The field of the component along x.
         u: String,
@@ -151,6 +179,7 @@ impl TableFault {
                 "is the frame column a time? name the column that counts images from zero"
             }
             Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
+            Self::AnotherKind { .. } => "export what it holds as comma-separated values",
             Self::NotText => "export the vectors as text in UTF-8, or give displacements of pixels as .npy",
             Self::NoHeader => "leave the names out if the columns are x, y, u, v, or add a line of names",
             Self::HalfMissing { .. } => "a missing vector is NaN in both components",
@@ -169,5 +198,22 @@ impl TableFault {
             }
         };
         Some(text.into())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn messages_repeat_little_of_a_file() {
+        let names: Vec<String> = (0..5000).map(|k| format!("{{\"x\": {k}\u{7}}}")).collect();
+        let found = few(&names);
+        assert!(found.ends_with("and 4990 more") && found.len() < 400, "{found}");
+        assert!(!found.contains('\u{7}'));
+        let fault =
+            TableFault::NotANumber { column: "x".into(), text: "a".repeat(100_000), expected: "a number" };
+        assert!(fault.to_string().len() < 200);
+        assert_eq!(few(&["µ m".into(), "y".into()]), "µ m, y");
     }
 }

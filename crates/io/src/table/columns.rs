@@ -74,9 +74,13 @@ impl Columns {
             })
             .collect();
         let find = |role, given: &Option<String>, known: &[&str]| {
-            const EXAMPLE: &str =
-                "--track-column id --frame-column t; for another table format use import tracks";
-            Column::find(&found, role, given, known, plain, EXAMPLE)
+            let example = match layout {
+                Layout::TrackMate => {
+                    "--track-column id --frame-column t; for another table format use import tracks"
+                }
+                Layout::Tracks | Layout::Outlines => "--track-column id --frame-column t",
+            };
+            Column::find(&found, role, given, known, plain, example)
         };
         Ok(Self {
             track: find("track", &names.track, track)?,
