@@ -1,6 +1,6 @@
 //! How the polarities of cells that crawl go on.
 
-use crate::tracks::{Memory, Polarity, USUAL_NEIGHBOURS};
+use crate::tracks::{Memory, Polarity, weighted};
 use voronudge_geometry::{Tessellation, Vector};
 
 /// From frame to frame as in the fit, and on a straight line between.
@@ -10,8 +10,8 @@ pub(super) struct Turning {
     usual: f64,
     /// Variance of a component of a polarity of which nothing is known.
     variance: f64,
-    /// The neighbours whose polarities a cell takes on.
-    ties: Vec<Vec<u32>>,
+    /// The neighbours whose polarities a cell takes on, with their weights.
+    ties: Vec<Vec<(u32, f64)>>,
     /// b and κ
     pub drives: [f64; 2],
 }
@@ -32,7 +32,7 @@ impl Turning {
             memory: Memory::of(apart, polarity.rate * usual, rate * usual),
             usual,
             variance: 0.5 * polarity.speed.powi(2),
-            ties: ties.collect(),
+            ties: weighted(ties.collect()),
             drives: drives.map(|own| own.map_or(0.0, |own| own.value)),
         }
     }
@@ -52,10 +52,10 @@ impl Turning {
     ) -> Vec<Vector<f64>> {
         let [rho, a, new] = self.memory.step(time / self.usual);
         let driven = time * self.memory.kept();
-        let of_cell = |(cell, ties): (usize, &Vec<u32>)| {
+        let of_cell = |(cell, ties): (usize, &Vec<(u32, f64)>)| {
             let own = polarities[cell];
-            let to = |other: &u32| polarities[*other as usize] - own;
-            let turned = own + ties.iter().map(to).sum::<Vector<f64>>() * (a / USUAL_NEIGHBOURS);
+            let to = |(other, weight): &(u32, f64)| (polarities[*other as usize] - own) * *weight;
+            let turned = own + ties.iter().map(to).sum::<Vector<f64>>() * a;
             let drive = drive.get(cell).map_or(Vector::zeros(), |drive| drive * driven);
             turned * rho + drive + normal() * new
         };

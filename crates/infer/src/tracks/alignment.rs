@@ -17,14 +17,27 @@ use crate::Error;
 use crate::stiffness::Stiffness;
 use voronudge_linalg::{Cholesky, SymmetricMatrix};
 
-/// Neighbours of a cell on average.
-pub(crate) const USUAL_NEIGHBOURS: f64 = 6.0;
+/// Neighbours of a cell on average, and so many that more hold it no more strongly: L then has no eigenvalue near two, at which a fast J would turn
+/// polarities round in every interval, and further with each.
+const USUAL_NEIGHBOURS: f64 = 6.0;
+const MOST_NEIGHBOURS: f64 = 9.0;
 
 /// Polarities of which the variance is computed, at most: evenly chosen ones.
 const SAMPLES: usize = 300;
 
-/// The neighbours, as blocks, of each polarity in its frame; none at all where cells do not align.
-pub(super) type Ties = Vec<Vec<u32>>;
+/// The neighbours, as blocks, of each polarity in its frame, with their weights in L; none at all where cells do not align.
+pub(super) type Ties = Vec<Vec<(u32, f64)>>;
+
+/// The weights of neighbours in L, which are symmetric: one over six, but less around cells with very many.
+pub(crate) fn weighted(neighbours: Vec<Vec<u32>>) -> Vec<Vec<(u32, f64)>> {
+    let crowded = |cell: usize| (neighbours[cell].len() as f64 / MOST_NEIGHBOURS).max(1.0);
+    let of_cell = |cell: usize| {
+        let weight =
+            |other: &u32| (*other, 1.0 / (USUAL_NEIGHBOURS * crowded(cell).max(crowded(*other as usize))));
+        neighbours[cell].iter().map(weight).collect()
+    };
+    (0..neighbours.len()).map(of_cell).collect()
+}
 
 /// Entries of a symmetric matrix to be summed: the later unknown, the earlier one, the value.
 #[derive(Default)]
@@ -60,10 +73,15 @@ impl Polarities {
         let first = self.range().start;
         let mut ties = vec![Vec::new(); self.count()];
         for (blocks, instant) in self.block.iter().zip(instants) {
-            for (cell, own) in blocks.iter().enumerate().filter(|(_, own)| **own != NONE) {
-                let all = instant.cells.tessellation.neighbours(cell);
-                let blocks = all.iter().map(|other| blocks[*other as usize]);
-                ties[*own as usize - first] = blocks.filter(|other| other != own && *other != NONE).collect();
+            let has = |cell: u32| blocks[cell as usize] != NONE;
+            let of_cell = |cell: u32| -> Vec<u32> {
+                let all = instant.cells.tessellation.neighbours(cell as usize).iter().copied();
+                all.filter(|other| has(cell) && has(*other) && *other != cell).collect()
+            };
+            let all = weighted((0..blocks.len() as u32).map(of_cell).collect());
+            for (own, of_cell) in blocks.iter().zip(all).filter(|(own, _)| **own != NONE) {
+                let own = &mut ties[*own as usize - first];
+                own.extend(of_cell.into_iter().map(|(other, weight)| (blocks[other as usize], weight)));
             }
         }
         self.ties = ties;
@@ -85,8 +103,8 @@ impl Polarities {
     fn row(&self, block: u32, factor: f64, a: f64, chosen: impl Fn(u32) -> bool) -> Vec<(u32, f64)> {
         let ties = &self.ties[block as usize - self.range().start];
         let mut row = vec![(block, factor)];
-        for other in ties.iter().filter(|other| chosen(**other)) {
-            let share = factor * a / USUAL_NEIGHBOURS;
+        for (other, weight) in ties.iter().filter(|(other, _)| chosen(*other)) {
+            let share = factor * a * weight;
             row[0].1 -= share;
             match row.iter_mut().find(|own| own.0 == *other) {
                 Some(own) => own.1 += share,
@@ -212,9 +230,9 @@ mod tests {
         let block = |cell: usize, frame: usize| (frames * cell + frame) as u32;
         let at = |k: usize| (k / frames, k % frames);
         let count = cells * frames;
-        let ties = (0..count)
-            .map(at)
-            .map(|(cell, frame)| [1, cells - 1].map(|step| block((cell + step) % cells, frame)).to_vec());
+        let ties = (0..count).map(at).map(|(cell, frame)| {
+            [1, cells - 1].map(|step| (block((cell + step) % cells, frame), 1.0 / 6.0)).to_vec()
+        });
         let firsts = (0..cells).map(|cell| First { frame: 0, cell, block: frames * cell });
         let mut polarities = Polarities::default();
         polarities.block =
@@ -246,5 +264,23 @@ mod tests {
         assert!((polarities.log_determinant(memory, ratio).unwrap() - expected).abs() < 1e-10);
         let mean = stationary.trace() / cells as f64 * ratio;
         assert!((polarities.mean_variance(memory).unwrap() - mean).abs() < 1e-12);
+    }
+
+    /// Around a cell with twelve neighbours, in one frame, polarities of cells that turn as fast as can be are still stationary.
+    #[test]
+    fn cells_with_many_neighbours_do_not_turn_round() {
+        let count = 13;
+        let star = |cell: u32| if cell == 0 { (1..count).collect() } else { vec![0] };
+        let mut polarities = Polarities::default();
+        polarities.ties = weighted((0..count).map(star).collect());
+        let first = |cell: usize| First { frame: 0, cell, block: cell };
+        polarities.firsts = (0..count as usize).map(first).collect();
+        polarities.block = vec![(0..count).collect()];
+        polarities.since = vec![None; count as usize];
+        let memory = Memory { times: 0.01, speed: 1.0, free: 1.0, alignment: 5.0 };
+        let mean = polarities.mean_variance(memory).unwrap();
+        assert!((0.0..1.0).contains(&mean), "{mean}");
+        polarities.ties.iter_mut().flatten().for_each(|(_, weight)| *weight = 1.0 / 6.0);
+        assert!(polarities.mean_variance(memory).is_err());
     }
 }

@@ -55,7 +55,7 @@ mod tangent;
 mod tests;
 mod turn;
 
-pub(crate) use alignment::USUAL_NEIGHBOURS;
+pub(crate) use alignment::weighted;
 pub(crate) use beside::Beside;
 pub use driven::Drive;
 pub(crate) use driven::HintsOfDrives;
