@@ -39,12 +39,12 @@ pub enum Error {
     #[error("nothing can be forecast: {0}")]
     NoForecast(&'static str),
     /// Simulated cells that do not stay together.
-    #[error("simulated cells of the {model} fly apart before frame {frame}")]
+    #[error("simulated cells of the {model} fly apart within {intervals} frames of the first that is simulated")]
     FliesApart {
         /// Which model.
         model: &'static str,
-        /// The frame.
-        frame: usize,
+        /// In how many intervals between frames.
+        intervals: usize,
     },
     /// Frames that are no movie.
     #[error(

@@ -56,7 +56,7 @@ impl Stage<'_> {
                 moving.positions.iter().zip(&from).map(|(to, from)| to - from).collect();
             let width = from.iter().map(|r| (r - from[0]).norm()).fold(0.0, f64::max);
             if !moved.iter().all(|moved| moved.norm() <= width) {
-                return Err(Error::FliesApart { model: self.name, frame: next.frame });
+                return Err(Error::FliesApart { model: self.name, intervals: k + 1 });
             }
             let moved = moved.into_iter().map(|moved| Some(moved / time)).collect();
             (moving, earlier) = self.change(start, next, (moving, moved), turning.as_ref(), &mut normal);
