@@ -39,7 +39,9 @@ pub enum Error {
     #[error("nothing can be forecast: {0}")]
     NoForecast(&'static str),
     /// Simulated cells that do not stay together.
-    #[error("simulated cells of the {model} fly apart within {intervals} frames of the first that is simulated")]
+    #[error(
+        "simulated cells of the {model} fly apart within {intervals} frames of the first that is simulated"
+    )]
     FliesApart {
         /// Which model.
         model: &'static str,
