@@ -12,6 +12,7 @@ mod page;
 mod predictions;
 mod report;
 mod sentences;
+mod stretch;
 mod summary;
 mod surroundings;
 
@@ -212,7 +213,10 @@ impl Asked<'_> {
             ))
             .with_hint(format!("leave out {option}, or give --difference central for velocities")));
         }
-        let frames = velocities.frames(snapshots, data)?;
+        let frames = match snapshots.frames {
+            Some(_) => velocities.frames(snapshots, data)?,
+            None => stretch::middle(data, run).collect(),
+        };
         PreparedTracks::new(self.question(snapshots, data, None), velocities, frames, run).map(Some)
     }
 

@@ -1,0 +1,70 @@
+//! Which frames of a long movie are searched.
+
+use crate::run::Run;
+use ndarray::Axis;
+use std::ops::Range;
+use voronudge_io::DataSet;
+
+/// Motions from one frame to the next that a search takes, where nobody says which frames it is to take; and the fewest frames for all that.
+const MOST_MOTIONS: usize = 5000;
+const FEWEST_FRAMES: usize = 4;
+
+/// The frames around the middle of a movie that a search can take in minutes, said where these are not all.
+pub(super) fn middle(data: &DataSet, run: &mut Run) -> Range<usize> {
+    let seen: Vec<Vec<bool>> = data
+        .positions
+        .axis_iter(Axis(0))
+        .map(|frame| frame.axis_iter(Axis(0)).map(|r| r.iter().all(|x| x.is_finite())).collect())
+        .collect();
+    let both = |pair: &[Vec<bool>]| pair[0].iter().zip(&pair[1]).filter(|(before, after)| **before && **after).count();
+    let motions: Vec<usize> = seen.windows(2).map(both).collect();
+    let intervals = around_middle(&motions);
+    let frames = intervals.start..intervals.end + 1;
+    if frames.len() < data.frames() {
+        let taken: usize = motions[intervals].iter().sum();
+        run.warn(format!(
+            "of {} frames the search takes those from {} to {}, in which cells are followed {taken} times from one frame to the next: --frames takes others, and says whether they \
+             lead to the same; time and memory grow somewhat faster than the number of motions",
+            data.frames(),
+            frames.start,
+            frames.end - 1,
+        ));
+    }
+    frames
+}
+
+/// Intervals around the middle one, as many as have few motions enough together.
+fn around_middle(motions: &[usize]) -> Range<usize> {
+    let middle = motions.len() / 2;
+    let mut range = middle..(middle + 1).min(motions.len());
+    let mut total: usize = motions[range.clone()].iter().sum();
+    loop {
+        let ends = [range.end, range.start.wrapping_sub(1)];
+        // On the side where less was taken.
+        let ends = if range.end - middle > middle - range.start { [ends[1], ends[0]] } else { ends };
+        let Some(next) = ends.into_iter().find(|next| *next < motions.len()) else { return range };
+        if total + motions[next] > MOST_MOTIONS && range.len() + 1 >= FEWEST_FRAMES {
+            return range;
+        }
+        total += motions[next];
+        range = range.start.min(next)..range.end.max(next + 1);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_long_movie_is_searched_around_its_middle_and_a_short_one_as_a_whole() {
+        assert_eq!(around_middle(&[400; 11]), 0..11);
+        assert_eq!(around_middle(&[1000; 85]), 40..45);
+        let growing: Vec<usize> = (0..85).map(|k| 230 + 9 * k).collect();
+        let taken = around_middle(&growing);
+        let total: usize = growing[taken.clone()].iter().sum();
+        assert!(taken.contains(&42) && total <= MOST_MOTIONS && total + 1000 > MOST_MOTIONS, "{taken:?}");
+        // However many cells there are, a few frames are taken.
+        assert_eq!(around_middle(&[100_000; 9]), 3..6);
+        assert_eq!(around_middle(&[7]), 0..1);
+    }
+}
