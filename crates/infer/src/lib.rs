@@ -83,8 +83,8 @@ pub use scale::Scale;
 pub use sites::{Outlined, Sites, sites};
 pub use spread::Spread;
 pub use tracks::{
-    Alignment, Drift, Drive, Integration, Latent, Movie, Polarity, Sighting, Track, Tracked, complete_tracks,
-    infer_tracks, measure_tracks,
+    Alignment, Drift, Drive, Integration, Jump, Latent, Movie, Polarity, Sighting, Track, Tracked,
+    complete_tracks, infer_tracks, measure_tracks,
 };
 pub use uncertainty::{Bootstrap, Landscape, Profile, bootstrap, landscape, profile};
 pub use verdict::Verdict;

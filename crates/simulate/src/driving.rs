@@ -1,13 +1,14 @@
 //! What moves cells besides the model: shear of the box, self-propulsion, noise.
 
 use crate::Error;
+use crate::scaled::times;
 use crate::turning::Headings;
 use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Scalar, Vector};
 
 /// Cells that share a stream of random numbers.
 pub(crate) const CHUNK: usize = 1024;
@@ -149,21 +150,21 @@ impl Driving {
     }
 
     /// Adds the streaming of the shear and the self-propulsion to velocities.
-    pub(crate) fn add_to(
+    pub(crate) fn add_to<S: Scalar>(
         &self,
-        velocities: &mut [Vector<f64>],
-        positions: &[Vector<f64>],
-        headings: &Headings,
+        velocities: &mut [Vector<S>],
+        positions: &[Vector<S>],
+        headings: &Headings<S>,
         time: f64,
     ) {
         let rate = self.shear.map_or(0.0, |shear| shear.rate(time));
         if rate != 0.0 {
             let rows = velocities.par_iter_mut().zip(positions).with_min_len(CHUNK);
-            rows.for_each(|(v, r)| v.x += rate * r.y);
+            rows.for_each(|(v, r)| v.x += r.y * rate);
         }
         if self.speed != 0.0 {
             let rows = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
-            rows.for_each(|(cell, v)| *v += headings.of(cell) * self.speed);
+            rows.for_each(|(cell, v)| *v += times(headings.of(cell), self.speed));
         }
     }
 
@@ -178,7 +179,7 @@ impl Driving {
     }
 
     /// Adds the noise of one step to the positions.
-    pub(crate) fn shake(&self, positions: &mut [Vector<f64>], step: u64, time_step: f64) {
+    pub(crate) fn shake<S: Scalar>(&self, positions: &mut [Vector<S>], step: u64, time_step: f64) {
         if self.diffusion == 0.0 {
             return;
         }
@@ -187,7 +188,7 @@ impl Driving {
             let mut rng = stream(self.seed, step, 2 * chunk as u64);
             for r in positions {
                 let (x, y): (f64, f64) = (rng.sample(StandardNormal), rng.sample(StandardNormal));
-                *r += Vector::new(x, y) * size;
+                *r += Vector::new(S::constant(x * size), S::constant(y * size));
             }
         });
     }

@@ -93,6 +93,14 @@ pub enum Error {
     /// Whoever watched a measurement broke it off.
     #[error("interrupted")]
     Interrupted,
+    /// A run is to be differentiated by the position of a cell that is not there.
+    #[error("there is no cell {cell} among {cells}")]
+    NoSuchCell {
+        /// Number of the cell asked for.
+        cell: usize,
+        /// How many cells there are.
+        cells: usize,
+    },
     /// A state of other cells.
     #[error("a state of {positions} positions and {headings} directions is not one of these {cells} cells")]
     State {
@@ -218,6 +226,7 @@ impl Error {
                 "take a smaller time step, lower the rates, or widen a channel of one or two cells between walls",
             ),
             Self::Bins { .. } => Some("take an even number, such as two for each cell size"),
+            Self::NoSuchCell { .. } => Some("cells are numbered from zero"),
             Self::State { .. } => Some("go on with the run that the state was taken from"),
             Self::Honeycomb { .. } => Some("take a multiple of four, such as 100"),
             Self::NoFrames => Some("ask for one frame to get the end of the run"),

@@ -1,13 +1,17 @@
 //! The state of a simulation.
 
+mod derivatives;
 mod replacement;
 mod step;
 
+pub use derivatives::{Direction, derivatives};
+
+use crate::scaled::{real, without_derivatives, zero};
 use crate::turning::Headings;
 use crate::walls::{self, Mirrored};
 use crate::{Driving, Error, Method, Shear, Walls};
 use serde::{Deserialize, Serialize};
-use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Tessellation, Vector};
+use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
 use voronudge_model::{HalfEdgeForces, Model};
 
 /// Cells in a periodic box that move under a model: `dr_i/dt = v_i(r)`, and what [`Driving`] adds.
@@ -15,37 +19,44 @@ use voronudge_model::{HalfEdgeForces, Model};
 /// Positions are unwrapped: they run on across the boundary of the box, unless its shear goes beyond
 /// [`PeriodicBox::runs_on`]. Velocities and tessellation always belong to the
 /// current positions. All arrays are kept from step to step.
+///
+/// With dual numbers for `S` a whole run is differentiated, by whatever the model and the starting positions carry derivatives of: exactly the
+/// derivatives of the numbers that the run computes, at the topology and the parts of steps that it went through. At a T1 they go over unchanged: where the force jumps there, what the
+/// moment of the jump does is left out.
 #[derive(Debug, Clone)]
-pub struct Simulation {
-    model: Model<f64>,
+pub struct Simulation<S: Scalar = f64> {
+    model: Model<S>,
     method: Method,
     driving: Driving,
     tessellation: MovingTessellation,
     cell_box: PeriodicBox,
-    mirrored: Option<Mirrored>,
+    mirrored: Option<Mirrored<S>>,
     spacing: f64,
-    now: State,
-    velocities: Vec<Vector<f64>>,
-    forces: HalfEdgeForces<f64>,
+    now: State<S>,
+    velocities: Vec<Vector<S>>,
+    forces: HalfEdgeForces<S>,
     /// What drives the polarities now.
-    drive: Vec<Vector<f64>>,
-    stage: Stage,
+    drive: Vec<Vector<S>>,
+    stage: Stage<S>,
+    /// Positions without derivatives.
+    places: Vec<Vector<f64>>,
 }
 
 /// A force between two places.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bond {
+pub struct Bond<S: Scalar = f64> {
     /// Where one end is.
-    pub from: Vector<f64>,
+    pub from: Vector<S>,
     /// Where the other end is, relative to it.
-    pub to: Vector<f64>,
+    pub to: Vector<S>,
     /// The force on the other end; its opposite acts on the first.
-    pub force: Vector<f64>,
+    pub force: Vector<S>,
 }
 
 /// All that a simulation needs to go on, besides what it was made of.
-#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
-pub struct State {
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
+#[serde(bound = "")]
+pub struct State<S: Scalar = f64> {
     /// Time since the start.
     pub time: f64,
     /// Steps made, of the adaptive method parts of steps.
@@ -57,35 +68,55 @@ pub struct State {
     pub part: Option<f64>,
     /// Cell centres (N), unwrapped, in the unit of the box.
     #[serde(skip)]
-    pub positions: Vec<Vector<f64>>,
+    pub positions: Vec<Vector<S>>,
     /// Directions of self-propulsion (N, radians), or none.
     #[serde(skip)]
-    pub headings: Vec<f64>,
+    pub headings: Vec<S>,
     /// Speeds of self-propulsion over `v₀` (N), or none if these do not vary.
     #[serde(skip)]
-    pub speeds: Vec<f64>,
+    pub speeds: Vec<S>,
 }
 
-impl State {
-    fn polarities(&self) -> Headings {
+impl<S: Scalar> Default for State<S> {
+    fn default() -> Self {
+        Self {
+            time: 0.0,
+            steps: 0,
+            crossings: 0,
+            part: None,
+            positions: Vec::new(),
+            headings: Vec::new(),
+            speeds: Vec::new(),
+        }
+    }
+}
+
+impl<S: Scalar> State<S> {
+    fn polarities(&self) -> Headings<S> {
         Headings { angles: self.headings.clone(), speeds: self.speeds.clone() }
     }
 
-    fn set_polarities(&mut self, headings: &Headings) {
+    fn set_polarities(&mut self, headings: &Headings<S>) {
         self.headings.clone_from(&headings.angles);
         self.speeds.clone_from(&headings.speeds);
     }
 }
 
 /// Work space of one step.
-#[derive(Debug, Clone, Default)]
-struct Stage {
-    positions: Vec<Vector<f64>>,
-    headings: Headings,
-    slopes: [Vec<Vector<f64>>; 3],
+#[derive(Debug, Clone)]
+struct Stage<S: Scalar> {
+    positions: Vec<Vector<S>>,
+    headings: Headings<S>,
+    slopes: [Vec<Vector<S>>; 3],
 }
 
-impl Simulation {
+impl<S: Scalar> Default for Stage<S> {
+    fn default() -> Self {
+        Self { positions: Vec::new(), headings: Headings::default(), slopes: Default::default() }
+    }
+}
+
+impl<S: Scalar> Simulation<S> {
     /// Starts at time zero from `positions` (N, in the unit of the box).
     ///
     /// # Errors
@@ -107,11 +138,11 @@ impl Simulation {
     /// assert_eq!(simulation.velocities().len(), 36);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn new(positions: Vec<Vector<f64>>, domain: Domain, model: Model<f64>) -> Result<Self, Error> {
+    pub fn new(positions: Vec<Vector<S>>, domain: Domain, model: Model<S>) -> Result<Self, Error> {
         let Domain::Periodic(cell_box) = domain else {
             return Err(Error::OpenDomain);
         };
-        let tessellation = MovingTessellation::new(&positions, domain)
+        let tessellation = MovingTessellation::new(&real(&positions), domain)
             .map_err(|source| Error::Tessellation { time: 0.0, source })?;
         let spacing = (cell_box.area() / positions.len() as f64).sqrt();
         let mut simulation = Self {
@@ -127,6 +158,7 @@ impl Simulation {
             forces: HalfEdgeForces::default(),
             drive: Vec::new(),
             stage: Stage::default(),
+            places: Vec::new(),
         };
         simulation.settle()?;
         Ok(simulation)
@@ -146,6 +178,19 @@ impl Simulation {
         Ok(self)
     }
 
+    /// The same with another model from now on.
+    ///
+    /// # Errors
+    /// [`Error::Walls`] as in [`Simulation::with_walls`].
+    pub fn with_model(mut self, model: Model<S>) -> Result<Self, Error> {
+        if self.mirrored.is_some() {
+            walls::check(&model, &self.cell_box, &self.driving)?;
+        }
+        self.model = model;
+        self.settle()?;
+        Ok(self)
+    }
+
     /// The same with shear, self-propulsion or noise from now on. A step strain shears the positions.
     ///
     /// # Errors
@@ -156,7 +201,9 @@ impl Simulation {
             walls::check(&self.model, &self.cell_box, &driving)?;
         }
         if let Some(Shear::Step { strain }) = driving.shear {
-            self.now.positions.iter_mut().for_each(|r| r.x += strain * r.y);
+            for r in &mut self.now.positions {
+                r.x = r.x + r.y * strain;
+            }
         }
         self.now.set_polarities(&driving.first_headings(self.now.positions.len()));
         self.driving = driving;
@@ -183,7 +230,7 @@ impl Simulation {
     ///
     /// # Errors
     /// [`Error::State`] if the state is not one of these cells; [`Error::Tessellation`] as in [`Simulation::new`].
-    pub fn in_state(mut self, state: State) -> Result<Self, Error> {
+    pub fn in_state(mut self, state: State<S>) -> Result<Self, Error> {
         let cells = self.now.positions.len();
         let (positions, headings) = (state.positions.len(), state.headings.len());
         let speeds = state.speeds.len();
@@ -231,17 +278,17 @@ impl Simulation {
     }
 
     /// Cell centres (N), unwrapped.
-    pub fn positions(&self) -> &[Vector<f64>] {
+    pub fn positions(&self) -> &[Vector<S>] {
         &self.now.positions
     }
 
     /// Velocities (N) at the current positions, with shear and self-propulsion, without noise.
-    pub fn velocities(&self) -> &[Vector<f64>] {
+    pub fn velocities(&self) -> &[Vector<S>] {
         &self.velocities
     }
 
     /// Positions of the cells of [`Simulation::tessellation`]: between walls the cells (N) and then their mirror images.
-    pub fn positions_with_images(&self) -> &[Vector<f64>] {
+    pub fn positions_with_images(&self) -> &[Vector<S>] {
         self.mirrored.as_ref().map_or(self.positions(), |mirrored| &mirrored.positions)
     }
 
@@ -252,7 +299,7 @@ impl Simulation {
 
     /// Mean velocity along the wall of the cells that touch one, anticlockwise around the box; none without walls. A cell in a
     /// corner counts for both.
-    pub fn edge_velocity(&self) -> Option<f64> {
+    pub fn edge_velocity(&self) -> Option<S> {
         self.mirrored.as_ref()?.edge_velocity(self.tessellation(), &self.velocities)
     }
 
@@ -263,7 +310,7 @@ impl Simulation {
 
     /// The force of each cell's element on each of its neighbours; the opposite force acts on the cell. Between walls of the cells, not
     /// of their images.
-    pub fn bonds(&self) -> impl Iterator<Item = Bond> {
+    pub fn bonds(&self) -> impl Iterator<Item = Bond<S>> {
         let (tessellation, positions) = (self.tessellation(), self.positions_with_images());
         (0..self.now.positions.len()).flat_map(move |cell| {
             let displacements = tessellation.displacements(positions, cell);
@@ -275,7 +322,7 @@ impl Simulation {
     }
 
     /// The model that moves the cells.
-    pub fn model(&self) -> &Model<f64> {
+    pub fn model(&self) -> &Model<S> {
         &self.model
     }
 
@@ -290,32 +337,64 @@ impl Simulation {
     }
 
     /// What is needed to go on from here.
-    pub fn state(&self) -> &State {
+    pub fn state(&self) -> &State<S> {
         &self.now
+    }
+
+    /// The same with other scalars.
+    fn carried_over<T: Scalar>(&self, model: Model<T>, now: State<T>) -> Result<Simulation<T>, Error> {
+        let mut other = Simulation {
+            model,
+            method: self.method,
+            driving: self.driving,
+            tessellation: self.tessellation.clone(),
+            cell_box: self.cell_box,
+            mirrored: self.mirrored.as_ref().map(Mirrored::carried_over),
+            spacing: self.spacing,
+            now,
+            velocities: Vec::new(),
+            forces: HalfEdgeForces::default(),
+            drive: Vec::new(),
+            stage: Stage::default(),
+            places: Vec::new(),
+        };
+        other.settle()?;
+        Ok(other)
+    }
+
+    /// Other derivatives of the positions, which stay where they are.
+    ///
+    /// # Errors
+    /// As [`Simulation::new`].
+    pub(crate) fn differentiate_by(&mut self, change: impl FnOnce(&mut [Vector<S>])) -> Result<(), Error> {
+        change(&mut self.now.positions);
+        self.settle()
     }
 
     /// Velocities at positions of a time; the tessellation becomes theirs.
     fn evaluate(
         &mut self,
-        positions: &[Vector<f64>],
-        headings: &Headings,
+        positions: &Vec<Vector<S>>,
+        headings: &Headings<S>,
         time: f64,
-        velocities: &mut Vec<Vector<f64>>,
+        velocities: &mut Vec<Vector<S>>,
     ) -> Result<(), Error> {
         if let Some(mirrored) = &mut self.mirrored {
             mirrored.place(positions);
-            (self.tessellation.renew(&mirrored.positions))
-                .map_err(|source| Error::Tessellation { time, source })?;
+            let places = without_derivatives(&mirrored.positions, &mut self.places);
+            (self.tessellation.renew(places)).map_err(|source| Error::Tessellation { time, source })?;
             let tessellation = self.tessellation.tessellation();
             let (all, mirrors) = (&mirrored.positions, mirrored.walls.mirrors());
-            velocities.resize(positions.len(), Vector::zeros());
+            velocities.resize(positions.len(), zero());
             self.forces.evaluate_with_images(tessellation, all, &self.model, mirrors, velocities);
             mirrored.unfold(velocities);
             self.driving.add_to(velocities, positions, headings, time);
             return Ok(());
         }
-        self.domain_at(time)
-            .and_then(|domain| self.tessellation.renew_in(positions, domain))
+        let domain = self.domain_at(time);
+        let places = without_derivatives(positions, &mut self.places);
+        domain
+            .and_then(|domain| self.tessellation.renew_in(places, domain))
             .map_err(|source| Error::Tessellation { time, source })?;
         self.forces.evaluate(self.tessellation.tessellation(), positions, &self.model, velocities);
         self.driving.add_to(velocities, positions, headings, time);
@@ -360,9 +439,10 @@ impl Simulation {
         let mut any = false;
         if let Domain::Periodic(cell_box) = domain {
             for r in &mut self.now.positions {
-                let back = cell_box.brought_back(*r);
-                any |= back != *r;
-                *r = back;
+                let place = Vector::new(r.x.real(), r.y.real());
+                let back = cell_box.brought_back(place);
+                any |= back != place;
+                *r = Vector::new(r.x - place.x + back.x, r.y - place.y + back.y);
             }
         }
         Ok(any)

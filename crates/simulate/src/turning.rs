@@ -2,112 +2,124 @@
 
 use crate::Driving;
 use crate::driving::{CHUNK, stream};
+use crate::scaled::{times, zero};
 use rand::Rng;
 use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use std::sync::Arc;
-use voronudge_geometry::{Tessellation, Vector};
+use voronudge_geometry::{Scalar, Tessellation, Vector};
 use voronudge_model::{Environment, HalfEdgeForces, Model, effect::away_from_contacts};
 
 /// Polarities of cells, `p = v₀ s (cos θ, sin θ)`.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Headings {
+#[derive(Debug, Clone)]
+pub(crate) struct Headings<S: Scalar> {
     /// θ (N, radians); empty if nothing propels itself.
-    pub angles: Vec<f64>,
+    pub angles: Vec<S>,
     /// s (N); empty if it is one.
-    pub speeds: Vec<f64>,
+    pub speeds: Vec<S>,
 }
 
-impl Headings {
+impl<S: Scalar> Default for Headings<S> {
+    fn default() -> Self {
+        Self { angles: Vec::new(), speeds: Vec::new() }
+    }
+}
+
+impl<S: Scalar> Headings<S> {
     /// The polarity of a cell over v₀.
-    pub fn of(&self, cell: usize) -> Vector<f64> {
-        let angle = self.angles.get(cell).copied().unwrap_or(0.0);
-        Vector::new(angle.cos(), angle.sin()) * self.speeds.get(cell).copied().unwrap_or(1.0)
+    pub fn of(&self, cell: usize) -> Vector<S> {
+        let angle = self.angles.get(cell).copied().unwrap_or(S::constant(0.0));
+        Vector::new(angle.cos(), angle.sin()) * self.speeds.get(cell).copied().unwrap_or(S::constant(1.0))
     }
 
     /// Puts polarities over v₀ in place of those that are there.
-    fn set(&mut self, polarities: Vec<Vector<f64>>) {
+    fn set(&mut self, polarities: Vec<Vector<S>>) {
         self.angles = polarities.iter().map(|p| p.y.atan2(p.x)).collect();
-        self.speeds = polarities.iter().map(Vector::norm).collect();
+        self.speeds = polarities.iter().map(|p| (p.x * p.x + p.y * p.y).sqrt()).collect();
     }
 }
 
 impl Driving {
     /// Random polarities; none if nothing propels itself.
-    pub(crate) fn first_headings(&self, cells: usize) -> Headings {
+    pub(crate) fn first_headings<S: Scalar>(&self, cells: usize) -> Headings<S> {
         if self.speed == 0.0 {
             return Headings::default();
         }
         let mut rng = stream(self.seed, u64::MAX, 0);
-        let angles = (0..cells).map(|_| rng.random_range(0.0..std::f64::consts::TAU)).collect();
+        let angles = (0..cells).map(|_| S::constant(rng.random_range(0.0..std::f64::consts::TAU))).collect();
         let mut rng = stream(self.seed, u64::MAX, 1);
         // Both components are normal, and the mean square is one.
-        let mut speed = || (-(1.0 - rng.random::<f64>()).ln()).sqrt();
+        let mut speed = || S::constant((-(1.0 - rng.random::<f64>()).ln()).sqrt());
         let speeds = if self.free_speed { (0..cells).map(|_| speed()).collect() } else { Vec::new() };
         Headings { angles, speeds }
     }
 
     /// What drives the polarity of each cell, `b n + κ F`, at positions with their velocities; none if nothing does.
-    pub(crate) fn drive(
+    pub(crate) fn drive<S: Scalar>(
         &self,
-        (tessellation, positions): (&Tessellation, &[Vector<f64>]),
-        velocities: &[Vector<f64>],
-        (headings, time): (&Headings, f64),
+        (tessellation, positions): (&Tessellation, &[Vector<S>]),
+        velocities: &[Vector<S>],
+        (headings, time): (&Headings<S>, f64),
         environment: &Arc<Environment>,
-    ) -> Vec<Vector<f64>> {
+    ) -> Vec<Vector<S>> {
         if !self.drives() {
             return Vec::new();
         }
-        let mut drive = vec![Vector::zeros(); velocities.len()];
+        let mut drive = vec![zero(); velocities.len()];
         if self.contact_inhibition != 0.0 {
             let (column, sign) = away_from_contacts();
-            let away = Model::with_coefficients(&[], &[]).with(column, sign * self.contact_inhibition);
+            let strength = S::constant(sign * self.contact_inhibition);
+            let away = Model::with_coefficients(&[], &[]).with(column, strength);
             let mut forces = HalfEdgeForces::default();
             forces.evaluate(tessellation, positions, &away.within(environment), &mut drive);
         }
         if self.velocity_alignment != 0.0 {
             let rate = self.shear.map_or(0.0, |shear| shear.rate(time));
             for (cell, (drive, v)) in drive.iter_mut().zip(velocities).enumerate() {
-                let streaming = Vector::new(rate * positions[cell].y, 0.0);
-                *drive += (v - streaming - headings.of(cell) * self.speed) * self.velocity_alignment;
+                let streaming = Vector::new(positions[cell].y * rate, S::constant(0.0));
+                let own = v - streaming - times(headings.of(cell), self.speed);
+                *drive += times(own, self.velocity_alignment);
             }
         }
         drive
     }
 
     /// Turns the polarities towards those of the neighbours and along what drives them (first order in the step, as is the noise).
-    pub(crate) fn turn(
+    pub(crate) fn turn<S: Scalar>(
         &self,
-        headings: &mut Headings,
+        headings: &mut Headings<S>,
         tessellation: &Tessellation,
-        drive: &[Vector<f64>],
+        drive: &[Vector<S>],
         time_step: f64,
     ) {
         if headings.angles.is_empty() || (self.alignment == 0.0 && drive.is_empty()) {
             return;
         }
         let (before, rate) = (headings.clone(), self.alignment / 6.0);
-        let driven = |cell: usize| drive.get(cell).map_or(Vector::zeros(), |own| own / self.speed);
+        let over_speed = |own: &Vector<S>| Vector::new(own.x / self.speed, own.y / self.speed);
+        let driven = |cell: usize| drive.get(cell).map_or(zero(), over_speed);
         let neighbours = |cell: usize| tessellation.neighbours(cell).iter().map(|other| *other as usize);
         if !before.speeds.is_empty() {
             let turned = |cell: usize| {
                 let own = before.of(cell);
-                let sum: Vector<f64> = neighbours(cell).map(|other| before.of(other) - own).sum();
-                own + (sum * rate + driven(cell)) * time_step
+                let apart = |other| before.of(other) - own;
+                let sum = neighbours(cell).map(apart).fold(zero(), |sum: Vector<S>, part| sum + part);
+                own + times(times(sum, rate) + driven(cell), time_step)
             };
             return headings.set((0..before.angles.len()).map(turned).collect());
         }
         let angles = &before.angles;
-        let turn = |(cell, angle): (usize, &mut f64)| {
-            let sum: f64 = neighbours(cell).map(|other| (angles[other] - angles[cell]).sin()).sum();
-            let across = driven(cell).dot(&Vector::new(-angles[cell].sin(), angles[cell].cos()));
-            *angle += (rate * sum + across) * time_step;
+        let turn = |(cell, angle): (usize, &mut S)| {
+            let sum: S = neighbours(cell).map(|other| (angles[other] - angles[cell]).sin()).sum();
+            let drive = driven(cell);
+            let across = drive.x * -angles[cell].sin() + drive.y * angles[cell].cos();
+            *angle += (sum * rate + across) * time_step;
         };
         headings.angles.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(turn);
     }
 
     /// Adds the noise of one step to the polarities.
-    pub(crate) fn disturb(&self, headings: &mut Headings, step: u64, time_step: f64) {
+    pub(crate) fn disturb<S: Scalar>(&self, headings: &mut Headings<S>, step: u64, time_step: f64) {
         if self.rotational_diffusion == 0.0 || headings.angles.is_empty() {
             return;
         }
@@ -122,13 +134,13 @@ impl Driving {
         }
         let kept = (-self.rotational_diffusion * time_step).exp();
         let size = (0.5 * (1.0 - kept * kept)).sqrt();
-        let mut polarities: Vec<Vector<f64>> =
-            (0..headings.angles.len()).map(|cell| headings.of(cell) * kept).collect();
+        let mut polarities: Vec<Vector<S>> =
+            (0..headings.angles.len()).map(|cell| times(headings.of(cell), kept)).collect();
         polarities.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, polarities)| {
             let mut rng = chunk_of(chunk);
             for p in polarities {
                 let (x, y): (f64, f64) = (rng.sample(StandardNormal), rng.sample(StandardNormal));
-                *p += Vector::new(x, y) * size;
+                *p += Vector::new(S::constant(x * size), S::constant(y * size));
             }
         });
         headings.set(polarities);

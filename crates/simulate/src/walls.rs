@@ -1,8 +1,9 @@
 //! Torque-free walls: mirror images of the cells.
 
+use crate::scaled::real;
 use crate::{Driving, Error};
 use serde::{Deserialize, Serialize};
-use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Tessellation, Vector};
+use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
 use voronudge_model::Model;
 
 /// Straight walls without friction or torque at the sides of the box.
@@ -46,40 +47,47 @@ impl Walls {
 
 /// Cells between walls, with their mirror images.
 #[derive(Debug, Clone)]
-pub(crate) struct Mirrored {
+pub(crate) struct Mirrored<S: Scalar> {
     pub walls: Walls,
     lengths: [f64; 2],
     /// All images, the cells themselves first.
-    pub positions: Vec<Vector<f64>>,
+    pub positions: Vec<Vector<S>>,
     /// Sign of each component of each cell: negative where the cell was found behind a wall.
     signs: Vec<[f64; 2]>,
 }
 
-impl Mirrored {
+impl<S: Scalar> Mirrored<S> {
     /// Cells at positions, which are put in front of the walls, and the tessellation of them and their images.
     pub fn of(
         walls: Walls,
         cell_box: &PeriodicBox,
-        positions: &mut [Vector<f64>],
+        positions: &mut [Vector<S>],
     ) -> Result<(Self, MovingTessellation), voronudge_geometry::Error> {
         let lengths = cell_box.lengths();
         let mut mirrored = Self { walls, lengths, positions: Vec::new(), signs: Vec::new() };
         mirrored.place(positions);
         let domain = Domain::Periodic(walls.doubled(lengths)?);
-        let tessellation = MovingTessellation::new(&mirrored.positions, domain)?;
+        let tessellation = MovingTessellation::new(&real(&mirrored.positions), domain)?;
         positions.copy_from_slice(&mirrored.positions[..positions.len()]);
         Ok((mirrored, tessellation))
     }
 
+    /// The walls for cells of other scalars, of which none are placed yet.
+    pub fn carried_over<T: Scalar>(&self) -> Mirrored<T> {
+        Mirrored { walls: self.walls, lengths: self.lengths, positions: Vec::new(), signs: Vec::new() }
+    }
+
     /// Places cells and images. A cell behind a wall is put where its image is, in front of it.
-    pub fn place(&mut self, positions: &[Vector<f64>]) {
+    pub fn place(&mut self, positions: &[Vector<S>]) {
         self.signs.clear();
         self.positions.clear();
         for r in positions {
             let mut placed = *r;
             let mut sign = [1.0; 2];
             for &axis in self.walls.mirrors() {
-                (placed[axis], sign[axis]) = fold(r[axis], self.lengths[axis]);
+                let (within, direction) = fold(r[axis].real(), self.lengths[axis]);
+                placed[axis] = (r[axis] - r[axis].real()) * direction + within;
+                sign[axis] = direction;
             }
             self.positions.push(placed);
             self.signs.push(sign);
@@ -94,14 +102,14 @@ impl Mirrored {
     }
 
     /// Velocities of the cells in front of the walls as those of the cells where they were given.
-    pub fn unfold(&self, velocities: &mut [Vector<f64>]) {
+    pub fn unfold(&self, velocities: &mut [Vector<S>]) {
         for (v, sign) in velocities.iter_mut().zip(&self.signs) {
             *v = Vector::new(v.x * sign[0], v.y * sign[1]);
         }
     }
 
     /// Puts cells that were placed last in front of the walls, and their velocities; returns how many were behind one.
-    pub fn bring_back(&self, positions: &mut [Vector<f64>], velocities: &mut [Vector<f64>]) -> u64 {
+    pub fn bring_back(&self, positions: &mut [Vector<S>], velocities: &mut [Vector<S>]) -> u64 {
         self.unfold(velocities);
         positions.copy_from_slice(&self.positions[..positions.len()]);
         self.signs.iter().filter(|sign| sign[0] < 0.0 || sign[1] < 0.0).count() as u64
@@ -119,18 +127,18 @@ impl Mirrored {
             if !tessellation.neighbours(cell).contains(&(own_image as u32)) {
                 return None;
             }
-            let far = if r[axis] > 0.5 * self.lengths[axis] { 1.0 } else { -1.0 };
+            let far = if r[axis].real() > 0.5 * self.lengths[axis] { 1.0 } else { -1.0 };
             // Up at the right wall, to the left at the upper one.
             Some(if axis == 0 { Vector::new(0.0, far) } else { Vector::new(-far, 0.0) })
         })
     }
 
     /// Mean tangential velocity of the cells that touch a wall.
-    pub fn edge_velocity(&self, tessellation: &Tessellation, velocities: &[Vector<f64>]) -> Option<f64> {
-        let (mut sum, mut count) = (0.0, 0.0);
+    pub fn edge_velocity(&self, tessellation: &Tessellation, velocities: &[Vector<S>]) -> Option<S> {
+        let (mut sum, mut count) = (S::constant(0.0), 0.0);
         for (cell, v) in velocities.iter().enumerate() {
             for tangent in self.tangents(tessellation, cell) {
-                sum += v.dot(&tangent);
+                sum += v.x * tangent.x + v.y * tangent.y;
                 count += 1.0;
             }
         }
@@ -148,7 +156,11 @@ pub(crate) fn fold(x: f64, length: f64) -> (f64, f64) {
 }
 
 /// Walls need forces that are defined by the shapes of cells alone.
-pub(crate) fn check(model: &Model<f64>, cell_box: &PeriodicBox, driving: &Driving) -> Result<(), Error> {
+pub(crate) fn check<S: Scalar>(
+    model: &Model<S>,
+    cell_box: &PeriodicBox,
+    driving: &Driving,
+) -> Result<(), Error> {
     let reason = if cell_box.offset() != 0.0 || driving.shear.is_some() {
         "the box is sheared"
     } else if driving.speed != 0.0 {

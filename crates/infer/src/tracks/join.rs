@@ -13,7 +13,7 @@
 //! there must be room for it.
 
 use super::movie::{Movie, Track};
-use super::neighbours::Motion;
+use super::neighbours::{Motion, log_density};
 use pathfinding::kuhn_munkres::kuhn_munkres;
 use pathfinding::matrix::Matrix;
 use pathfinding::undirected::connected_components::components;
@@ -80,9 +80,7 @@ fn gains(movie: &Movie) -> Vec<(usize, usize, i64)> {
             for &begin in &begins[frame] {
                 let Some(to) = movie.tracks[begin].at(frame) else { continue };
                 let miss = movie.domain.shortest(to - place).norm_squared();
-                let likelihood =
-                    -2.0 * (miss / (2.0 * square)).ln_1p() - (std::f64::consts::TAU * square).ln();
-                let gain = ((likelihood - motion.beginnings.ln()) * PARTS) as i64;
+                let gain = ((log_density(miss, square) - motion.beginnings.ln()) * PARTS) as i64;
                 if gain > 0 && has_room(movie, (last, from), (frame, to)) {
                     gains.push((end, begin, gain));
                 }

@@ -1,6 +1,7 @@
 //! Cells followed from frame to frame.
 
 use super::join::join;
+use super::jump::{Jump, cut, jumps};
 use super::states::States;
 use crate::{Error, Observation};
 use std::sync::Arc;
@@ -219,6 +220,16 @@ impl Movie {
     /// The share c of the way from a cell's site to its centroid at which its position is measured.
     pub fn share(&self) -> f64 {
         self.share
+    }
+
+    /// Where tracks jump to another cell, by track and frame; positions in any unit. Tracks must not be joined yet.
+    pub fn jumps(&self) -> Vec<Jump> {
+        jumps(self)
+    }
+
+    /// Cuts tracks where they jump, as [`jumps`](Self::jumps) of a movie of the same tracks found. Parts bear the name of the whole.
+    pub fn cut(&mut self, jumps: &[Jump]) {
+        cut(self, jumps);
     }
 
     /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.

@@ -14,22 +14,33 @@ pub(super) struct Motion<'a> {
     movie: &'a Movie,
     /// Where each was, and how far it went.
     steps: Vec<(Vector<f64>, Vector<f64>)>,
+    /// Their tracks, ascending.
+    tracks: Vec<usize>,
     /// Squared scale of the errors of predictions.
     pub square: f64,
     /// Tracks that begin in the next frame, to a cell that goes on: to a unit area, about.
     pub beginnings: f64,
 }
 
+/// Log density of a cell at a distance from where it should be, given its square: Student's with two degrees of freedom in the plane.
+pub(super) fn log_density(distance_squared: f64, square: f64) -> f64 {
+    -2.0 * (distance_squared / (2.0 * square)).ln_1p() - (std::f64::consts::TAU * square).ln()
+}
+
 impl<'a> Motion<'a> {
     pub fn new(movie: &'a Movie, frame: usize) -> Self {
-        let steps: Vec<_> = movie
-            .increments(frame)
-            .filter_map(|(track, step)| Some((movie.tracks[track].at(frame)?, step)))
-            .collect();
+        let step =
+            |(track, step): (usize, Vector<f64>)| Some((track, (movie.tracks[track].at(frame)?, step)));
+        let (tracks, steps): (Vec<usize>, Vec<_>) = movie.increments(frame).filter_map(step).unzip();
         let begin = movie.tracks.iter().filter(|track| track.first == frame + 1).count();
         let beginnings = begin.max(1) as f64 / steps.len().max(1) as f64;
-        let motion = Self { movie, steps, square: 1.0, beginnings };
+        let motion = Self { movie, steps, tracks, square: 1.0, beginnings };
         Self { square: motion.learn_square(), ..motion }
+    }
+
+    /// Number of the step of a track, if it was seen in both frames.
+    pub fn step_of(&self, track: usize) -> Option<usize> {
+        self.tracks.binary_search(&track).ok()
     }
 
     /// The mean motion of the nearest cells around a place, one of them left out.

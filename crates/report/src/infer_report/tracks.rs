@@ -7,6 +7,8 @@ use serde::Serialize;
 pub struct TracksReport {
     /// Number of tracks after joining.
     pub tracks: usize,
+    /// How often a track jumped to another cell, where it was cut.
+    pub cut: usize,
     /// Tracks that broke and went on under another name, and were joined.
     pub joined: usize,
     /// Cells times frames within tracks in which the cell was not seen.

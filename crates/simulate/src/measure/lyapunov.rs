@@ -1,12 +1,11 @@
 //! The largest Lyapunov exponent by tangent dynamics.
 
-use crate::{Error, generator};
+use crate::{Error, Simulation, generator};
 use num_dual::Dual64;
 use rand::Rng;
-use rayon::prelude::*;
 use std::ops::ControlFlow;
-use voronudge_geometry::{Domain, MovingTessellation, Scalar, Vector};
-use voronudge_model::{HalfEdgeForces, Model};
+use voronudge_geometry::{Domain, Vector};
+use voronudge_model::Model;
 use voronudge_observables::BlockAverage;
 
 /// How long a Lyapunov exponent is measured.
@@ -46,13 +45,10 @@ pub struct LyapunovExponent {
     pub standard_error: Option<f64>,
 }
 
-/// Cells per task.
-const CHUNK: usize = 1024;
-
 /// The largest Lyapunov exponent of the trajectory from `positions` (N) in a periodic domain: the growth rate of a tangent
 /// vector `δ̇ = J(r) δ` by exact Jacobian–vector products.
 ///
-/// Positions and tangent vector go through the classical Runge–Kutta method together as dual numbers, so the tangent
+/// Positions and tangent vector are those of a [`Simulation`] of dual numbers, so the tangent
 /// map is the exact derivative of the numerical step at frozen topology. Uniform translations, whose exponent is zero, are
 /// taken out. At a T1 the tangent vector goes over unchanged: where the force jumps there, the contribution of the jump
 /// itself is not in λ. One step costs about four times that of a simulation.
@@ -60,7 +56,7 @@ const CHUNK: usize = 1024;
 /// `observe` sees the steps done and may stop the measurement; what was measured so far is then returned.
 ///
 /// # Errors
-/// [`Error::OpenDomain`] unless the domain is periodic; [`Error::TimeStep`]; [`Error::Tessellation`]; [`Error::NoFrames`]
+/// [`Error::OpenDomain`] unless the domain is periodic; [`Error::TimeStep`]; [`Error::StepTooLarge`]; [`Error::Tessellation`]; [`Error::NoFrames`]
 /// if there is nothing to count.
 ///
 /// ```
@@ -87,19 +83,16 @@ pub fn largest_lyapunov_exponent(
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Result<LyapunovExponent, Error> {
     let LyapunovSchedule { time_step, transient, steps, renormalisation } = *schedule;
-    if domain == Domain::Open {
-        return Err(Error::OpenDomain);
-    }
     if !(time_step.is_finite() && time_step > 0.0) {
         return Err(Error::TimeStep { time_step });
     }
     let mut tangent = Tangent::new(positions, domain, model, seed)?;
     let (mut rates, mut since) = (BlockAverage::default(), 0);
     for step in 1..=transient + steps {
-        tangent.step(time_step)?;
+        tangent.simulation.step(time_step)?;
         since += 1;
         if since >= renormalisation || step == transient {
-            let rate = tangent.renormalise().ln() / (f64::from(since as u32) * time_step);
+            let rate = tangent.renormalise()?.ln() / (f64::from(since as u32) * time_step);
             if step > transient {
                 rates.add(rate);
             }
@@ -113,95 +106,49 @@ pub fn largest_lyapunov_exponent(
     Ok(LyapunovExponent { value, standard_error: rates.standard_error() })
 }
 
-/// A trajectory and a tangent vector: dual numbers.
+/// A trajectory and a tangent vector: a simulation of dual numbers.
 struct Tangent {
-    model: Model<Dual64>,
-    tessellation: MovingTessellation,
-    forces: HalfEdgeForces<Dual64>,
-    time: f64,
-    positions: Vec<Vector<Dual64>>,
-    stage: Vec<Vector<Dual64>>,
-    slope: Vec<Vector<Dual64>>,
-    sum: Vec<Vector<Dual64>>,
-    real: Vec<Vector<f64>>,
+    simulation: Simulation<Dual64>,
 }
 
 impl Tangent {
     fn new(positions: &[Vector<f64>], domain: Domain, model: &Model<f64>, seed: u64) -> Result<Self, Error> {
-        let tessellation = MovingTessellation::new(positions, domain)
-            .map_err(|source| Error::Tessellation { time: 0.0, source })?;
         let mut rng = generator(seed);
         let mut seeded = |x: f64| Dual64::new(x, rng.random_range(-1.0..1.0));
         let positions = positions.iter().map(|r| Vector::new(seeded(r.x), seeded(r.y))).collect();
-        let mut tangent = Self {
-            model: model.lift(),
-            tessellation,
-            forces: HalfEdgeForces::default(),
-            time: 0.0,
-            positions,
-            stage: Vec::new(),
-            slope: Vec::new(),
-            sum: Vec::new(),
-            real: Vec::new(),
-        };
-        tangent.renormalise();
+        let mut tangent = Self { simulation: Simulation::new(positions, domain, model.lift())? };
+        tangent.renormalise()?;
         Ok(tangent)
     }
 
-    /// One step of the classical Runge–Kutta method.
-    fn step(&mut self, time_step: f64) -> Result<(), Error> {
-        self.sum.clear();
-        self.sum.resize(self.positions.len(), zero());
-        self.slope.clone_from(&self.sum);
-        for (reach, weight) in [(0.0, 1.0), (0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-            self.stage.clone_from(&self.positions);
-            add_scaled(&mut self.stage, &self.slope, reach * time_step);
-            self.real.clear();
-            self.real.extend(self.stage.iter().map(|r| Vector::new(r.x.real(), r.y.real())));
-            let renewed = self.tessellation.renew(&self.real);
-            renewed.map_err(|source| Error::Tessellation { time: self.time, source })?;
-            self.forces.evaluate(self.tessellation.tessellation(), &self.stage, &self.model, &mut self.slope);
-            add_scaled(&mut self.sum, &self.slope, weight);
-        }
-        add_scaled(&mut self.positions, &self.sum, time_step / 6.0);
-        self.time += time_step;
-        Ok(())
-    }
-
     /// Takes translations out of the tangent vector, makes its length one and returns the length it had.
-    fn renormalise(&mut self) -> f64 {
-        let cells = self.positions.len() as f64;
-        let mean = self.positions.iter().map(|r| Vector::new(r.x.eps, r.y.eps)).sum::<Vector<f64>>() / cells;
-        for r in &mut self.positions {
-            r.x.eps -= mean.x;
-            r.y.eps -= mean.y;
-        }
-        let length = self.positions.iter().map(|r| r.x.eps * r.x.eps + r.y.eps * r.y.eps).sum::<f64>().sqrt();
-        for r in &mut self.positions {
-            r.x.eps /= length;
-            r.y.eps /= length;
-        }
-        length
+    fn renormalise(&mut self) -> Result<f64, Error> {
+        let mut length = 0.0;
+        self.simulation.differentiate_by(|positions| {
+            let cells = positions.len() as f64;
+            let mean = positions.iter().map(tangent_of).sum::<Vector<f64>>() / cells;
+            for r in positions.iter_mut() {
+                r.x.eps -= mean.x;
+                r.y.eps -= mean.y;
+            }
+            length = positions.iter().map(|r| tangent_of(r).norm_squared()).sum::<f64>().sqrt();
+            for r in positions {
+                r.x.eps /= length;
+                r.y.eps /= length;
+            }
+        })?;
+        Ok(length)
     }
 }
 
-fn zero() -> Vector<Dual64> {
-    Vector::new(Dual64::from_re(0.0), Dual64::from_re(0.0))
-}
-
-/// `to += h v`
-fn add_scaled(to: &mut [Vector<Dual64>], v: &[Vector<Dual64>], h: f64) {
-    let rows = to.par_iter_mut().zip(v).with_min_len(CHUNK);
-    rows.for_each(|(to, v)| {
-        to.x += v.x * h;
-        to.y += v.y * h;
-    });
+fn tangent_of(r: &Vector<Dual64>) -> Vector<f64> {
+    Vector::new(r.x.eps, r.y.eps)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{RandomPlacement, Simulation};
+    use crate::RandomPlacement;
     use voronudge_geometry::PeriodicBox;
     use voronudge_model::Parameters;
 
@@ -219,19 +166,21 @@ mod tests {
             let at = |r: &Vector<Dual64>| {
                 Vector::new(r.x.re + sign * size * r.x.eps, r.y.re + sign * size * r.y.eps)
             };
-            Simulation::new(tangent.positions.iter().map(at).collect(), domain, model.clone()).unwrap()
+            Simulation::new(tangent.simulation.positions().iter().map(at).collect(), domain, model.clone())
+                .unwrap()
         };
         let (mut plus, mut minus) = (beside(1.0), beside(-1.0));
         for _ in 0..20 {
-            tangent.step(0.005).unwrap();
+            tangent.simulation.step(0.005).unwrap();
             plus.step(0.005).unwrap();
             minus.step(0.005).unwrap();
             assert_eq!(plus.tessellation().edges(), minus.tessellation().edges());
         }
-        for ((plus, minus), exact) in plus.positions().iter().zip(minus.positions()).zip(&tangent.positions) {
+        let pairs = plus.positions().iter().zip(minus.positions());
+        for ((plus, minus), exact) in pairs.zip(tangent.simulation.positions()) {
             let difference = (plus - minus) / (2.0 * size);
-            assert!((difference - Vector::new(exact.x.eps, exact.y.eps)).norm() < 1e-7, "{difference}");
+            assert!((difference - tangent_of(exact)).norm() < 1e-7, "{difference}");
         }
-        assert!(tangent.renormalise() > 0.0);
+        assert!(tangent.renormalise().unwrap() > 0.0);
     }
 }

@@ -2,10 +2,11 @@
 
 use super::Simulation;
 use crate::Error;
+use crate::scaled::real;
 use crate::walls::Mirrored;
-use voronudge_geometry::{MovingTessellation, PeriodicBox, Vector};
+use voronudge_geometry::{MovingTessellation, PeriodicBox, Scalar, Vector};
 
-impl Simulation {
+impl<S: Scalar> Simulation<S> {
     /// The periodic box, as it was before any shear.
     pub fn cell_box(&self) -> PeriodicBox {
         self.cell_box
@@ -33,11 +34,7 @@ impl Simulation {
     /// assert_eq!(simulation.time(), 0.01);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn replace_cells(
-        &mut self,
-        mut positions: Vec<Vector<f64>>,
-        headings: Vec<f64>,
-    ) -> Result<(), Error> {
+    pub fn replace_cells(&mut self, mut positions: Vec<Vector<S>>, headings: Vec<S>) -> Result<(), Error> {
         let cells = positions.len();
         let directions = if self.driving.speed == 0.0 { 0 } else { cells };
         if headings.len() != directions {
@@ -52,7 +49,7 @@ impl Simulation {
                 .map(|(mirrored, tessellation)| (Some(mirrored), tessellation)),
             None => self
                 .domain_at(time)
-                .and_then(|domain| MovingTessellation::new(&positions, domain))
+                .and_then(|domain| MovingTessellation::new(&real(&positions), domain))
                 .map(|tessellation| (None, tessellation)),
         };
         (self.mirrored, self.tessellation) =

@@ -3,9 +3,10 @@
 use super::{Simulation, Stage};
 use crate::Error;
 use crate::method::{THIRD_ORDER, change_of_step, largest_error};
+use crate::scaled::{times, zero};
 use crate::turning::Headings;
 use rayon::prelude::*;
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Scalar, Vector};
 
 /// Largest displacement in one step, in mean spacings.
 const LIMIT: f64 = 1.0;
@@ -16,8 +17,8 @@ const LEAST_PART: f64 = 1e-6;
 /// Cells per task in sums over fields.
 pub(super) const CHUNK: usize = 1024;
 
-impl Simulation {
-    pub(super) fn runge_kutta(&mut self, stage: &mut Stage, time_step: f64) -> Result<(), Error> {
+impl<S: Scalar> Simulation<S> {
+    pub(super) fn runge_kutta(&mut self, stage: &mut Stage<S>, time_step: f64) -> Result<(), Error> {
         let Stage { positions, headings, slopes: [slope, sum, _] } = stage;
         sum.clone_from(&self.velocities);
         slope.clone_from(&self.velocities);
@@ -34,9 +35,9 @@ impl Simulation {
     /// Goes over to new positions after noise, and to their velocities.
     fn arrive(
         &mut self,
-        positions: &mut Vec<Vector<f64>>,
-        headings: &mut Headings,
-        velocities: &mut Vec<Vector<f64>>,
+        positions: &mut Vec<Vector<S>>,
+        headings: &mut Headings<S>,
+        velocities: &mut Vec<Vector<S>>,
         time_step: f64,
     ) -> Result<(), Error> {
         *headings = self.now.polarities();
@@ -65,7 +66,7 @@ impl Simulation {
     /// A step in parts of the embedded method of orders three and two.
     pub(super) fn in_parts(
         &mut self,
-        stage: &mut Stage,
+        stage: &mut Stage<S>,
         time_step: f64,
         tolerance: f64,
     ) -> Result<(), Error> {
@@ -98,7 +99,7 @@ impl Simulation {
     }
 
     /// Puts the result of third order into the stage and returns the largest estimated error of a displacement.
-    fn bogacki_shampine(&mut self, stage: &mut Stage, time_step: f64) -> Result<f64, Error> {
+    fn bogacki_shampine(&mut self, stage: &mut Stage<S>, time_step: f64) -> Result<f64, Error> {
         let Stage { positions, headings, slopes: [second, third, fourth] } = stage;
         let now = self.now.time;
         *headings = self.now.polarities();
@@ -118,20 +119,20 @@ impl Simulation {
     /// `to = r + h v`, within the limit of displacements.
     fn displace(
         &self,
-        to: &mut Vec<Vector<f64>>,
-        v: &[Vector<f64>],
+        to: &mut Vec<Vector<S>>,
+        v: &[Vector<S>],
         h: f64,
         time_step: f64,
     ) -> Result<(), Error> {
-        to.resize(v.len(), Vector::zeros());
+        to.resize(v.len(), zero());
         let from = self.now.positions.par_chunks(CHUNK);
         let limit = (LIMIT * self.spacing).powi(2);
         let near = to.par_chunks_mut(CHUNK).zip(from).zip(v.par_chunks(CHUNK)).map(|((to, from), v)| {
             let mut near = true;
             for ((to, from), v) in to.iter_mut().zip(from).zip(v) {
-                let d = v * h;
+                let d = times(*v, h);
                 *to = from + d;
-                near &= d.norm_squared() < limit;
+                near &= d.x.real() * d.x.real() + d.y.real() * d.y.real() < limit;
             }
             near
         });
@@ -139,10 +140,11 @@ impl Simulation {
         if near.reduce(|| true, |a, b| a & b) { Ok(()) } else { self.check_displacements(to, time_step) }
     }
 
-    fn check_displacements(&self, positions: &[Vector<f64>], time_step: f64) -> Result<(), Error> {
+    fn check_displacements(&self, positions: &[Vector<S>], time_step: f64) -> Result<(), Error> {
         let streaming = self.driving.shear.map_or(0.0, |shear| shear.rate(self.now.time)) * time_step;
-        let moved = |(to, from): (&Vector<f64>, &Vector<f64>)| {
-            (to - from - Vector::new(streaming * from.y, 0.0)).norm()
+        let moved = |(to, from): (&Vector<S>, &Vector<S>)| {
+            let d = to - from;
+            Vector::new(d.x.real() - streaming * from.y.real(), d.y.real()).norm()
         };
         let limit = LIMIT * self.spacing;
         let pairs = positions.par_iter().zip(&self.now.positions).with_min_len(CHUNK);
@@ -157,7 +159,7 @@ impl Simulation {
 }
 
 /// `sum += weight v`
-fn add_scaled(sum: &mut [Vector<f64>], v: &[Vector<f64>], weight: f64) {
+fn add_scaled<S: Scalar>(sum: &mut [Vector<S>], v: &[Vector<S>], weight: f64) {
     let rows = sum.par_iter_mut().zip(v).with_min_len(CHUNK);
-    rows.for_each(|(sum, v)| *sum += v * weight);
+    rows.for_each(|(sum, v)| *sum += times(*v, weight));
 }

@@ -41,7 +41,22 @@ impl Findings {
             dimension: joined,
             evidence: f64::NAN,
         });
-        let all = [missed(prepared), faulty(prepared), centroids(measurement), window(measurement), broken];
+        let cut = tracks.map_or(0, |tracks| tracks.cut);
+        let swapped = (cut > 0).then(|| Finding {
+            id: "swapped_identities",
+            statement: format!("{cut} times a track jumps to another cell"),
+            advice: "Tracks that jump: look at the linking of the tracker, whose tracks the fit cuts there.",
+            dimension: cut,
+            evidence: f64::NAN,
+        });
+        let all = [
+            missed(prepared),
+            faulty(prepared),
+            centroids(measurement),
+            window(measurement),
+            swapped,
+            broken,
+        ];
         Self { all: all.into_iter().flatten().collect() }
     }
 

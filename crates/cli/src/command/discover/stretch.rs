@@ -16,7 +16,9 @@ pub(super) fn middle(data: &DataSet, run: &mut Run) -> Range<usize> {
         .axis_iter(Axis(0))
         .map(|frame| frame.axis_iter(Axis(0)).map(|r| r.iter().all(|x| x.is_finite())).collect())
         .collect();
-    let both = |pair: &[Vec<bool>]| pair[0].iter().zip(&pair[1]).filter(|(before, after)| **before && **after).count();
+    let both = |pair: &[Vec<bool>]| {
+        pair[0].iter().zip(&pair[1]).filter(|(before, after)| **before && **after).count()
+    };
     let motions: Vec<usize> = seen.windows(2).map(both).collect();
     let intervals = around_middle(&motions);
     let frames = intervals.start..intervals.end + 1;

@@ -99,6 +99,13 @@ impl Measured {
         }
     }
 
+    /// Lets a cell of a frame have no velocity that was derived from its track.
+    pub fn forget(&mut self, frame: usize, cell: usize) {
+        if let Self::Derived(all, _) | Self::Tracks(all) = self {
+            (0..2).for_each(|axis| all[[frame, cell, axis]] = f64::NAN);
+        }
+    }
+
     /// Whether a frame has a velocity anywhere.
     pub fn has_velocity(&self, frame: usize) -> bool {
         match self {

@@ -5,19 +5,37 @@ use super::prepare::{Prepared, Question};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, as_given, y_sign};
-use ndarray::Array3;
-use voronudge_geometry::Vector;
-use voronudge_infer::{Drift, Error, Inference, Latent, Movie, Request, Tracked, complete_tracks};
+use crate::snapshot::{Snapshot, as_given, domain, y_sign};
+use ndarray::{Array3, ArrayView1, Axis};
+use voronudge_geometry::{FieldOfView, Vector};
+use voronudge_infer::{Drift, Error, Inference, Jump, Latent, Movie, Request, Tracked, complete_tracks};
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_report::infer_report::{MeanRemoved, TracksReport};
 
-/// The tracks of a data set, those that break joined.
+/// Where the tracks of some frames jump to other cells.
+fn jumps(data: &DataSet, frames: &[usize]) -> Result<Vec<Jump>, Failure> {
+    let place = |r: ArrayView1<'_, f64>| {
+        let r = Vector::new(r[0], r[1]);
+        (r.x.is_finite() && r.y.is_finite()).then_some(r)
+    };
+    let of_frame = |frame: &usize| -> Vec<Option<Vector<f64>>> {
+        data.positions.index_axis(Axis(0), *frame).axis_iter(Axis(0)).map(place).collect()
+    };
+    let places: Vec<_> = frames.iter().map(of_frame).collect();
+    let times = frames.iter().map(|frame| *frame as f64).collect();
+    // Frames that make no movie are refused for what they are later.
+    let movie = Movie::new(times, &places, domain(data)?, FieldOfView::default(), Drift::None);
+    Ok(movie.map_or_else(|_| Vec::new(), |movie| movie.jumps()))
+}
+
+/// The tracks of a data set, those that jump cut and those that break joined.
 #[derive(Clone)]
 pub(crate) struct PreparedTracks {
     pub movie: Movie,
     /// The cells that were not detected, if they were looked for.
     latent: Option<Latent>,
+    /// How often a track jumped to another cell, and was cut there.
+    cut: usize,
     /// How many joins were made.
     joined: usize,
 }
@@ -26,11 +44,15 @@ impl PreparedTracks {
     /// The problem of some frames, before anything was found out about the cells: see [`show`](Self::show).
     pub fn new(
         question: Question<'_>,
-        measured: Measured,
+        mut measured: Measured,
         frames: Vec<usize>,
         run: &mut Run,
     ) -> Result<(Prepared, Self), Failure> {
         let (data, arguments) = (question.data, question.arguments);
+        let jumps = jumps(data, &frames)?;
+        for jump in &jumps {
+            measured.forget(frames[jump.frames[0]], jump.cell);
+        }
         let prepared = question.prepare(measured, frames, run)?;
         let scale = prepared.scale;
         let times =
@@ -60,8 +82,9 @@ impl PreparedTracks {
             }
             movie = movie.with_position_errors(&errors);
         }
+        movie.cut(&jumps);
         let joined = movie.join();
-        Ok((prepared, Self { movie, latent: None, joined }))
+        Ok((prepared, Self { movie, latent: None, cut: jumps.len(), joined }))
     }
 
     /// Puts in the cells that were not detected.
@@ -105,6 +128,7 @@ impl PreparedTracks {
         let tracks: Vec<_> = self.movie.tracks.iter().filter(|track| !track.names.is_empty()).collect();
         TracksReport {
             tracks: tracks.len(),
+            cut: self.cut,
             joined: self.joined,
             gaps: tracks.iter().map(|track| track.gaps()).sum(),
             begun: tracks.iter().filter(|track| track.first > 0).count(),

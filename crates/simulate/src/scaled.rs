@@ -1,0 +1,30 @@
+//! Vectors of any scalar: times plain numbers, and without derivatives.
+
+use std::any::Any;
+use voronudge_geometry::{Scalar, Vector};
+
+pub(crate) fn zero<S: Scalar>() -> Vector<S> {
+    Vector::new(S::constant(0.0), S::constant(0.0))
+}
+
+pub(crate) fn times<S: Scalar>(v: Vector<S>, factor: f64) -> Vector<S> {
+    Vector::new(v.x * factor, v.y * factor)
+}
+
+/// The values without derivatives.
+pub(crate) fn real<S: Scalar>(positions: &[Vector<S>]) -> Vec<Vector<f64>> {
+    positions.iter().map(|r| Vector::new(r.x.real(), r.y.real())).collect()
+}
+
+/// The same, put in a place that is kept for them; plain numbers stay where they are.
+pub(crate) fn without_derivatives<'a, S: Scalar>(
+    positions: &'a Vec<Vector<S>>,
+    places: &'a mut Vec<Vector<f64>>,
+) -> &'a [Vector<f64>] {
+    if let Some(plain) = (positions as &dyn Any).downcast_ref::<Vec<Vector<f64>>>() {
+        return plain;
+    }
+    places.clear();
+    places.extend(positions.iter().map(|r| Vector::new(r.x.real(), r.y.real())));
+    places
+}
