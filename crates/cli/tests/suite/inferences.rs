@@ -168,6 +168,35 @@ fn tracks_are_fitted_themselves() {
     assert!(residual.index_axis(ndarray::Axis(0), 0).iter().any(|r| r.is_finite()));
 }
 
+/// The same, of which two neighbours go on under each other's name from the third frame on.
+#[test]
+fn tracks_that_jump_are_cut() {
+    let source = fixture("open-field");
+    let mut positions: Array3<f64> = read(&source.join("positions.npy"));
+    let [frames, cells] = [positions.dim().0, positions.dim().1];
+    let seen: Vec<usize> =
+        (0..cells).filter(|cell| (0..frames).all(|k| positions[[k, *cell, 0]].is_finite())).collect();
+    let distance = |a: usize, b: usize| {
+        (positions[[2, a, 0]] - positions[[2, b, 0]]).hypot(positions[[2, a, 1]] - positions[[2, b, 1]])
+    };
+    let one = seen[seen.len() / 2];
+    let others = seen.iter().copied().filter(|cell| *cell != one);
+    let other = others.min_by(|a, b| distance(one, *a).total_cmp(&distance(one, *b))).unwrap();
+    for k in 2..frames {
+        (0..2).for_each(|axis| positions.swap([k, one, axis], [k, other, axis]));
+    }
+    let folder = Folder::new();
+    ndarray_npy::write_npy(folder.file("positions.npy"), &positions).unwrap();
+    fs::copy(source.join("dataset.toml"), folder.file("dataset.toml")).unwrap();
+    let told = [source.as_path(), folder.path()].map(|data| report(infer(data, "").path()));
+    let tracks = |told: &serde_json::Value, what: &str| told["measurement"]["tracks"][what].as_u64().unwrap();
+    assert_eq!(told.each_ref().map(|told| tracks(told, "cut")), [0, 2]);
+    assert_eq!(tracks(&told[1], "joined"), tracks(&told[0], "joined") + 2);
+    assert_eq!(tracks(&told[1], "tracks"), tracks(&told[0], "tracks"));
+    let [right, mixed] = told.map(|told| number(&told, "/parameters/K_P_alpha/value"));
+    assert!((mixed / right - 1.0).abs() < 1e-3, "{right} and {mixed}");
+}
+
 /// The same tissue, which does not crawl, asked for its polarity, and whether that aligns.
 #[test]
 fn of_cells_that_do_not_crawl_no_polarity_is_found() {

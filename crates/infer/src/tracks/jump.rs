@@ -7,7 +7,8 @@
 //! log t₂(d) > log ρ,      ρ = 1 / RARE to a unit area
 //! ```
 //!
-//! and than that it has changed names with one nearby, which is as rare. Elsewhere it is cut, and the parts may be joined to others, as those of broken tracks are. What moves less than half-way to another cell is never cut.
+//! and two go on as they are where that is not [`RARE`]² times likelier with their ends exchanged. Elsewhere tracks are cut, and the parts may be joined to others, as those of broken
+//! tracks are. What moves less than half-way to another cell is never cut.
 
 use super::movie::{Movie, Track};
 use super::neighbours::{Motion, log_density};
@@ -72,7 +73,7 @@ impl Expected<'_> {
         let changed = |other: usize| {
             let along = |pair| Some(self.log_likelihood(pair, frames)?.1);
             let gain = along([track, other])? + along([other, track])? - own - along([other, other])?;
-            (gain > RARE.ln()).then_some(())
+            (gain > 2.0 * RARE.ln()).then_some(())
         };
         let reach = 2.0 * far * self.unit;
         let Some(from) = self.movie.tracks[track].at(frames[0]) else { return false };

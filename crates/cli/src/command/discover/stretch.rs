@@ -25,8 +25,8 @@ pub(super) fn middle(data: &DataSet, run: &mut Run) -> Range<usize> {
     if frames.len() < data.frames() {
         let taken: usize = motions[intervals].iter().sum();
         run.warn(format!(
-            "of {} frames the search takes those from {} to {}, in which cells are followed {taken} times from one frame to the next: --frames takes others, and says whether they \
-             lead to the same; time and memory grow somewhat faster than the number of motions",
+            "of {} frames the search takes those from {} to {}, in which cells are followed {taken} times from one frame to the next; \
+             search others with --frames, too, which should lead to the same",
             data.frames(),
             frames.start,
             frames.end - 1,
