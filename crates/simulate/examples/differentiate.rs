@@ -22,7 +22,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let mut other = tissue.clone().with_model(Model::chiral_voronoi(&other))?;
     println!("time   root mean square ∂r/∂α   the same from a change of α by {change}   error");
     for step in 1..=1000 {
-        (tissue.step(STEP)?, exact.step(STEP)?, other.step(STEP)?);
+        tissue.step(STEP)?;
+        exact.step(STEP)?;
+        other.step(STEP)?;
         if step % 100 == 0 {
             let (mut sum, mut seen, mut missed) = (0.0, 0.0, 0.0);
             for ((r, dual), changed) in

@@ -17,6 +17,7 @@ pub(crate) fn real<S: Scalar>(positions: &[Vector<S>]) -> Vec<Vector<f64>> {
 }
 
 /// The same, put in a place that is kept for them; plain numbers stay where they are.
+#[expect(clippy::ptr_arg, reason = "the type of a vector can be asked for")]
 pub(crate) fn without_derivatives<'a, S: Scalar>(
     positions: &'a Vec<Vector<S>>,
     places: &'a mut Vec<Vector<f64>>,

@@ -2,15 +2,17 @@
 
 mod derivatives;
 mod replacement;
+mod state;
 mod step;
 
 pub use derivatives::{Direction, derivatives};
+use state::Stage;
+pub use state::{Bond, State};
 
 use crate::scaled::{real, without_derivatives, zero};
 use crate::turning::Headings;
 use crate::walls::{self, Mirrored};
 use crate::{Driving, Error, Method, Shear, Walls};
-use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
 use voronudge_model::{HalfEdgeForces, Model};
 
@@ -40,80 +42,6 @@ pub struct Simulation<S: Scalar = f64> {
     stage: Stage<S>,
     /// Positions without derivatives.
     places: Vec<Vector<f64>>,
-}
-
-/// A force between two places.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bond<S: Scalar = f64> {
-    /// Where one end is.
-    pub from: Vector<S>,
-    /// Where the other end is, relative to it.
-    pub to: Vector<S>,
-    /// The force on the other end; its opposite acts on the first.
-    pub force: Vector<S>,
-}
-
-/// All that a simulation needs to go on, besides what it was made of.
-#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub struct State<S: Scalar = f64> {
-    /// Time since the start.
-    pub time: f64,
-    /// Steps made, of the adaptive method parts of steps.
-    pub steps: u64,
-    /// How often a cell came to be behind a wall, and was put in front of it.
-    #[serde(default)]
-    pub crossings: u64,
-    /// The next part of a step of the adaptive method.
-    pub part: Option<f64>,
-    /// Cell centres (N), unwrapped, in the unit of the box.
-    #[serde(skip)]
-    pub positions: Vec<Vector<S>>,
-    /// Directions of self-propulsion (N, radians), or none.
-    #[serde(skip)]
-    pub headings: Vec<S>,
-    /// Speeds of self-propulsion over `v₀` (N), or none if these do not vary.
-    #[serde(skip)]
-    pub speeds: Vec<S>,
-}
-
-impl<S: Scalar> Default for State<S> {
-    fn default() -> Self {
-        Self {
-            time: 0.0,
-            steps: 0,
-            crossings: 0,
-            part: None,
-            positions: Vec::new(),
-            headings: Vec::new(),
-            speeds: Vec::new(),
-        }
-    }
-}
-
-impl<S: Scalar> State<S> {
-    fn polarities(&self) -> Headings<S> {
-        Headings { angles: self.headings.clone(), speeds: self.speeds.clone() }
-    }
-
-    fn set_polarities(&mut self, headings: &Headings<S>) {
-        self.headings.clone_from(&headings.angles);
-        self.speeds.clone_from(&headings.speeds);
-    }
-}
-
-/// Work space of one step.
-#[derive(Debug, Clone)]
-struct Stage<S: Scalar> {
-    positions: Vec<Vector<S>>,
-    headings: Headings<S>,
-    slopes: [Vec<Vector<S>>; 3],
-}
-
-impl<S: Scalar> Default for Stage<S> {
-    fn default() -> Self {
-        Self { positions: Vec::new(), headings: Headings::default(), slopes: Default::default() }
-    }
 }
 
 impl<S: Scalar> Simulation<S> {
