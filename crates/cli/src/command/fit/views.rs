@@ -84,7 +84,10 @@ pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) 
                     (true, false) => CellStatus::Uncertain,
                 },
                 measured: target.map(velocity),
-                predicted: Some(frame.predicted[cell]).filter(|_| counted).map(velocity),
+                // Of tracks what is measured is a mean from frame to frame, crawling included.
+                predicted: Some(if on_grid { frame.predicted[cell] } else { frame.predicted_data[cell] })
+                    .filter(|v| counted && v.x.is_finite())
+                    .map(velocity),
                 polarity: frame.polarities.get(cell).copied().flatten().map(velocity),
                 held_out: if on_grid { None } else { frame.held_out[cell].map(velocity) },
                 nudge: length(frame.nudged_positions[cell] - observation.positions[cell]),
