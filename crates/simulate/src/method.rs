@@ -1,5 +1,6 @@
 //! Methods of integration in time.
 
+use crate::scaled::real;
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Scalar, Vector};
 
@@ -41,8 +42,7 @@ pub(crate) fn change_of_step(share: f64) -> f64 {
 /// The largest error of a displacement over all cells: `h |Σ_s d_s k_s|`.
 pub(crate) fn largest_error<S: Scalar>(slopes: [&[Vector<S>]; 4], time_step: f64) -> f64 {
     let error = |cell: usize| {
-        let real = |k: &[Vector<S>]| Vector::new(k[cell].x.real(), k[cell].y.real());
-        let sum: Vector<f64> = slopes.iter().zip(DIFFERENCE).map(|(k, weight)| real(k) * weight).sum();
+        let sum: Vector<f64> = slopes.iter().zip(DIFFERENCE).map(|(k, weight)| real(&k[cell]) * weight).sum();
         sum.norm_squared()
     };
     (0..slopes[0].len()).map(error).fold(0.0, f64::max).sqrt() * time_step

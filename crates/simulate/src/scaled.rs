@@ -11,12 +11,12 @@ pub(crate) fn times<S: Scalar>(v: Vector<S>, factor: f64) -> Vector<S> {
     Vector::new(v.x * factor, v.y * factor)
 }
 
-/// The values without derivatives.
-pub(crate) fn real<S: Scalar>(positions: &[Vector<S>]) -> Vec<Vector<f64>> {
-    positions.iter().map(|r| Vector::new(r.x.real(), r.y.real())).collect()
+/// A vector without derivatives.
+pub(crate) fn real<S: Scalar>(v: &Vector<S>) -> Vector<f64> {
+    Vector::new(v.x.real(), v.y.real())
 }
 
-/// The same, put in a place that is kept for them; plain numbers stay where they are.
+/// The same of many, put in a place that is kept for them; plain numbers stay where they are.
 #[expect(clippy::ptr_arg, reason = "the type of a vector can be asked for")]
 pub(crate) fn without_derivatives<'a, S: Scalar>(
     positions: &'a Vec<Vector<S>>,
@@ -26,6 +26,6 @@ pub(crate) fn without_derivatives<'a, S: Scalar>(
         return plain;
     }
     places.clear();
-    places.extend(positions.iter().map(|r| Vector::new(r.x.real(), r.y.real())));
+    places.extend(positions.iter().map(real));
     places
 }

@@ -70,7 +70,8 @@ impl<S: Scalar> Simulation<S> {
         let Domain::Periodic(cell_box) = domain else {
             return Err(Error::OpenDomain);
         };
-        let tessellation = MovingTessellation::new(&real(&positions), domain)
+        let mut places = Vec::new();
+        let tessellation = MovingTessellation::new(without_derivatives(&positions, &mut places), domain)
             .map_err(|source| Error::Tessellation { time: 0.0, source })?;
         let spacing = (cell_box.area() / positions.len() as f64).sqrt();
         let mut simulation = Self {
@@ -86,7 +87,7 @@ impl<S: Scalar> Simulation<S> {
             forces: HalfEdgeForces::default(),
             drive: Vec::new(),
             stage: Stage::default(),
-            places: Vec::new(),
+            places,
         };
         simulation.settle()?;
         Ok(simulation)
@@ -367,7 +368,7 @@ impl<S: Scalar> Simulation<S> {
         let mut any = false;
         if let Domain::Periodic(cell_box) = domain {
             for r in &mut self.now.positions {
-                let place = Vector::new(r.x.real(), r.y.real());
+                let place = real(r);
                 let back = cell_box.brought_back(place);
                 any |= back != place;
                 *r = Vector::new(r.x - place.x + back.x, r.y - place.y + back.y);

@@ -1,6 +1,6 @@
 //! Torque-free walls: mirror images of the cells.
 
-use crate::scaled::real;
+use crate::scaled::without_derivatives;
 use crate::{Driving, Error};
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
@@ -67,7 +67,8 @@ impl<S: Scalar> Mirrored<S> {
         let mut mirrored = Self { walls, lengths, positions: Vec::new(), signs: Vec::new() };
         mirrored.place(positions);
         let domain = Domain::Periodic(walls.doubled(lengths)?);
-        let tessellation = MovingTessellation::new(&real(&mirrored.positions), domain)?;
+        let tessellation =
+            MovingTessellation::new(without_derivatives(&mirrored.positions, &mut Vec::new()), domain)?;
         positions.copy_from_slice(&mirrored.positions[..positions.len()]);
         Ok((mirrored, tessellation))
     }

@@ -70,10 +70,9 @@ impl Expected<'_> {
             return true;
         }
         // Two that change places say so together.
-        let changed = |other: usize| {
+        let gain = |other: usize| {
             let along = |pair| Some(self.log_likelihood(pair, frames)?.1);
-            let gain = along([track, other])? + along([other, track])? - own - along([other, other])?;
-            (gain > 2.0 * RARE.ln()).then_some(())
+            Some(along([track, other])? + along([other, track])? - own - along([other, other])?)
         };
         let reach = 2.0 * far * self.unit;
         let Some(from) = self.movie.tracks[track].at(frames[0]) else { return false };
@@ -84,7 +83,7 @@ impl Expected<'_> {
         self.movie
             .present(frames[0])
             .filter(|other| *other != track && is_near(other))
-            .any(|other| changed(other).is_some())
+            .any(|other| gain(other).is_some_and(|gain| gain > 2.0 * RARE.ln()))
     }
 
     /// How far, in cell sizes, the end of one track is from where the beginning of another should have come to, and the logarithm of how likely that is.

@@ -2,7 +2,7 @@
 
 use super::Simulation;
 use crate::Error;
-use crate::scaled::real;
+use crate::scaled::without_derivatives;
 use crate::walls::Mirrored;
 use voronudge_geometry::{MovingTessellation, PeriodicBox, Scalar, Vector};
 
@@ -49,7 +49,9 @@ impl<S: Scalar> Simulation<S> {
                 .map(|(mirrored, tessellation)| (Some(mirrored), tessellation)),
             None => self
                 .domain_at(time)
-                .and_then(|domain| MovingTessellation::new(&real(&positions), domain))
+                .and_then(|domain| {
+                    MovingTessellation::new(without_derivatives(&positions, &mut self.places), domain)
+                })
                 .map(|tessellation| (None, tessellation)),
         };
         (self.mirrored, self.tessellation) =

@@ -3,7 +3,7 @@
 use super::{Simulation, Stage};
 use crate::Error;
 use crate::method::{THIRD_ORDER, change_of_step, largest_error};
-use crate::scaled::{times, zero};
+use crate::scaled::{real, times, zero};
 use crate::turning::Headings;
 use rayon::prelude::*;
 use voronudge_geometry::{Scalar, Vector};
@@ -132,7 +132,7 @@ impl<S: Scalar> Simulation<S> {
             for ((to, from), v) in to.iter_mut().zip(from).zip(v) {
                 let d = times(*v, h);
                 *to = from + d;
-                near &= d.x.real() * d.x.real() + d.y.real() * d.y.real() < limit;
+                near &= real(&d).norm_squared() < limit;
             }
             near
         });
@@ -143,8 +143,8 @@ impl<S: Scalar> Simulation<S> {
     fn check_displacements(&self, positions: &[Vector<S>], time_step: f64) -> Result<(), Error> {
         let streaming = self.driving.shear.map_or(0.0, |shear| shear.rate(self.now.time)) * time_step;
         let moved = |(to, from): (&Vector<S>, &Vector<S>)| {
-            let d = to - from;
-            Vector::new(d.x.real() - streaming * from.y.real(), d.y.real()).norm()
+            let (to, from) = (real(to), real(from));
+            (to - from - Vector::new(streaming * from.y, 0.0)).norm()
         };
         let limit = LIMIT * self.spacing;
         let pairs = positions.par_iter().zip(&self.now.positions).with_min_len(CHUNK);

@@ -33,22 +33,22 @@ impl Findings {
     /// Everything that nobody declared and that is not as usual.
     pub fn new(prepared: &Prepared, measurement: &Measurement) -> Self {
         let tracks = measurement.tracks.as_ref();
-        let joined = tracks.map_or(0, |tracks| tracks.joined);
-        let broken = (joined > 0).then(|| Finding {
-            id: "broken_tracks",
-            statement: format!("{joined} times a track goes on under another name"),
-            advice: "Tracks that break: look at the linking of the tracker, whose names the joins of the fit replace.",
-            dimension: joined,
-            evidence: f64::NAN,
-        });
-        let cut = tracks.map_or(0, |tracks| tracks.cut);
-        let swapped = (cut > 0).then(|| Finding {
-            id: "swapped_identities",
-            statement: format!("{cut} times a track jumps to another cell"),
-            advice: "Tracks that jump: look at the linking of the tracker, whose tracks the fit cuts there.",
-            dimension: cut,
-            evidence: f64::NAN,
-        });
+        let times = |count: usize, id, what: &str, advice| {
+            let statement = format!("{count} times a track {what}");
+            (count > 0).then_some(Finding { id, statement, advice, dimension: count, evidence: f64::NAN })
+        };
+        let swapped = times(
+            tracks.map_or(0, |tracks| tracks.cut),
+            "swapped_identities",
+            "jumps to another cell",
+            "Tracks that jump: look at the linking of the tracker, whose tracks the fit cuts there.",
+        );
+        let broken = times(
+            tracks.map_or(0, |tracks| tracks.joined),
+            "broken_tracks",
+            "goes on under another name",
+            "Tracks that break: look at the linking of the tracker, whose names the joins of the fit replace.",
+        );
         let all = [
             missed(prepared),
             faulty(prepared),

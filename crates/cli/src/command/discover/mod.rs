@@ -196,9 +196,7 @@ impl Asked<'_> {
         let arguments = self.arguments;
         let snapshots = &arguments.snapshots;
         let velocities = Measured::of_tracks(snapshots, data, arguments.difference)?;
-        if !matches!(velocities, Measured::Tracks(_)) {
-            return Ok(None);
-        }
+        let Measured::Tracks(means) = &velocities else { return Ok(None) };
         let refused = [
             (arguments.given_difference.is_some(), "--given-difference"),
             (snapshots.background.is_some(), "--background"),
@@ -215,7 +213,7 @@ impl Asked<'_> {
         }
         let frames = match snapshots.frames {
             Some(_) => velocities.frames(snapshots, data)?,
-            None => stretch::middle(data, run).collect(),
+            None => stretch::middle(means, run).collect(),
         };
         PreparedTracks::new(self.question(snapshots, data, None), velocities, frames, run).map(Some)
     }

@@ -1,33 +1,30 @@
 //! Which frames of a long movie are searched.
 
 use crate::run::Run;
-use ndarray::Axis;
+use ndarray::{Array3, ArrayView2};
 use std::ops::Range;
-use voronudge_io::DataSet;
 
 /// Motions from one frame to the next that a search takes, where nobody says which frames it is to take; and the fewest frames for all that.
 const MOST_MOTIONS: usize = 5000;
 const FEWEST_FRAMES: usize = 4;
 
 /// The frames around the middle of a movie that a search can take in minutes, said where these are not all.
-pub(super) fn middle(data: &DataSet, run: &mut Run) -> Range<usize> {
-    let seen: Vec<Vec<bool>> = data
-        .positions
-        .axis_iter(Axis(0))
-        .map(|frame| frame.axis_iter(Axis(0)).map(|r| r.iter().all(|x| x.is_finite())).collect())
-        .collect();
-    let both = |pair: &[Vec<bool>]| {
-        pair[0].iter().zip(&pair[1]).filter(|(before, after)| **before && **after).count()
-    };
-    let motions: Vec<usize> = seen.windows(2).map(both).collect();
+///
+/// Mean velocities from each frame to the next (frames, cells, 2) are numbers where a cell was followed.
+pub(super) fn middle(means: &Array3<f64>, run: &mut Run) -> Range<usize> {
+    let followed = |frame: ArrayView2<'_, f64>| frame.rows().into_iter().filter(|v| v[0].is_finite()).count();
+    let mut motions: Vec<usize> = means.outer_iter().map(followed).collect();
+    // None leads out of the last frame.
+    let all = motions.len();
+    motions.truncate(all - 1);
     let intervals = around_middle(&motions);
     let frames = intervals.start..intervals.end + 1;
-    if frames.len() < data.frames() {
+    if frames.len() < all {
         let taken: usize = motions[intervals].iter().sum();
         run.warn(format!(
             "of {} frames the search takes those from {} to {}, in which cells are followed {taken} times from one frame to the next; \
              search others with --frames, too, which should lead to the same",
-            data.frames(),
+            all,
             frames.start,
             frames.end - 1,
         ));

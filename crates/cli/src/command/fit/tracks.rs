@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use crate::snapshot::{Snapshot, as_given, domain, y_sign};
-use ndarray::{Array3, ArrayView1, Axis};
+use ndarray::Array3;
 use voronudge_geometry::{FieldOfView, Vector};
 use voronudge_infer::{Drift, Error, Inference, Jump, Latent, Movie, Request, Tracked, complete_tracks};
 use voronudge_io::{DataSet, OutputDirectory};
@@ -14,18 +14,24 @@ use voronudge_report::infer_report::{MeanRemoved, TracksReport};
 
 /// Where the tracks of some frames jump to other cells.
 fn jumps(data: &DataSet, frames: &[usize]) -> Result<Vec<Jump>, Failure> {
-    let place = |r: ArrayView1<'_, f64>| {
-        let r = Vector::new(r[0], r[1]);
-        (r.x.is_finite() && r.y.is_finite()).then_some(r)
-    };
-    let of_frame = |frame: &usize| -> Vec<Option<Vector<f64>>> {
-        data.positions.index_axis(Axis(0), *frame).axis_iter(Axis(0)).map(place).collect()
-    };
-    let places: Vec<_> = frames.iter().map(of_frame).collect();
+    let snapshots: Vec<Snapshot> = frames.iter().map(|frame| Snapshot::new(data, *frame)).collect();
+    let places = places(data, &snapshots, 1.0);
     let times = frames.iter().map(|frame| *frame as f64).collect();
     // Frames that make no movie are refused for what they are later.
     let movie = Movie::new(times, &places, domain(data)?, FieldOfView::default(), Drift::None);
     Ok(movie.map_or_else(|_| Vec::new(), |movie| movie.jumps()))
+}
+
+/// Where each cell of a data set is in each frame, in some unit of length.
+fn places(data: &DataSet, snapshots: &[Snapshot], unit: f64) -> Vec<Vec<Option<Vector<f64>>>> {
+    let of_frame = |snapshot: &Snapshot| {
+        let mut of_frame = vec![None; data.cells()];
+        for (cell, r) in snapshot.cells.iter().zip(&snapshot.positions) {
+            of_frame[*cell] = Some(r / unit);
+        }
+        of_frame
+    };
+    snapshots.iter().map(of_frame).collect()
 }
 
 /// The tracks of a data set, those that jump cut and those that break joined.
@@ -57,14 +63,7 @@ impl PreparedTracks {
         let scale = prepared.scale;
         let times =
             prepared.frames.iter().map(|frame| *frame as f64 * data.frame_interval / scale.time).collect();
-        let mut places = Vec::with_capacity(prepared.frames.len());
-        for snapshot in &prepared.snapshots {
-            let mut of_frame = vec![None; data.cells()];
-            for (cell, r) in snapshot.cells.iter().zip(&snapshot.positions) {
-                of_frame[*cell] = Some(r / scale.length);
-            }
-            places.push(of_frame);
-        }
+        let places = places(data, &prepared.snapshots, scale.length);
         let Some(first) = prepared.observations.first() else {
             return Err(Failure::new("there is no frame").at(arguments.data.positions_file().display()));
         };
