@@ -208,6 +208,7 @@ fn of_cells_that_do_not_crawl_no_polarity_is_found() {
     assert!(number(v_0, "/ci95/0") == 0.0 && number(v_0, "/ci95/1") < 0.01, "{v_0}");
     assert!(report["activity"]["D_r"]["ci95"].is_null() && report["activity"]["J"]["ci95"].is_null());
     assert!(number(&report, "/activity/evidence_of_alignment") < 4.0);
+    assert!(!report["warnings"].to_string().contains("cells that crawl"), "{}", report["warnings"]);
     let found = number(&report, "/parameters/K_P_alpha/value");
     assert!((found - 0.02).abs() < 0.001, "K_P_alpha is {found}");
     let measured: Array3<f64> = read(&fixture("open-field/positions.npy"));
