@@ -2,7 +2,7 @@
 
 use crate::command::fit::{Prepared, PreparedTracks, outcome};
 use crate::failure::Failure;
-use voronudge_infer::{Drive, Polarity, Tracked};
+use voronudge_infer::{Drive, Inference, Polarity, Quantity, Tracked};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{ActivityReport, Parameter};
 
@@ -23,12 +23,13 @@ pub(super) fn check(movie: Option<&PreparedTracks>) -> Result<(), Failure> {
     Err(Failure::new(problem).with_hint(hint))
 }
 
-/// What to mind where a polarity shows.
-pub(super) fn caution(tracked: &Tracked) -> Option<&'static str> {
+/// What to mind of a K_P that was fitted where a polarity shows.
+pub(super) fn caution(result: &Inference, tracked: &Tracked) -> Option<&'static str> {
     let shows = tracked.polarity.as_ref()?.rate_interval.is_some();
-    shows.then_some(
-        "K_P of cells that crawl comes out too small: by some 5 % in tissues that flow, by a quarter to a half in solid ones, \
-         beyond its interval. Quote K_P_alpha, P_0 and v_0, which are right in tissues that flow",
+    let fitted = result.parameters.get(Quantity::PerimeterElasticity).standard_error > 0.0;
+    (shows && fitted).then_some(
+        "K_P of cells that crawl comes out too small, and alpha too large: by some 5 % in tissues that flow, by a quarter \
+         to a half in solid ones, beyond the interval. Quote K_P_alpha, P_0 and v_0, which suffer less",
     )
 }
 

@@ -176,7 +176,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     kept.caution(&mut run);
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
-    let caution = tracked.as_ref().and_then(|(_, tracked)| activity::caution(tracked));
+    let caution = tracked.as_ref().and_then(|(_, tracked)| activity::caution(&result, tracked));
     caution.into_iter().for_each(|caution| run.warn(caution));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
     super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
