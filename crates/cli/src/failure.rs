@@ -112,6 +112,13 @@ impl From<voronudge_infer::Error> for Failure {
     }
 }
 
+impl From<voronudge::problem::Error> for Failure {
+    fn from(error: voronudge::problem::Error) -> Self {
+        let hint = error.hint();
+        Self::from_parts(error, hint)
+    }
+}
+
 impl From<voronudge_simulate::Error> for Failure {
     fn from(error: voronudge_simulate::Error) -> Self {
         let hint = error.hint();

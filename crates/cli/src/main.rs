@@ -1,13 +1,13 @@
 //! `voronudge`: which forces move these cells, and what does the model of them miss?
 
 mod arguments;
+mod boundary;
 mod command;
 mod failure;
 mod memory;
 mod output;
 mod progress;
 mod run;
-mod snapshot;
 mod terminal;
 
 use clap::error::ErrorKind;

@@ -1,6 +1,6 @@
 //! What is known of the parameters beforehand.
 
-use crate::{Error, Quantity};
+use crate::{Error, Quantity, Scale};
 use std::collections::BTreeMap;
 
 /// A Gaussian prior.
@@ -28,6 +28,24 @@ impl Constraints {
     /// Parameters held, and nothing else.
     pub fn fixed(fixed: impl IntoIterator<Item = (Quantity, f64)>) -> Self {
         Self { fixed: fixed.into_iter().collect(), ..Self::default() }
+    }
+
+    /// What is known in the units of the data, in those of a fit.
+    #[must_use]
+    pub fn scaled(&self, scale: &Scale) -> Self {
+        let unit = |quantity: &Quantity| scale.factor(*quantity);
+        Self {
+            fixed: self.fixed.iter().map(|(q, value)| (*q, value / unit(q))).collect(),
+            bounds: self.bounds.iter().map(|(q, ends)| (*q, ends.map(|end| end / unit(q)))).collect(),
+            priors: self
+                .priors
+                .iter()
+                .map(|(q, prior)| {
+                    let standard_deviation = prior.standard_deviation / unit(q);
+                    (*q, Prior { mean: prior.mean / unit(q), standard_deviation })
+                })
+                .collect(),
+        }
     }
 
     pub(crate) fn check(&self) -> Result<(), Error> {
@@ -58,5 +76,28 @@ impl Constraints {
             }
         }
         Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn constraints_are_scaled_like_the_quantities_they_hold() {
+        let scale = Scale { length: 10.0, time: 4.0 };
+        let given = Constraints {
+            fixed: [(Quantity::PreferredPerimeter, 38.0), (Quantity::Chirality, 2.0)].into(),
+            bounds: [(Quantity::AreaElasticity, [0.0, f64::INFINITY])].into(),
+            priors: [(Quantity::ChiralCoefficient, Prior { mean: 0.5, standard_deviation: 0.25 })].into(),
+        };
+        let fit = given.scaled(&scale);
+        assert!((fit.fixed[&Quantity::PreferredPerimeter] - 3.8).abs() < 1e-12);
+        assert_eq!(fit.fixed[&Quantity::Chirality], 2.0);
+        assert_eq!(fit.bounds[&Quantity::AreaElasticity], [0.0, f64::INFINITY]);
+        let prior = fit.priors[&Quantity::ChiralCoefficient];
+        assert!((prior.mean - 2.0).abs() < 1e-12 && (prior.standard_deviation - 1.0).abs() < 1e-12);
+        // K_A per area and time.
+        assert!((scale.factor(Quantity::AreaElasticity) - 1.0 / 400.0).abs() < 1e-15);
     }
 }

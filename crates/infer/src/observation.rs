@@ -1,6 +1,7 @@
 //! One snapshot: where the cells are and how fast they move.
 
 mod measured;
+mod scaled;
 
 use crate::Error;
 use crate::background::Background;

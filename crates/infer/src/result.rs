@@ -29,6 +29,16 @@ pub struct Estimate {
 }
 
 impl Estimate {
+    /// The same in a unit of which it is so many.
+    #[must_use]
+    pub fn in_unit(&self, factor: f64) -> Self {
+        Self {
+            value: self.value * factor,
+            standard_error: self.standard_error * factor,
+            interval: self.interval.map(|end| end.map(|end| end * factor)),
+        }
+    }
+
     /// Whether the interval contains a value.
     pub fn covers(&self, value: f64) -> bool {
         self.interval[0].is_none_or(|low| low <= value) && self.interval[1].is_none_or(|high| value <= high)

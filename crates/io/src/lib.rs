@@ -11,6 +11,7 @@
 //! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_outlines`] |
 //! | turn maxima and minima of a field into a data set | [`import_field`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
+//! | get the cells of a frame, and the boundary and the field of view as the geometry knows them | [`Snapshot`], [`DataSet::domain`], [`DataSet::view`] |
 //! | read which frames the user wants | [`FrameSelection`] |
 //! | read a profile of velocities across a channel | [`read_flow_profile`] |
 //! | read one array | [`read_reals`], [`read_integers`], [`read_vectors`] |
@@ -53,6 +54,7 @@ mod recording;
 mod save;
 mod settings;
 mod shapes;
+mod snapshot;
 mod source;
 mod table;
 mod tracks;
@@ -81,6 +83,7 @@ pub use outline_import::{OutlineOptions, import_outlines};
 pub use output::{OutputDirectory, OutputFolder};
 pub use recording::Recording;
 pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
+pub use snapshot::Snapshot;
 pub use source::Source;
 pub use table::{ColumnNames, FlowColumnNames, FlowProfile, read_flow_profile};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};

@@ -74,6 +74,11 @@ pub struct Source {
 }
 
 impl Source {
+    /// A folder with a `dataset.toml`, as it stands.
+    pub fn folder(folder: impl Into<PathBuf>) -> Self {
+        Self { folder: Some(folder.into()), ..Self::default() }
+    }
+
     /// Reads and checks the data set.
     ///
     /// The settings are settled first, so that a missing boundary is told before large arrays

@@ -19,6 +19,8 @@ pub enum Check {
     Tidy,
     /// Lints, where a warning is an error.
     Clippy,
+    /// Lints of the library without the program.
+    Library,
     /// All tests.
     Test,
     /// Documentation, where a warning is an error.
@@ -46,6 +48,11 @@ impl Check {
             Self::Layers => report(&layers::violations(root)?),
             Self::Tidy => report(&tidy::violations(root)?),
             Self::Clippy => cargo(root, "clippy --workspace --all-targets --release -- -D warnings", &[]),
+            Self::Library => cargo(
+                root,
+                "clippy --release --package voronudge --lib --no-default-features --features infer,io -- -D warnings",
+                &[],
+            ),
             Self::Test => cargo(root, "test --workspace --release", &[]),
             Self::Doc => {
                 cargo(root, "doc --release --workspace --no-deps", &[("RUSTDOCFLAGS", "-D warnings")])

@@ -2,14 +2,14 @@
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
+use crate::boundary::domain;
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain};
 use clap::Args;
 use serde::Serialize;
 use std::fmt::Write as _;
 use voronudge_geometry::{Domain, PeriodicBox};
-use voronudge_io::FrameSelection;
+use voronudge_io::{FrameSelection, Snapshot};
 use voronudge_model::Model;
 use voronudge_model::gradient_check::{GradientReport, Place, check, check_model, made_up_environment};
 use voronudge_report::infer_report::RunRecord;

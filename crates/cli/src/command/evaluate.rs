@@ -4,17 +4,17 @@ use crate::Answer;
 use crate::arguments::{
     ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ParameterArguments, environment,
 };
+use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain_at, field_of_view, labels, to_array, to_scalars};
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Cursor;
 use voronudge_geometry::{Tessellation, Vector, areas, perimeters};
-use voronudge_io::{DataSet, FrameSelection, OutputDirectory, YAxis};
+use voronudge_io::{DataSet, FrameSelection, OutputDirectory, Snapshot, YAxis};
 use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
 use voronudge_observables::mean_square_velocity;
 use voronudge_report::infer_report::RunRecord;
@@ -130,9 +130,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         let snapshot = Snapshot::new(&data, frame);
         let tessellation = Tessellation::new(&snapshot.positions, domain)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
-        let view = field_of_view(&data)?.judge(&tessellation, &snapshot.positions);
+        let view = data.view()?.judge(&tessellation, &snapshot.positions);
         let mut surroundings = environment(&tessellation, &snapshot.positions, &view)?;
-        if let Some(labels) = labels(&data, &snapshot, frame) {
+        if let Some(labels) = data.labels_of(&snapshot, frame) {
             surroundings = surroundings
                 .with_labels(labels)
                 .map_err(|error| Failure::new(error.to_string()).at(place()))?;
@@ -208,11 +208,11 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
 }
 
 fn write_fields(out: &mut OutputDirectory, data: &DataSet, fields: &[Fields]) -> Result<(), Failure> {
-    let vectors = to_array(data, fields.iter().map(|f| (&f.snapshot, f.velocities.as_slice())));
+    let vectors = data.vectors_as_given(fields.iter().map(|f| (&f.snapshot, f.velocities.as_slice())));
     out.write_array("velocities.npy", vectors.view())?;
-    let scalars = to_scalars(data, fields.iter().map(|f| (&f.snapshot, f.areas.as_slice())));
+    let scalars = data.scalars_as_given(fields.iter().map(|f| (&f.snapshot, f.areas.as_slice())));
     out.write_array("areas.npy", scalars.view())?;
-    let scalars = to_scalars(data, fields.iter().map(|f| (&f.snapshot, f.perimeters.as_slice())));
+    let scalars = data.scalars_as_given(fields.iter().map(|f| (&f.snapshot, f.perimeters.as_slice())));
     out.write_array("perimeters.npy", scalars.view())?;
     let stress = Array3::from_shape_fn((fields.len(), 2, 2), |(frame, i, j)| fields[frame].stress[i][j]);
     if data.frames() == 1 {

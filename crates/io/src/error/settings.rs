@@ -1,5 +1,6 @@
 //! Faults of settings, of `dataset.toml`, and of frame selections.
 
+use crate::dataset::WalledSides;
 use std::path::PathBuf;
 
 /// Why a setting is not acceptable, wherever it was given.
@@ -114,6 +115,18 @@ pub enum SettingFault {
     /// Neither a folder nor a positions file.
     #[error("no positions are given")]
     MissingPositions,
+    /// A box that is none.
+    #[error("{0}")]
+    Box(voronudge_geometry::Error),
+    /// A box that changes from frame to frame, where one box is needed.
+    #[error("the periodic box of these data is sheared")]
+    Sheared,
+    /// Walls, where a box that repeats is needed.
+    #[error("the cells of these data are between walls (\"{walls}\")")]
+    Walled {
+        /// Which sides are walls.
+        walls: WalledSides,
+    },
 }
 
 impl SettingFault {
@@ -133,7 +146,7 @@ impl SettingFault {
             }
             Self::NeedsBox { .. } => "remove it, or set boundary = \"periodic\" and a box",
             Self::NeedsOpen { .. } => "remove it: in a periodic box every cell counts",
-            Self::FieldOfView(fault) => return fault.hint().map(str::to_owned),
+            Self::FieldOfView(fault) | Self::Box(fault) => return fault.hint().map(str::to_owned),
             Self::NotFinite { .. } => "give a length for each frame",
             Self::OffsetCount { .. } => {
                 "give one number for each frame: how far the image one box above is displaced along x"
@@ -149,6 +162,10 @@ impl SettingFault {
             }
             Self::MissingFlow => "name the files of the flow, one for each frame",
             Self::MissingPositions => "give a data set folder or --positions FILE",
+            Self::Sheared => "take the boundary of each frame",
+            Self::Walled { .. } => {
+                "without the line walls the box would be periodic, which is another tissue"
+            }
         };
         Some(text.into())
     }

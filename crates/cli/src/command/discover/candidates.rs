@@ -3,7 +3,6 @@
 use crate::arguments::{Shard, effect};
 use crate::failure::Failure;
 use clap::Args;
-use voronudge_infer::Request;
 use voronudge_infer::discover::Search;
 use voronudge_model::Effect;
 
@@ -66,14 +65,14 @@ impl SearchOptions {
             .with_hint("leave out --shard, or give --null-sets a number"))
     }
 
-    /// The search for `candidates` after a fit.
-    pub fn search(&self, candidates: Vec<&'static Effect>, fit: Request) -> Search {
+    /// The search for `candidates`, otherwise as usual.
+    pub fn search(&self, candidates: Vec<&'static Effect>, usual: Search) -> Search {
         Search {
             candidates,
             level: self.level,
             null_sets: self.null_sets.map(|sets| sets as usize),
             most_effects: self.most_effects as usize,
-            ..Search::new(fit)
+            ..usual
         }
     }
 }

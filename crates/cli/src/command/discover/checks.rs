@@ -5,11 +5,13 @@ use super::forecasts::Coming;
 use super::material::Searched;
 use super::onward::{self, Rivals};
 use super::sentences::probability;
-use crate::command::fit::{Measured, Prepared};
+use crate::command::fit::measured::measured;
+use crate::command::fit::place;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
+use voronudge::problem::Problem;
 use voronudge_infer::Error;
 use voronudge_infer::forecast::{Ahead, Check, Checked, Expected, check};
 use voronudge_io::{DataSet, Difference};
@@ -49,7 +51,7 @@ impl CheckArguments {
             return Ok(());
         }
         let file = asked.snapshots.data.positions_file();
-        if Measured::of_tracks(&asked.snapshots, data, difference)?.flow().is_some() {
+        if measured(&asked.snapshots, data, difference)?.flow().is_some() {
             let text = "--check: velocities are on a grid, and no cells are followed";
             return Err(Failure::new(text).with_hint("give tracked cells").at(file.display()));
         }
@@ -73,7 +75,7 @@ impl CheckArguments {
         progress: &mut Progress,
     ) -> Result<Option<Compared>, Failure> {
         let Some(draws) = self.check else { return Ok(None) };
-        let prepared = &searched.material.prepared;
+        let prepared = &searched.prepared;
         let frames = coming.map_or_else(|| prepared.frames.clone(), |coming| coming.frames(prepared, data));
         if frames.len() < 4 {
             run.warn("there is no comparison with simulations: it takes four frames at least");
@@ -92,7 +94,7 @@ impl CheckArguments {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
         match check(&ahead, &rivals.models(), &mut observe) {
             Ok(found) => Ok(Some(Compared::new(&found, &frames, (prepared, units)))),
-            Err(Error::Interrupted) => Err(prepared.place(Error::Interrupted, &asked.arguments.snapshots)),
+            Err(Error::Interrupted) => Err(place(prepared, Error::Interrupted, &asked.arguments.snapshots)),
             Err(error) => {
                 run.warn(format!("there is no comparison with simulations: {error}"));
                 Ok(None)
@@ -109,7 +111,7 @@ pub(super) struct Compared {
 }
 
 impl Compared {
-    fn new(found: &Check, frames: &[usize], (prepared, units): (&Prepared, &Units)) -> Self {
+    fn new(found: &Check, frames: &[usize], (prepared, units): (&Problem, &Units)) -> Self {
         let p = by_model(&found.p, |p| *p);
         let quantities: Vec<CheckedQuantity> =
             found.quantities.iter().map(|own| quantity(own, (prepared, units))).collect();
@@ -129,7 +131,7 @@ fn by_model<T, R>(all: &[T], of: impl Fn(&T) -> R) -> ByModel<R> {
 }
 
 /// One quantity in the units of the data.
-fn quantity(own: &Checked, (prepared, units): (&Prepared, &Units)) -> CheckedQuantity {
+fn quantity(own: &Checked, (prepared, units): (&Problem, &Units)) -> CheckedQuantity {
     let scale = prepared.scale;
     let of = own.measured.of;
     let times = |all: &[f64], dimensions: Dimensions| -> Vec<f64> {
@@ -201,7 +203,7 @@ fn capital(text: &str) -> String {
 }
 
 /// The ways of the cells, measured and in one movie of each model.
-fn ways(found: &Check, (prepared, units): (&Prepared, &Units)) -> Figure {
+fn ways(found: &Check, (prepared, units): (&Problem, &Units)) -> Figure {
     let length = prepared.scale.length;
     let of_movie = |places: &Vec<Vec<Option<voronudge_geometry::Vector<f64>>>>| -> Vec<Vec<[f64; 2]>> {
         let tracks = places.first().map_or(0, Vec::len);

@@ -1,10 +1,10 @@
 //! Effects as the report tells them.
 
 use super::sentences::{listed, percent, probability, told_apart_by};
-use crate::command::fit::Prepared;
 use crate::command::fit::prospects::Coefficient;
+use voronudge::problem::Problem;
+use voronudge_infer::Estimate;
 use voronudge_infer::discover::{Discovery, Fate, Ranked, Selected};
-use voronudge_infer::{Estimate, Scale};
 use voronudge_model::effect::{Effect, Kind, Unit};
 use voronudge_report::Units;
 use voronudge_report::discover_report::{
@@ -40,13 +40,8 @@ pub(super) fn family(effect: &Effect) -> EffectKind {
     }
 }
 
-/// A coefficient in the units of the data, per unit of the fit.
-fn factor(unit: Unit, scale: &Scale) -> f64 {
-    scale.length.powi(unit.length.into()) * scale.time.powi(unit.time.into())
-}
-
 /// Names of the coefficients, in the order of the columns; empty for the only one.
-fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
+fn coefficient_names(selected: &Selected, prepared: &Problem) -> Vec<String> {
     let count = selected.columns.len().max(selected.coefficients.len());
     let owned = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
     match (selected.effect.id, count) {
@@ -82,12 +77,12 @@ fn coefficient_names(selected: &Selected, prepared: &Prepared) -> Vec<String> {
 }
 
 /// The coefficients of the effects that were added, with their standard errors, in the units of the data.
-pub(super) fn coefficients(discovery: &Discovery, prepared: &Prepared, units: &Units) -> Vec<Coefficient> {
+pub(super) fn coefficients(discovery: &Discovery, prepared: &Problem, units: &Units) -> Vec<Coefficient> {
     let of = |selected: &Selected| -> Vec<Coefficient> {
         let names = coefficient_names(selected, prepared);
         let of_one = |(name, estimate): (&String, &Estimate)| {
             let unit = if name == "D_r" { RATE } else { selected.effect.unit };
-            let factor = factor(unit, &prepared.scale);
+            let factor = prepared.scale.unit(unit);
             Coefficient {
                 effect: selected.effect.id,
                 name: format!("{} {name}", selected.effect.id).trim_end().to_owned(),
@@ -102,12 +97,12 @@ pub(super) fn coefficients(discovery: &Discovery, prepared: &Prepared, units: &U
 }
 
 /// An effect that was added.
-pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) -> SelectedEffect {
+pub(super) fn selected(selected: &Selected, prepared: &Problem, units: &Units) -> SelectedEffect {
     let effect = selected.effect;
     let names = coefficient_names(selected, prepared);
     let unit_of = |name: &String| if name == "D_r" { RATE } else { effect.unit };
     let ends = |(name, estimate): (&String, &Estimate)| {
-        let factor = factor(unit_of(name), &prepared.scale);
+        let factor = prepared.scale.unit(unit_of(name));
         let [low, high] = estimate.interval;
         [low.unwrap_or(f64::NEG_INFINITY) * factor, high.unwrap_or(f64::INFINITY) * factor]
     };
@@ -120,7 +115,7 @@ pub(super) fn selected(selected: &Selected, prepared: &Prepared, units: &Units) 
         coefficients: (names.iter().zip(&selected.coefficients))
             .map(|(name, estimate)| EffectCoefficient {
                 name: name.clone(),
-                value: estimate.value * factor(unit_of(name), &prepared.scale),
+                value: estimate.value * prepared.scale.unit(unit_of(name)),
                 unit: units.powers(unit_of(name).length.into(), unit_of(name).time.into()),
             })
             .collect(),
@@ -197,16 +192,6 @@ fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, Strin
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn coefficients_are_scaled_by_their_unit() {
-        // A cell of size 20 µm and a time of 5 min: scaled velocities are multiples of 4 µm min⁻¹.
-        let scale = Scale { length: 20.0, time: 5.0 };
-        assert!((factor(Unit { length: 1, time: -1 }, &scale) - 4.0).abs() < 1e-12);
-        assert!((factor(Unit { length: -2, time: -1 }, &scale) - 1.0 / 2000.0).abs() < 1e-15);
-        assert!((factor(Unit { length: 0, time: 1 }, &scale) - 5.0).abs() < 1e-12);
-        assert_eq!(factor(Unit { length: 0, time: 0 }, &scale), 1.0);
-    }
 
     #[test]
     fn every_effect_belongs_to_a_family() {

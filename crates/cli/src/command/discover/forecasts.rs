@@ -3,11 +3,13 @@
 use super::Asked;
 use super::material::Searched;
 use super::onward::{self, Rivals};
-use crate::command::fit::{Measured, Prepared, SnapshotArguments};
+use crate::command::fit::measured::{frames, measured};
+use crate::command::fit::{SnapshotArguments, place};
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
+use voronudge::problem::{Measured, Problem};
 use voronudge_infer::Error;
 use voronudge_infer::forecast::{Ahead, Forecast, Forecasts, Skill, WithError, forecast};
 use voronudge_io::{DataSet, Difference, FrameSelection};
@@ -53,21 +55,21 @@ impl ForecastArguments {
         let refused = |what: String, hint: &str| {
             Failure::new(format!("--forecast: {what}")).with_hint(hint).at(file.display())
         };
-        let measured = Measured::of_tracks(snapshots, data, difference)?;
+        let measured = measured(snapshots, data, difference)?;
         if measured.flow().is_some() {
             return Err(refused(
                 "velocities are on a grid, and no cells are followed".into(),
                 "give tracked cells",
             ));
         }
-        let frames = measured.frames(snapshots, data)?;
+        let all = frames(&measured, snapshots, data)?;
         if snapshots.frames.is_none() {
-            let most = if matches!(measured, Measured::Tracks(_)) { MOST_FITTED } else { frames.len() };
-            let fitted = frames.len().div_ceil(2).min(most).max(FEWEST_FITTED).min(frames.len());
-            let list: Vec<String> = frames[..fitted].iter().map(ToString::to_string).collect();
+            let most = if matches!(measured, Measured::Tracks(_)) { MOST_FITTED } else { all.len() };
+            let fitted = all.len().div_ceil(2).min(most).max(FEWEST_FITTED).min(all.len());
+            let list: Vec<String> = all[..fitted].iter().map(ToString::to_string).collect();
             snapshots.frames = Some(list.join(",").parse::<FrameSelection>()?);
         }
-        let last = measured.frames(snapshots, data)?.last().copied().unwrap_or(0);
+        let last = frames(&measured, snapshots, data)?.last().copied().unwrap_or(0);
         // A central difference has seen the frame after.
         let first = last + if difference == Some(Difference::Central) { 2 } else { 1 };
         if first + 1 >= data.frames() {
@@ -93,7 +95,7 @@ impl Coming {
         run: &mut Run,
         progress: &mut Progress,
     ) -> Result<Option<ForecastReport>, Failure> {
-        let prepared = &searched.material.prepared;
+        let prepared = &searched.prepared;
         if self.horizon < self.asked {
             run.warn(format!(
                 "of {} frames ahead {} can be told: the movie ends there",
@@ -115,7 +117,7 @@ impl Coming {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
         match forecast(&ahead, &rivals.models(), &mut observe) {
             Ok(found) => Ok(Some(self.report(&found, rivals.count(), &frames, (data, prepared, units)))),
-            Err(Error::Interrupted) => Err(prepared.place(Error::Interrupted, &asked.arguments.snapshots)),
+            Err(Error::Interrupted) => Err(place(prepared, Error::Interrupted, &asked.arguments.snapshots)),
             Err(error) => {
                 run.warn(format!("there is no forecast: {error}"));
                 Ok(None)
@@ -124,7 +126,7 @@ impl Coming {
     }
 
     /// From the first frame of the fit to the last of all.
-    pub fn frames(&self, prepared: &Prepared, data: &DataSet) -> Vec<usize> {
+    pub fn frames(&self, prepared: &Problem, data: &DataSet) -> Vec<usize> {
         let fitted = prepared.frames.iter().copied().filter(|frame| *frame < self.first);
         fitted.chain(self.first..data.frames()).collect()
     }
@@ -134,7 +136,7 @@ impl Coming {
         found: &Forecasts,
         models: usize,
         frames: &[usize],
-        (data, prepared, units): (&DataSet, &Prepared, &Units),
+        (data, prepared, units): (&DataSet, &Problem, &Units),
     ) -> ForecastReport {
         let gains = |all: &[WithError]| -> Vec<Gain> { all.iter().copied().map(Gain::from).collect() };
         let lengths =

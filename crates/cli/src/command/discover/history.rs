@@ -3,16 +3,15 @@
 //! A velocity may be predicted from velocities of intervals that end before its own begins, never from one that shares
 //! time with it: the motion in the shared time would predict itself.
 
-use crate::command::fit::{Measured, SnapshotArguments, observe, remove_median};
+use crate::command::fit::{SnapshotArguments, place_of_data};
 use crate::failure::Failure;
-use crate::snapshot::Snapshot;
 use clap::ValueEnum;
 use ndarray::Axis;
+use voronudge::problem::Measured;
 use voronudge_geometry::Vector;
-use voronudge_io::{DataSet, Difference, derive_velocities};
+use voronudge_io::{DataSet, Difference, Snapshot, derive_velocities};
 use voronudge_model::Effect;
 use voronudge_report::discover_report::Predictors;
-use voronudge_report::infer_report::MeanRemoved;
 
 /// Effects that need earlier velocities.
 const WITH_A_MEMORY: [&str; 2] = ["persistence", "alignment"];
@@ -128,15 +127,16 @@ impl History {
         &self,
         (arguments, data): (&SnapshotArguments, &DataSet),
         (snapshot, frame): (&Snapshot, usize),
-        mean_removed: MeanRemoved,
+        mean_removed: bool,
     ) -> Result<Vec<Option<Vector<f64>>>, Failure> {
         let nothing = || vec![None; snapshot.cells.len()];
         let Some(earlier) = frame.checked_sub(self.lag).filter(|_| self.reaches(data, frame)) else {
             return Ok(nothing());
         };
-        let (then, mut observation) = observe(arguments, data, &self.velocities, earlier)?;
-        if mean_removed == MeanRemoved::PerFrame {
-            remove_median(&mut observation);
+        let observed = self.velocities.observe(data, arguments.largest_area, earlier);
+        let (then, mut observation) = observed.map_err(|error| place_of_data(arguments, error))?;
+        if mean_removed {
+            observation.remove_median();
         }
         let mut of_track = vec![None; data.cells()];
         for (&cell, velocity) in then.cells.iter().zip(observation.velocities.values()) {

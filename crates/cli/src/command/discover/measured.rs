@@ -1,7 +1,7 @@
 //! What was found out about the measurement before the search: it stands beside what the tissue may do, and goes first.
 
 use super::sentences::{listed, percent};
-use crate::command::fit::Prepared;
+use voronudge::problem::Problem;
 use voronudge_infer::discover::Fitted;
 use voronudge_infer::{ChangeKind, NoiseSource};
 use voronudge_report::Units;
@@ -31,7 +31,7 @@ pub(super) struct Findings {
 
 impl Findings {
     /// Everything that nobody declared and that is not as usual.
-    pub fn new(prepared: &Prepared, measurement: &Measurement) -> Self {
+    pub fn new(prepared: &Problem, measurement: &Measurement) -> Self {
         let tracks = measurement.tracks.as_ref();
         let times = |count: usize, id, what: &str, advice| {
             let statement = format!("{count} times a track {what}");
@@ -69,14 +69,6 @@ impl Findings {
     /// What to do about it.
     pub fn advice(&self) -> impl Iterator<Item = String> {
         self.all.iter().map(|own| own.advice.to_owned())
-    }
-
-    /// Effects of the catalogue that were determined with the measurement, and are no candidates.
-    pub fn determined(prepared: &Prepared) -> Vec<&'static str> {
-        let share = prepared.known.share.is_none().then_some("centroid_bias");
-        let declared = prepared.known.kind.is_some() && prepared.known.width.is_some();
-        let width = (prepared.velocities.flow().is_some() && !declared).then_some("flow_blur");
-        share.into_iter().chain(width).collect()
     }
 
     /// The ranking with what was found in front, and the errors of positions, which are always there, behind what is named.
@@ -128,7 +120,7 @@ pub(super) struct PositionNoise {
 
 impl PositionNoise {
     /// As it is in the fit of the last model: what an effect explains is no error of positions.
-    pub fn new(prepared: &Prepared, after: &Fitted, units: &Units) -> Self {
+    pub fn new(prepared: &Problem, after: &Fitted, units: &Units) -> Self {
         let sigma = after.inference.noise.position * prepared.scale.length;
         Self {
             level: format!("{} {}", significant(sigma, 3), unit_text(&units.length)),
@@ -159,13 +151,13 @@ fn cells(count: usize) -> String {
 }
 
 /// The changes of some kinds: how many, and their evidence.
-fn changes(prepared: &Prepared, kinds: &[ChangeKind]) -> (usize, f64) {
+fn changes(prepared: &Problem, kinds: &[ChangeKind]) -> (usize, f64) {
     let frames = prepared.completion.iter().flat_map(|completion| &completion.frames);
     let changes = frames.flat_map(|frame| &frame.changes).filter(|change| kinds.contains(&change.kind));
     changes.fold((0, 0.0), |(count, evidence), change| (count + 1, evidence + change.evidence))
 }
 
-fn missed(prepared: &Prepared) -> Option<Finding> {
+fn missed(prepared: &Problem) -> Option<Finding> {
     let (count, evidence) = changes(prepared, &[ChangeKind::Inserted]);
     (count > 0).then(|| Finding {
         id: "missed_cells",
@@ -176,7 +168,7 @@ fn missed(prepared: &Prepared) -> Option<Finding> {
     })
 }
 
-fn faulty(prepared: &Prepared) -> Option<Finding> {
+fn faulty(prepared: &Problem) -> Option<Finding> {
     let kinds = [ChangeKind::Deleted, ChangeKind::Split, ChangeKind::Merged];
     let (count, evidence) = changes(prepared, &kinds);
     let names = ["no cell", "two cells", "one of two of the same cell"];

@@ -16,9 +16,10 @@ mod stretch;
 mod summary;
 mod surroundings;
 
+use super::fit::measured::{frames, measured, velocities};
 use super::fit::{
-    ConstraintArguments, Measured, Prepared, PreparedTracks, Question, SearchArguments, SnapshotArguments,
-    arrays, browser, latent, outcome, spreads, words,
+    ConstraintArguments, Inquiry, SearchArguments, SnapshotArguments, arrays, browser, latent, measurement,
+    outcome, spreads, tracks, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
 use crate::Answer;
@@ -31,10 +32,11 @@ use checks::CheckArguments;
 use clap::Args;
 use forecasts::ForecastArguments;
 use history::{GivenDifference, History};
-use material::{Material, Past, Searched};
+use material::{Past, Searched};
 use predictions::PredictionArguments;
 use report::Found;
 use surroundings::FieldArguments;
+use voronudge::problem::{Measured, Problem};
 use voronudge_infer::{Constraints, Part, Scale};
 use voronudge_io::{DataSet, Difference};
 use voronudge_model::Effect;
@@ -140,8 +142,8 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     progress.finish();
     let compared = compared.map_err(|failure| kept.failed(failure))?;
     let forecast = forecast.map_err(|failure| kept.failed(failure))?;
-    let Searched { material: Material { prepared, tracks }, search, discovery } = searched;
-    prepared.caution(&mut run);
+    let Searched { prepared, search, discovery } = searched;
+    measurement::caution(&prepared, &mut run);
     let predictors = raw.past.and_then(|past| past.predictors);
     let last = &discovery.after.inference;
     let doubts = words::doubts(last, &[], prepared.request.method);
@@ -150,19 +152,20 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     told.for_each(|(_, doubt)| run.warn(doubt));
     for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
         arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
-        if let (Some(tracks), Some(tracked)) = (&tracks, &fitted.tracked) {
-            tracks.write(&mut out, prefix, &data, &prepared, tracked)?;
+        if let (Some(movie), Some(tracked)) = (&prepared.tracks, &fitted.tracked) {
+            tracks::write(&mut out, prefix, &data, (&prepared, movie), tracked)?;
         }
     }
     spreads::write(&mut out, "after_", &data, &prepared, last)?;
     latent::write(&mut out, &data, &prepared, last)?;
     let predictions =
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
-    let tracks = tracks.as_ref().zip(discovery.after.tracked.as_ref());
-    let tracks = tracks.map(|(tracks, tracked)| tracks.report(&prepared, last, tracked));
+    let followed = prepared.tracks.as_ref().zip(discovery.after.tracked.as_ref());
+    let tracks = followed.map(|(movie, tracked)| tracks::report(&prepared, movie, last, tracked));
     let found = Found {
         data: &data,
         prepared: &prepared,
+        stated: snapshots.stated(&data),
         tracks,
         search: &search,
         predictors,
@@ -192,10 +195,10 @@ struct Asked<'a> {
 
 impl Asked<'_> {
     /// The tracks, where there are no velocities and none are to be derived.
-    fn tracks(&self, data: &DataSet, run: &mut Run) -> Result<Option<(Prepared, PreparedTracks)>, Failure> {
+    fn tracks(&self, data: &DataSet, run: &mut Run) -> Result<Option<Problem>, Failure> {
         let arguments = self.arguments;
         let snapshots = &arguments.snapshots;
-        let velocities = Measured::of_tracks(snapshots, data, arguments.difference)?;
+        let velocities = measured(snapshots, data, arguments.difference)?;
         let Measured::Tracks(means) = &velocities else { return Ok(None) };
         let refused = [
             (arguments.given_difference.is_some(), "--given-difference"),
@@ -212,24 +215,25 @@ impl Asked<'_> {
             .with_hint(format!("leave out {option}, or give --difference central for velocities")));
         }
         let frames = match snapshots.frames {
-            Some(_) => velocities.frames(snapshots, data)?,
+            Some(_) => frames(&velocities, snapshots, data)?,
             None => stretch::middle(means, run).collect(),
         };
-        PreparedTracks::new(self.question(snapshots, data, None), velocities, frames, run).map(Some)
+        self.inquiry(snapshots, data, None).prepare(velocities, frames, run).map(Some)
     }
 
-    fn question<'q>(
+    fn inquiry<'q>(
         &self,
         snapshots: &'q SnapshotArguments,
         data: &'q DataSet,
         scale: Option<Scale>,
-    ) -> Question<'q> {
-        Question {
+    ) -> Inquiry<'q> {
+        Inquiry {
             arguments: snapshots,
             data,
             constraints: self.constraints.clone(),
             method: self.arguments.method.method(),
             seed: self.arguments.common.seed,
+            detections: self.arguments.latent.detections(),
             scale,
         }
     }
@@ -241,14 +245,15 @@ impl Asked<'_> {
         data: &DataSet,
         other: Option<Scale>,
         run: &mut Run,
-    ) -> Result<(Prepared, Past), Failure> {
+    ) -> Result<(Problem, Past), Failure> {
         let Self { arguments, candidates, .. } = self;
-        let velocities = Measured::new(snapshots, data, arguments.difference.unwrap_or(Difference::Forward))?;
+        let difference = arguments.difference.unwrap_or(Difference::Forward);
+        let velocities = velocities(snapshots, data, difference)?;
         let history = History::new(data, &velocities, arguments.given_difference)?;
-        let frames = velocities.frames(snapshots, data)?;
+        let frames = frames(&velocities, snapshots, data)?;
         let kept = history::keep_frames(history.as_ref(), data, frames, candidates);
         let (kind, noise) = (shared_errors(&velocities), unknown_noise(data));
-        let prepared = self.question(snapshots, data, other).prepare(velocities, kept.frames, run)?;
+        let prepared = self.inquiry(snapshots, data, other).prepare(velocities, kept.frames, run)?;
         match other {
             None => kind.into_iter().chain(noise).chain(kept.warning).for_each(|warning| run.warn(warning)),
             // What is wrong with the kind of data was said of the first.
@@ -267,7 +272,7 @@ impl Asked<'_> {
         data: &DataSet,
         scale: Scale,
         run: &mut Run,
-    ) -> Result<Prepared, Failure> {
+    ) -> Result<Problem, Failure> {
         let (mut prepared, Past { history, .. }) = self.prepare(snapshots, data, Some(scale), run)?;
         surroundings::surround(&mut prepared, (snapshots, data), None, history.as_ref())?;
         Ok(prepared)

@@ -2,9 +2,9 @@
 
 use super::Asked;
 use super::material::Searched;
-use crate::command::fit::{Measured, Prepared, PreparedTracks};
 use crate::failure::Failure;
 use crate::run::Run;
+use voronudge::problem::{self, Measured, Problem};
 use voronudge_infer::Movie;
 use voronudge_infer::forecast::Forecaster;
 use voronudge_io::{DataSet, Difference, derive_velocities};
@@ -14,15 +14,16 @@ use voronudge_model::Structure;
 pub(super) fn movie(
     asked: &Asked<'_>,
     data: &DataSet,
-    prepared: &Prepared,
+    prepared: &Problem,
     frames: Vec<usize>,
     run: &mut Run,
 ) -> Result<Movie, Failure> {
     let snapshots = &asked.arguments.snapshots;
     let means = derive_velocities(data, Difference::Forward)
         .map_err(|error| Failure::from(error).at(snapshots.data.positions_file().display()))?;
-    let question = asked.question(snapshots, data, Some(prepared.scale));
-    let (_, tracks) = PreparedTracks::new(question, Measured::Tracks(means), frames, run)?;
+    let inquiry = asked.inquiry(snapshots, data, Some(prepared.scale));
+    let onward = inquiry.prepare(Measured::Tracks(means), frames, run)?;
+    let tracks = onward.tracks.ok_or(problem::Error::NoFrame)?;
     Ok(tracks.movie.with_positions_at(prepared.measurement.share.value))
 }
 

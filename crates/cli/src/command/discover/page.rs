@@ -1,8 +1,9 @@
 //! The result of `discover` as a page with figures.
 
 use super::report::Found;
-use crate::command::fit::{Prepared, spreads, views};
+use crate::command::fit::{spreads, views};
 use crate::failure::Failure;
+use voronudge::problem::Problem;
 use voronudge_geometry::Vector;
 use voronudge_infer::diagnostics::{Bin, Cause, Correlation as Measured, Diagnostics};
 use voronudge_infer::discover::{Discovery, Selected};
@@ -89,7 +90,7 @@ fn correlations(discovery: &Discovery) -> Vec<CorrelationFunction> {
 }
 
 /// What an effect predicts beyond the other terms, and what they leave.
-fn regression(selected: &Selected, prepared: &Prepared) -> PartialRegression {
+fn regression(selected: &Selected, prepared: &Problem) -> PartialRegression {
     let velocity = |v: Vector<f64>| [v.x, v.y].map(|part| part * prepared.scale.velocity());
     let (mut product, mut square) = (0.0, 0.0);
     for [predicted, residual] in &selected.partial {
@@ -120,7 +121,7 @@ fn regression(selected: &Selected, prepared: &Prepared) -> PartialRegression {
 }
 
 /// Suspicious cells of one frame; none where velocities are on a grid.
-fn outliers(prepared: &Prepared, diagnostics: &Diagnostics, index: usize) -> Vec<Outlier> {
+fn outliers(prepared: &Problem, diagnostics: &Diagnostics, index: usize) -> Vec<Outlier> {
     if prepared.velocities.flow().is_some() {
         return Vec::new();
     }

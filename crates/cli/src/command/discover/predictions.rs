@@ -2,11 +2,11 @@
 
 use super::Asked;
 use super::report::held_out_error;
-use crate::command::fit::Prepared;
 use crate::failure::Failure;
 use crate::run::Run;
 use clap::Args;
 use std::path::PathBuf;
+use voronudge::problem::Problem;
 use voronudge_infer::Observation;
 use voronudge_infer::discover::{Absent, Discovery, Search, Transfer};
 use voronudge_io::DataSet;
@@ -36,7 +36,7 @@ impl PredictionArguments {
     pub fn load(
         &self,
         asked: &Asked<'_>,
-        (data, prepared): (&mut DataSet, &Prepared),
+        (data, prepared): (&mut DataSet, &Problem),
         run: &mut Run,
     ) -> Result<Vec<Other>, Failure> {
         let mut others = Vec::new();

@@ -4,8 +4,10 @@ use super::checks::Compared;
 use super::measured::{Findings, PositionNoise};
 use super::sentences::probability;
 use super::{effects, sentences};
-use crate::command::fit::{OrderedField, Prepared, outcome, prospects};
+use crate::command::fit::flow::described;
+use crate::command::fit::{Stated, outcome, prospects};
 use crate::run::Run;
+use voronudge::problem::Problem;
 use voronudge_infer::diagnostics::Kind;
 use voronudge_infer::discover::{
     Budget, Described, Discovery, Fitted, HeldOut, HeldOutUnit, Search, Verdict as Answer,
@@ -22,7 +24,8 @@ use voronudge_report::{BeforeAfter, DiscoverReport, Units};
 /// What was searched, and in which data.
 pub(super) struct Found<'a> {
     pub data: &'a DataSet,
-    pub prepared: &'a Prepared,
+    pub prepared: &'a Problem,
+    pub stated: Stated,
     pub tracks: Option<TracksReport>,
     pub search: &'a Search,
     pub predictors: Option<Predictors>,
@@ -32,14 +35,14 @@ pub(super) struct Found<'a> {
 }
 
 pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> DiscoverReport {
-    let Found { data, prepared, tracks, search, predictors, predictions, forecast, compared } = found;
+    let Found { data, prepared, stated, tracks, search, predictors, predictions, forecast, compared } = found;
     let units = outcome::units(data);
-    let measurement = Measurement { tracks: tracks.clone(), ..outcome::measurement(data, prepared) };
+    let measurement = Measurement { tracks: tracks.clone(), ..outcome::measurement(*stated, data, prepared) };
     let findings = Findings::new(prepared, &measurement);
     let ranking = discovery.ranking.iter().map(|one| effects::ranked(one, discovery)).collect();
     let fits = BeforeAfter {
-        before: model_fit(prepared, &discovery.before, &units),
-        after: model_fit(prepared, &discovery.after, &units),
+        before: model_fit(*stated, prepared, &discovery.before, &units),
+        after: model_fit(*stated, prepared, &discovery.after, &units),
     };
     let foreseen = discovery.prospects.as_ref().map(|foreseen| {
         let coefficients = effects::coefficients(discovery, prepared, &units);
@@ -50,7 +53,7 @@ pub(super) fn report(run: &Run, found: &Found<'_>, discovery: &Discovery) -> Dis
         run: run.record(Some(data)),
         length_scale: Quantity { value: prepared.scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, &discovery.before.inference),
-        flow: prepared.velocities.flow().map(OrderedField::described),
+        flow: prepared.velocities.flow().map(described),
         constraints: outcome::given(&prepared.constraints),
         verdict: verdict(discovery.verdict),
         sentence: sentences::sentence(discovery, prepared, &findings),
@@ -95,13 +98,13 @@ fn verdict(answer: Answer) -> Verdict {
     }
 }
 
-fn model_fit(prepared: &Prepared, fitted: &Fitted, units: &Units) -> ModelFit {
+fn model_fit(stated: Stated, prepared: &Problem, fitted: &Fitted, units: &Units) -> ModelFit {
     let result = &fitted.inference;
     ModelFit {
         parameters: outcome::parameters(prepared, result, units),
         nmse: nmse(prepared, result, fitted.held_out),
         noise_floor_nmse: result.nmse.noise_floor,
-        noise: outcome::noise(prepared, result),
+        noise: outcome::noise(stated, prepared, result),
         nudge: outcome::nudge(prepared, result),
         identifiability: outcome::identifiability(result),
         chi_square_per_dof: result.objective / result.expected_objective,
@@ -114,7 +117,7 @@ pub(super) fn held_out_error(error: HeldOut) -> HeldOutError {
     HeldOutError { value: error.value, standard_error: error.standard_error, folds: error.folds }
 }
 
-fn nmse(prepared: &Prepared, result: &Inference, held_out: Option<HeldOut>) -> ModelNmse {
+fn nmse(prepared: &Problem, result: &Inference, held_out: Option<HeldOut>) -> ModelNmse {
     let of = |unit: HeldOutUnit| held_out.filter(|error| error.unit == unit).map(held_out_error);
     ModelNmse {
         naive: result.nmse.naive,
@@ -122,12 +125,12 @@ fn nmse(prepared: &Prepared, result: &Inference, held_out: Option<HeldOut>) -> M
         un_nudged: result.nmse.un_nudged,
         cross_validated: of(HeldOutUnit::Blocks),
         held_out_frames: of(HeldOutUnit::Frames),
-        mean_removed: prepared.mean_removed,
+        mean_removed: outcome::mean_removed(prepared),
         background: prepared.background,
     }
 }
 
-fn description(prepared: &Prepared, described: &Described) -> DescriptionFit {
+fn description(prepared: &Problem, described: &Described) -> DescriptionFit {
     let result = &described.inference;
     DescriptionFit {
         effect: described.effect.id.into(),
@@ -138,7 +141,7 @@ fn description(prepared: &Prepared, described: &Described) -> DescriptionFit {
     }
 }
 
-fn unexplained(prepared: &Prepared, fitted: &Fitted) -> Unexplained {
+fn unexplained(prepared: &Problem, fitted: &Fitted) -> Unexplained {
     let diagnostics = &fitted.diagnostics;
     let shares = diagnostics.split.shares;
     Unexplained {
@@ -172,7 +175,7 @@ fn tested(kind: Kind) -> &'static str {
     }
 }
 
-fn budget(prepared: &Prepared, shares: &Budget) -> NoiseBudget {
+fn budget(prepared: &Problem, shares: &Budget) -> NoiseBudget {
     let squares = |v: &voronudge_geometry::Vector<f64>| v.norm_squared();
     let of_frame =
         |frame: &voronudge_infer::Observation| frame.explainable().iter().map(squares).sum::<f64>();

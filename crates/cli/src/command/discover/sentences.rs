@@ -2,7 +2,7 @@
 
 use super::history::has_memory;
 use super::measured::Findings;
-use crate::command::fit::Prepared;
+use voronudge::problem::Problem;
 use voronudge_infer::NoiseSource;
 use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Ranked, Search, Selected, Verdict};
 use voronudge_model::Effect;
@@ -161,7 +161,7 @@ fn explained(discovery: &Discovery) -> String {
 }
 
 /// The answer in a sentence.
-pub(super) fn sentence(discovery: &Discovery, prepared: &Prepared, findings: &Findings) -> String {
+pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Findings) -> String {
     let errors = errors(discovery);
     let share = explained(discovery);
     let names: Vec<String> = discovery.selected.iter().map(name).collect();
@@ -304,7 +304,7 @@ fn limits(discovery: &Discovery) -> Option<String> {
 pub(super) fn measure_next(
     discovery: &Discovery,
     search: &Search,
-    prepared: &Prepared,
+    prepared: &Problem,
     findings: &Findings,
 ) -> String {
     let mut advice: Vec<String> = findings.advice().collect();

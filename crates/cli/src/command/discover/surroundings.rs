@@ -1,15 +1,15 @@
 //! What surrounds and preceded the cells of each frame, in the units of the fit.
 
 use super::history::History;
-use crate::command::fit::{OrderedField, Prepared, SnapshotArguments, scaled_flow};
+use crate::command::fit::SnapshotArguments;
 use crate::failure::Failure;
-use crate::snapshot::labels;
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
-use voronudge_geometry::{Domain, Vector, Visibility};
+use voronudge::problem::{OrderedField, Problem};
+use voronudge_geometry::Vector;
 use voronudge_io::{DataSet, DeclaredWindow};
-use voronudge_model::{Environment, EnvironmentError, VectorMap};
+use voronudge_model::{EnvironmentError, VectorMap};
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
@@ -66,9 +66,9 @@ impl FieldArguments {
 
 impl ExternalMap {
     /// The map of a frame.
-    fn of(&self, frame: usize, prepared: &Prepared) -> Result<VectorMap, Failure> {
+    fn of(&self, frame: usize, prepared: &Problem) -> Result<VectorMap, Failure> {
         let flow = self.field.frame(if self.frames == 1 { 0 } else { frame });
-        let flow = scaled_flow(&flow, &prepared.scale)?;
+        let flow = flow.scaled(&prepared.scale)?;
         let vectors =
             flow.velocities.into_iter().map(|vector| vector.unwrap_or_else(Vector::zeros)).collect();
         VectorMap::new(flow.grid, vectors).map_err(fault)
@@ -79,42 +79,17 @@ fn fault(error: EnvironmentError) -> Failure {
     Failure::new(error.to_string()).with_hint("check the data")
 }
 
-/// The middle of the box, or the mean position of the cells that count, over all frames.
-pub(super) fn origin(prepared: &Prepared) -> Vector<f64> {
-    let (mut sum, mut count) = (Vector::zeros(), 0usize);
-    for observation in &prepared.observations {
-        if let Domain::Periodic(cell_box) = observation.tessellation.domain() {
-            let [x, y] = cell_box.lengths();
-            return Vector::new(0.5 * x, 0.5 * y);
-        }
-        let cells = observation.positions.iter().zip(&observation.visibility);
-        for (r, _) in cells.filter(|(_, visibility)| **visibility == Visibility::Counted) {
-            sum += r;
-            count += 1;
-        }
-    }
-    sum / count.max(1) as f64
-}
-
 /// Puts the observations into their environments.
 pub(super) fn surround(
-    prepared: &mut Prepared,
+    prepared: &mut Problem,
     (arguments, data): (&SnapshotArguments, &DataSet),
     map: Option<&ExternalMap>,
     history: Option<&History>,
 ) -> Result<(), Failure> {
-    let origin = origin(prepared);
     let mut surrounded = Vec::new();
     for (index, observation) in prepared.observations.iter().enumerate() {
         let (snapshot, frame) = (&prepared.snapshots[index], prepared.frames[index]);
-        let mut environment = Environment::default().about(origin);
-        if let Some(labels) = labels(data, snapshot, frame) {
-            environment = environment.with_labels(prepared.of_cells(index, labels, &None)).map_err(fault)?;
-        }
-        if matches!(observation.tessellation.domain(), Domain::Open) {
-            let beyond = observation.visibility.iter().map(|v| *v != Visibility::Counted).collect();
-            environment = environment.with_beyond_edge(beyond).map_err(fault)?;
-        }
+        let mut environment = prepared.surroundings(data, index).map_err(fault)?;
         if let Some(map) = map {
             environment = environment.with_map(map.of(frame, prepared)?);
         }

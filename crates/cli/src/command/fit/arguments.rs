@@ -3,11 +3,11 @@
 use super::flow::FlowArguments;
 use crate::arguments::DataSetArguments;
 use crate::failure::Failure;
-use crate::snapshot::field_of_view;
 use clap::{Args, ValueEnum};
 use std::path::Path;
-use voronudge_geometry::FieldOfView;
+use voronudge::problem;
 use voronudge_io::{DataSet, FrameSelection};
+use voronudge_report::infer_report::{NoiseSource, RegionSource};
 
 #[derive(Debug, Clone, Args)]
 pub(crate) struct SnapshotArguments {
@@ -39,15 +39,42 @@ pub(crate) enum MeanToRemove {
     PerFrame,
 }
 
+impl From<MeanToRemove> for problem::MeanToRemove {
+    fn from(asked: MeanToRemove) -> Self {
+        match asked {
+            MeanToRemove::Auto => Self::Auto,
+            MeanToRemove::None => Self::None,
+            MeanToRemove::PerFrame => Self::PerFrame,
+        }
+    }
+}
+
+/// Where what is stated of the measurement comes from.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Stated {
+    /// Noise levels, if both were stated.
+    pub noise: NoiseSource,
+    /// The field of view, if it is open.
+    pub region: RegionSource,
+}
+
 impl SnapshotArguments {
     /// Refuses what needs no data to be seen wrong.
     pub fn check(&self) -> Result<(), Failure> {
         check_largest_area(self.largest_area)
     }
 
-    /// Where every cell would have been seen, and what is taken for one.
-    pub fn field_of_view(&self, data: &DataSet) -> Result<FieldOfView, Failure> {
-        Ok(FieldOfView { largest_area: self.largest_area, ..field_of_view(data)? })
+    /// Where what is stated of the measurement comes from.
+    pub fn stated(&self, data: &DataSet) -> Stated {
+        let from_flags = self.data.position_noise.is_some() || self.data.velocity_noise.is_some();
+        Stated {
+            noise: if from_flags { NoiseSource::Given } else { NoiseSource::DataSet },
+            region: match &data.field_of_view {
+                Some(_) if self.data.field_of_view.is_some() => RegionSource::Given,
+                Some(_) => RegionSource::DataSet,
+                None => RegionSource::Hull,
+            },
+        }
     }
 
     /// The same of the folder of another data set, all frames.

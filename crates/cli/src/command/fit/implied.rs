@@ -1,6 +1,6 @@
 //! What fitted parameters imply by the mean-field theory.
 
-use super::prepare::Prepared;
+use voronudge::problem::Problem;
 use voronudge_infer::{Direction, Inference};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{ImpliedByMeanField, Parameter};
@@ -16,7 +16,7 @@ const STEP: f64 = 1e-6;
 /// Moduli and phase diffusivities of the honeycomb at the estimate, in the units of the data. `None` where K_P is not positive.
 ///
 /// Moduli are linear in the coefficients, so that their variance is that of the principal directions summed up.
-pub(crate) fn implied(prepared: &Prepared, result: &Inference, units: &Units) -> Option<ImpliedByMeanField> {
+pub(crate) fn implied(prepared: &Problem, result: &Inference, units: &Units) -> Option<ImpliedByMeanField> {
     let estimate = &result.parameters;
     let (k_a, k_p) = (estimate.area_elasticity.value, estimate.perimeter_elasticity.value);
     let coefficients =

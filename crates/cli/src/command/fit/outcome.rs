@@ -1,19 +1,20 @@
 //! A fitted model as reports tell it.
 
-use super::prepare::Prepared;
-use super::scaling::{factor, unit};
+use super::Stated;
+use super::units::unit;
 use super::words;
 use std::collections::BTreeMap;
+use voronudge::problem::Problem;
 use voronudge_geometry::{Certainty, Visibility};
 use voronudge_infer::{
-    Constraints, Inference, Method, NoiseSource as Source, Observation, Prior, Profile, Quantity as What,
-    Status, Velocities,
+    Constraints, Estimate, Inference, Method, NoiseSource as Source, Observation, Prior, Profile,
+    Quantity as What, Status, Velocities,
 };
 use voronudge_io::DataSet;
 use voronudge_report::Units;
 use voronudge_report::infer_report::{
-    CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, Measurement, Noise,
-    NoiseSource, Nudge, Parameter, Parameters, SeenRegion, Transitions,
+    CellCounts, EigenDirection, Fit, FitMethod, FitStatus, GivenConstraints, GivenPrior, MeanRemoved,
+    Measurement, Noise, NoiseSource, Nudge, Parameter, Parameters, SeenRegion, Transitions,
 };
 
 /// Names of the coefficients along which directions are given.
@@ -25,46 +26,44 @@ pub(crate) fn units(data: &DataSet) -> Units {
 }
 
 /// The noise levels of a fit, and where they come from.
-pub(crate) fn noise(prepared: &Prepared, result: &Inference) -> Noise {
+pub(crate) fn noise(stated: Stated, prepared: &Problem, result: &Inference) -> Noise {
     Noise {
         sigma_r: result.noise.position * prepared.scale.length,
         sigma_v: result.noise.velocity * prepared.scale.velocity(),
         source: match result.noise_source {
-            Source::Given => prepared.stated_noise,
+            Source::Given => stated.noise,
             Source::Estimated => NoiseSource::Estimated,
         },
     }
 }
 
+/// Which mean velocity was removed.
+pub(crate) fn mean_removed(prepared: &Problem) -> MeanRemoved {
+    if prepared.mean_removed { MeanRemoved::PerFrame } else { MeanRemoved::None }
+}
+
 /// The parameters in the units of the data.
-pub(crate) fn parameters(prepared: &Prepared, result: &Inference, units: &Units) -> Parameters {
-    let scale = &prepared.scale;
-    let parameter = |quantity: What, factor: f64, unit: String| {
-        let estimate = result.parameters.get(quantity);
+pub(crate) fn parameters(prepared: &Problem, result: &Inference, units: &Units) -> Parameters {
+    let parameter = |quantity: What, estimate: &Estimate, unit: String| {
         let [low, high] = estimate.interval;
-        let ends = [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)];
         // What does not vary is held, by itself or by others together.
         let fixed = estimate.standard_error == 0.0;
         Parameter {
-            value: estimate.value * factor,
-            ci95: (!fixed).then(|| ends.map(|end| end * factor)),
+            value: estimate.value,
+            ci95: (!fixed).then(|| [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)]),
             fixed,
             unit,
-            words: words::parameter(quantity, estimate),
+            words: words::parameter(quantity, result.parameters.get(quantity)),
         }
     };
-    let in_units = |quantity: What| {
-        let fitted = parameter(quantity, factor(scale, quantity), unit(quantity, units));
-        // What was given keeps its last digit.
-        let given = prepared.constraints.fixed.get(&quantity);
-        Parameter { value: given.copied().unwrap_or(fitted.value), ..fitted }
-    };
+    let in_units =
+        |quantity: What| parameter(quantity, &prepared.estimate(result, quantity), unit(quantity, units));
     Parameters {
         K_A: in_units(What::AreaElasticity),
         K_P: in_units(What::PerimeterElasticity),
         P_0: in_units(What::PreferredPerimeter),
         A_0: Parameter {
-            value: scale.length * scale.length,
+            value: prepared.scale.length * prepared.scale.length,
             ci95: None,
             fixed: true,
             unit: units.powers(2, 0),
@@ -72,7 +71,11 @@ pub(crate) fn parameters(prepared: &Prepared, result: &Inference, units: &Units)
         },
         alpha: in_units(What::Chirality),
         K_P_alpha: in_units(What::ChiralCoefficient),
-        shape_index: parameter(What::PreferredPerimeter, 1.0, String::new()),
+        shape_index: parameter(
+            What::PreferredPerimeter,
+            &result.parameters.preferred_perimeter,
+            String::new(),
+        ),
     }
 }
 
@@ -88,7 +91,7 @@ pub(crate) fn given(constraints: &Constraints) -> GivenConstraints {
 }
 
 /// The nudges.
-pub(crate) fn nudge(prepared: &Prepared, result: &Inference) -> Nudge {
+pub(crate) fn nudge(prepared: &Problem, result: &Inference) -> Nudge {
     let scale = &prepared.scale;
     let effects = result.coefficients.len().saturating_sub(COEFFICIENTS.len());
     let fitted = (result.directions.len() + effects) as f64;
@@ -120,7 +123,7 @@ pub(crate) fn identifiability(result: &Inference) -> Vec<EigenDirection> {
 }
 
 /// Course of a fit.
-pub(crate) fn fit(prepared: &Prepared, result: &Inference, profiles: &[Profile]) -> Fit {
+pub(crate) fn fit(prepared: &Problem, result: &Inference, profiles: &[Profile]) -> Fit {
     let doubts = words::doubts(result, profiles, prepared.request.method);
     let [tried, made] = result.transitions;
     Fit {
@@ -147,7 +150,7 @@ pub(crate) fn fit(prepared: &Prepared, result: &Inference, profiles: &[Profile])
 }
 
 /// Which velocities were used, and why others were not.
-pub(crate) fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts {
+pub(crate) fn cell_counts(prepared: &Problem, result: &Inference) -> CellCounts {
     let mut left_out = BTreeMap::new();
     for observation in &prepared.observations {
         for datum in 0..observation.velocities.values().len() {
@@ -162,14 +165,14 @@ pub(crate) fn cell_counts(prepared: &Prepared, result: &Inference) -> CellCounts
 }
 
 /// What was seen of the tissue.
-pub(crate) fn measurement(data: &DataSet, prepared: &Prepared) -> Measurement {
+pub(crate) fn measurement(stated: Stated, data: &DataSet, prepared: &Problem) -> Measurement {
     let judged = prepared.observations.iter().flat_map(|observation| {
         let seen = |(cell, own): (usize, _)| observation.is_seen(cell).then_some(own);
         observation.visibility.iter().enumerate().filter_map(seen)
     });
     let count = |class: Certainty| judged.clone().filter(|own| own.certainty() == class).count();
     let view = |first: &Observation| SeenRegion {
-        source: prepared.region_source,
+        source: stated.region,
         corners: data.field_of_view.as_ref().map(|area| area.corners_in_file(data.y_axis)),
         margin: first.field_of_view.margin_for(1.0) * prepared.scale.length,
     };
@@ -178,7 +181,7 @@ pub(crate) fn measurement(data: &DataSet, prepared: &Prepared) -> Measurement {
         certain: count(Certainty::Certain),
         uncertain: count(Certainty::Uncertain),
         outside: count(Certainty::Outside),
-        latent: prepared.latent_cells(),
+        latent: super::latent::found(prepared),
         tracks: None,
         positions: super::measurement::positions(prepared),
         window: super::measurement::window(prepared),

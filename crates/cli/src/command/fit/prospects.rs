@@ -1,8 +1,8 @@
 //! What to measure next, computed: what a fit would know with other measurements.
 
-use super::prepare::Prepared;
-use super::scaling::{factor, symbol, unit};
+use super::units::{symbol, unit};
 use std::collections::BTreeMap;
+use voronudge::problem::Problem;
 use voronudge_infer::{Ambiguity, Inference, Prospects, Quantity};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{AmbiguityReport, DESIGNS, ProspectOf, ProspectsReport};
@@ -35,7 +35,7 @@ struct Uncertain {
 
 /// What would be known of the parameters and of effects, whose coefficients come in the order of the prospects.
 pub(crate) fn report(
-    prepared: &Prepared,
+    prepared: &Problem,
     result: &Inference,
     prospects: &Prospects,
     effects: &[Coefficient],
@@ -54,7 +54,7 @@ pub(crate) fn report(
         if estimate.standard_error == 0.0 || shares.is_empty() {
             continue;
         }
-        let in_units = factor(scale, quantity);
+        let in_units = scale.factor(quantity);
         let (name, unit) = (quantity.name().to_owned(), unit(quantity, units));
         // Ratios follow from the others; what is small beside K_P does little, however large its error beside itself.
         let own = estimate.value.abs();

@@ -1,8 +1,7 @@
 //! What single cells have of their own, as arrays and figures.
 
-use super::Prepared;
 use crate::failure::Failure;
-use crate::snapshot::to_scalars;
+use voronudge::problem::Problem;
 use voronudge_geometry::Vector;
 use voronudge_infer::{Inference, Spread};
 use voronudge_io::{DataSet, OutputDirectory};
@@ -10,7 +9,7 @@ use voronudge_model::CellParameter;
 use voronudge_report::SpreadView;
 
 /// The deviations of the cells of the frames drawn whose velocities are explained, in parameters in which they are not estimated to be alike.
-pub(crate) fn views(prepared: &Prepared, result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
+pub(crate) fn views(prepared: &Problem, result: &Inference, drawn: &[usize]) -> Vec<SpreadView> {
     // Of other cells nothing is known but the mean.
     let of_frame = |spread: &Spread, index: usize| {
         let mut own = vec![f64::NAN; spread.deviations[index].len()];
@@ -30,7 +29,7 @@ pub(crate) fn write(
     out: &mut OutputDirectory,
     prefix: &str,
     data: &DataSet,
-    prepared: &Prepared,
+    prepared: &Problem,
     result: &Inference,
 ) -> Result<(), Failure> {
     for spread in &result.spreads {
@@ -44,7 +43,7 @@ pub(crate) fn write(
                 prepared.snapshots.iter().zip(&all).map(|(snapshot, own)| (snapshot, own.as_slice()));
             out.write_array(
                 &format!("{prefix}{name}_{}.npy", spread.parameter.name()),
-                to_scalars(data, frames).view(),
+                data.scalars_as_given(frames).view(),
             )?;
         }
     }

@@ -1,7 +1,7 @@
 //! Frames to be drawn.
 
-use super::prepare::Prepared;
 use crate::command::drawing::borders;
+use voronudge::problem::Problem;
 use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
 use voronudge_infer::Inference;
 use voronudge_report::figure::FlowMap;
@@ -11,14 +11,14 @@ use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, Segment};
 const DRAWN: usize = 3;
 
 /// Places of the frames to be drawn in the list of all.
-pub(crate) fn drawn(prepared: &Prepared) -> Vec<usize> {
+pub(crate) fn drawn(prepared: &Problem) -> Vec<usize> {
     let count = prepared.frames.len();
     if count <= DRAWN { (0..count).collect() } else { vec![0, count / 2, count - 1] }
 }
 
 /// Velocities of one frame on their grid, if they are on one.
 pub(crate) fn flow_map<'f>(
-    prepared: &Prepared,
+    prepared: &Problem,
     result: &Inference,
     index: usize,
     frame: &'f FrameView,
@@ -48,7 +48,7 @@ pub(crate) fn flow_map<'f>(
 }
 
 /// The cells of one frame.
-pub(crate) fn frame_view(prepared: &Prepared, result: &Inference, index: usize) -> FrameView {
+pub(crate) fn frame_view(prepared: &Problem, result: &Inference, index: usize) -> FrameView {
     let (observation, frame) = (&prepared.observations[index], &result.frames[index]);
     let scale = &prepared.scale;
     let wrapped = |r: Vector<f64>| observation.tessellation.domain().wrap(r);

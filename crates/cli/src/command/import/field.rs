@@ -3,14 +3,14 @@
 use super::ImageArguments;
 use crate::Answer;
 use crate::arguments::CommonArguments;
+use crate::boundary::domain;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::{Snapshot, domain, field_of_view, y_sign};
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Edge, Tessellation};
-use voronudge_io::{FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field};
+use voronudge_io::{FieldImport, FieldLinking, FieldOptions, Snapshot, WantedExtrema, import_field};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
@@ -143,10 +143,10 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
     let snapshot = Snapshot::new(data, 0);
     let tessellation = Tessellation::new(&snapshot.positions, domain(data)?)
         .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(file.display()))?;
-    let view = field_of_view(data)?.judge(&tessellation, &snapshot.positions);
+    let view = data.view()?.judge(&tessellation, &snapshot.positions);
     let mut frame =
         cells_view("frame 0".into(), &tessellation, &snapshot.positions, |cell| view.counts(cell));
-    let up = y_sign(data);
+    let up = data.y_sign();
     let values: Vec<f64> = import.first.iter().copied().collect();
     let height = report.size[1] as f64 * import.pixel_size;
     if let (Some(_), true) = (frame.outline, up < 0.0) {

@@ -5,13 +5,12 @@ use crate::Answer;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
 use crate::run::Run;
-use crate::snapshot::Snapshot;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 use voronudge_geometry::{
     Domain, FieldOfView, MeasuredShape, Seen, Tessellation, agreement, areas, comparable, perimeters,
 };
-use voronudge_io::{OutputDirectory, PositionsAre, ShapeImport};
+use voronudge_io::{OutputDirectory, PositionsAre, ShapeImport, Snapshot};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};

@@ -1,7 +1,8 @@
 //! Cells that crawl: what a fit says of their polarity.
 
-use crate::command::fit::{Prepared, PreparedTracks, outcome};
+use crate::command::fit::outcome;
 use crate::failure::Failure;
+use voronudge::problem::{Problem, Tracks};
 use voronudge_infer::{Drive, Inference, Polarity, Quantity, Tracked};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{ActivityReport, Parameter};
@@ -10,7 +11,7 @@ use voronudge_report::infer_report::{ActivityReport, Parameter};
 const FEWEST_FRAMES: usize = 3;
 
 /// Refuses data in which no polarity could show.
-pub(super) fn check(movie: Option<&PreparedTracks>) -> Result<(), Failure> {
+pub(super) fn check(movie: Option<&Tracks>) -> Result<(), Failure> {
     let problem = match movie.map(|tracks| tracks.movie.frames()) {
         None => "--active is for tracks, and velocities are given or derived".to_owned(),
         Some(frames) if frames < FEWEST_FRAMES => {
@@ -34,7 +35,7 @@ pub(super) fn caution(result: &Inference, tracked: &Tracked) -> Option<&'static 
 }
 
 /// The polarity of the cells, in the units of the data.
-pub(super) fn report(data: &DataSet, prepared: &Prepared, tracked: &Tracked) -> Option<ActivityReport> {
+pub(super) fn report(data: &DataSet, prepared: &Problem, tracked: &Tracked) -> Option<ActivityReport> {
     let Polarity { speed, speed_interval, rate, rate_interval, correlation, alignment, .. } =
         tracked.polarity.as_ref()?;
     let [inhibited, along] =

@@ -1,7 +1,7 @@
 //! Profiles, landscapes and the bootstrap in the units of the data, for the report and for figures.
 
 use super::questions::Answers;
-use crate::command::fit::scaling::{factor, symbol, unit};
+use crate::command::fit::units::{symbol, unit};
 use std::collections::BTreeMap;
 use voronudge_infer::{Bootstrap, Inference, Landscape, Profile, Quantity, Scale};
 use voronudge_report::figure::{self, BootstrapHistogram, LandscapeAxis, ProfileCurve};
@@ -13,7 +13,7 @@ const CONTOURS: [(f64, &str); 2] = [(2.30, "68 %"), (5.99, "95 %")];
 
 /// A profile for the report.
 pub(super) fn profile(profile: &Profile, scale: &Scale) -> ProfileResult {
-    let factor = factor(scale, profile.quantity);
+    let factor = scale.factor(profile.quantity);
     ProfileResult {
         parameter: profile.quantity.name().into(),
         values: profile.points.iter().map(|point| point.0 * factor).collect(),
@@ -35,7 +35,7 @@ pub(super) fn landscape(landscape: &Landscape, scale: &Scale) -> LandscapeResult
 
 fn values(landscape: &Landscape, scale: &Scale) -> [Vec<f64>; 2] {
     [0, 1].map(|axis| {
-        let factor = factor(scale, landscape.quantities[axis]);
+        let factor = scale.factor(landscape.quantities[axis]);
         landscape.values[axis].iter().map(|value| value * factor).collect()
     })
 }
@@ -52,10 +52,10 @@ pub(super) fn bootstrap(bootstrap: &Bootstrap, result: &Inference, scale: &Scale
         replicates: bootstrap.replicates.len(),
         failed: bootstrap.failed,
         intervals: free(result)
-            .map(|q| (named(q), bootstrap.interval(q).map(|ends| ends.map(|end| end * factor(scale, q)))))
+            .map(|q| (named(q), bootstrap.interval(q).map(|ends| ends.map(|end| end * scale.factor(q)))))
             .collect(),
         standard_deviations: free(result)
-            .map(|q| (named(q), standard_deviation(&bootstrap.values(q)) * factor(scale, q)))
+            .map(|q| (named(q), standard_deviation(&bootstrap.values(q)) * scale.factor(q)))
             .collect::<BTreeMap<_, _>>(),
     }
 }
@@ -68,8 +68,8 @@ fn standard_deviation(values: &[f64]) -> f64 {
 
 /// The answers as figures show them.
 pub(super) fn figures(answers: &Answers, result: &Inference, scale: &Scale, units: &Units) -> Uncertainty {
-    let best = |quantity: Quantity| result.parameters.get(quantity).value * factor(scale, quantity);
-    let error = |quantity: Quantity| result.parameters.get(quantity).standard_error * factor(scale, quantity);
+    let best = |quantity: Quantity| result.parameters.get(quantity).value * scale.factor(quantity);
+    let error = |quantity: Quantity| result.parameters.get(quantity).standard_error * scale.factor(quantity);
     let curve = |of: &Profile| {
         let told = profile(of, scale);
         ProfileCurve {
@@ -102,7 +102,7 @@ pub(super) fn figures(answers: &Answers, result: &Inference, scale: &Scale, unit
         })
     };
     let histogram = |bootstrap: &Bootstrap, quantity: Quantity| {
-        let factor = factor(scale, quantity);
+        let factor = scale.factor(quantity);
         BootstrapHistogram {
             parameter: symbol(quantity).into(),
             unit: unit(quantity, units),

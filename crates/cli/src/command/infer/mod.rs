@@ -10,8 +10,9 @@ mod spreads;
 mod summary;
 mod verdict;
 
+use super::fit::measured::{frames, measured};
 use super::fit::{
-    ConstraintArguments, Measured, PreparedTracks, Question, SnapshotArguments, arrays, browser, latent,
+    ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, latent, measurement, place, tracks,
     words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
@@ -23,7 +24,8 @@ use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
-use voronudge_infer::{Activity, Drives, infer, infer_tracks, prospects};
+use voronudge::problem::Measured;
+use voronudge_infer::{Activity, Drives, prospects};
 use voronudge_io::Difference;
 use voronudge_model::CellParameter;
 
@@ -119,56 +121,49 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
     let data = arguments.snapshots.data.load()?;
     let mut out = arguments.common.output(&data.inputs)?;
-    let velocities = Measured::of_tracks(&arguments.snapshots, &data, arguments.difference)?;
+    let velocities = measured(&arguments.snapshots, &data, arguments.difference)?;
     if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
         run.warn(format!(
             "velocities are {difference} differences, which share the error of the position they start or end at: it acts \
              as a spurious force; central differences do not"
         ));
     }
-    let frames = velocities.frames(&arguments.snapshots, &data)?;
-    let seed = arguments.common.seed;
-    let question =
-        Question { arguments: &arguments.snapshots, data: &data, constraints, method, seed, scale: None };
-    let (mut prepared, mut movie) = match velocities {
-        Measured::Tracks(_) => {
-            arguments.check_tracks()?;
-            let (prepared, movie) = PreparedTracks::new(question, velocities, frames, &mut run)?;
-            (prepared, Some(movie))
-        }
-        _ => (question.prepare(velocities, frames, &mut run)?, None),
+    let frames = frames(&velocities, &arguments.snapshots, &data)?;
+    if matches!(velocities, Measured::Tracks(_)) {
+        arguments.check_tracks()?;
+    }
+    let inquiry = Inquiry {
+        arguments: &arguments.snapshots,
+        data: &data,
+        constraints,
+        method,
+        seed: arguments.common.seed,
+        detections: arguments.latent.detections(),
+        scale: None,
     };
+    let mut prepared = inquiry.prepare(velocities, frames, &mut run)?;
     let drives = Drives {
         contact_inhibition: arguments.contact_inhibition,
         velocity_alignment: arguments.velocity_alignment,
     };
     if arguments.active || arguments.align || drives.any() {
-        activity::check(movie.as_ref())?;
+        activity::check(prepared.tracks.as_ref())?;
         prepared.request.drives = drives;
         prepared.request.activity = if arguments.align { Activity::Alignment } else { Activity::Polarity };
     }
-    spreads::check(&arguments.vary, &prepared, movie.is_some(), arguments.uncertainty.is_asked())?;
+    spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
-    let understood = arguments.latent.understand(movie.as_mut(), &mut prepared, &mut progress);
-    prepared.caution(&mut run);
-    let fitted = understood.and_then(|()| {
-        let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
-        match &movie {
-            Some(tracks) => infer_tracks(&tracks.movie, &prepared.request, &mut observe)
-                .map(|(result, tracked)| (result, Some((tracks, tracked)))),
-            None => {
-                infer(&prepared.observations, &prepared.request, &mut observe).map(|result| (result, None))
-            }
-        }
-    });
+    let understood = prepared.understand(&mut |state| progress.tell(state));
+    measurement::caution(&prepared, &mut run);
+    let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
     let answered = fitted.and_then(|(result, tracked)| {
         let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
         Ok((result, tracked, answers))
     });
     progress.finish();
-    let answered = answered.map_err(|error| prepared.place(error, &arguments.snapshots));
+    let answered = answered.map_err(|error| place(&prepared, error, &arguments.snapshots));
     if kept.is_part() {
         return kept.finish_part(answered.map(|_| ()), (&mut run, out), &progress);
     }
@@ -176,22 +171,29 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     kept.caution(&mut run);
     let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
     doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
-    let caution = tracked.as_ref().and_then(|(_, tracked)| activity::caution(&result, tracked));
+    let caution = tracked.as_ref().and_then(|tracked| activity::caution(&result, tracked));
     caution.into_iter().for_each(|caution| run.warn(caution));
     arrays::write(&mut out, "", &data, &prepared, &result)?;
     super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
-    if let Some((tracks, tracked)) = &tracked {
-        tracks.write(&mut out, "", &data, &prepared, tracked)?;
+    let followed = prepared.tracks.as_ref().zip(tracked.as_ref());
+    if let Some((movie, tracked)) = followed {
+        tracks::write(&mut out, "", &data, (&prepared, movie), tracked)?;
     }
     let foreseen = match &tracked {
-        Some((_, tracked)) => tracked.prospects.clone(),
+        Some(tracked) => tracked.prospects.clone(),
         None => prospects(&prepared.observations, &prepared.request, &result).ok().flatten(),
     };
-    let told = tracked.map(|(tracks, tracked)| {
-        (tracks.report(&prepared, &result, &tracked), activity::report(&data, &prepared, &tracked))
+    let told = followed.map(|(movie, tracked)| {
+        (tracks::report(&prepared, movie, &result, tracked), activity::report(&data, &prepared, tracked))
     });
-    let report = report::report((&run, &data), &prepared, &result, (&answers, foreseen.as_ref()), told);
+    let report = report::report(
+        (&run, &data, arguments.snapshots.stated(&data)),
+        &prepared,
+        &result,
+        (&answers, foreseen.as_ref()),
+        told,
+    );
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;

@@ -3,9 +3,10 @@
 use super::Arguments;
 use super::answers;
 use super::questions::Answers;
-use crate::command::fit::scaling::symbol;
-use crate::command::fit::{Measured, Prepared, spreads, views};
+use crate::command::fit::units::symbol;
+use crate::command::fit::{spreads, views};
 use crate::failure::Failure;
+use voronudge::problem::{Measured, Problem};
 use voronudge_geometry::Domain;
 use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
@@ -17,7 +18,7 @@ use voronudge_report::{FrameView, InferPage};
 pub(super) fn page(
     arguments: &Arguments,
     data: &DataSet,
-    prepared: &Prepared,
+    prepared: &Problem,
     result: &Inference,
     report: &InferReport,
     answers: &Answers,
@@ -42,7 +43,7 @@ pub(super) fn page(
     Ok(page.render()?)
 }
 
-fn paragraphs(data: &DataSet, prepared: &Prepared, report: &InferReport) -> Vec<String> {
+fn paragraphs(data: &DataSet, prepared: &Problem, report: &InferReport) -> Vec<String> {
     let source = match &prepared.velocities {
         Measured::Given(_) => "Velocities were given".to_owned(),
         Measured::Tracks(_) => format!(

@@ -1,11 +1,12 @@
 //! What is asked beyond the fit: profiles, landscapes, the bootstrap.
 
 use crate::arguments::Shard;
-use crate::command::fit::{Prepared, quantity};
+use crate::command::fit::quantity;
 use crate::command::replicates::Kept;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use clap::Args;
+use voronudge::problem::Problem;
 use voronudge_infer::{
     Bootstrap, CoefficientSpace, Constraints, Error, Inference, Landscape, Profile, Quantity, bootstrap,
     landscape, profile,
@@ -105,7 +106,7 @@ impl UncertaintyArguments {
     /// Asks a finished fit.
     pub fn ask(
         &self,
-        prepared: &Prepared,
+        prepared: &Problem,
         result: &Inference,
         kept: &mut Kept,
         progress: &mut Progress,

@@ -3,9 +3,10 @@
 use super::questions::Answers;
 use super::verdict::verdict;
 use super::{answers, spreads};
-use crate::command::fit::scaling::factor;
-use crate::command::fit::{OrderedField, Prepared, implied, outcome, prospects};
+use crate::command::fit::flow::described;
+use crate::command::fit::{Stated, implied, outcome, prospects};
 use crate::run::Run;
+use voronudge::problem::Problem;
 use voronudge_infer::{Inference, NoiseSource, Prospects, Quantity as What};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{
@@ -13,8 +14,8 @@ use voronudge_report::infer_report::{
 };
 
 pub(super) fn report(
-    (run, data): (&Run, &DataSet),
-    prepared: &Prepared,
+    (run, data, stated): (&Run, &DataSet, Stated),
+    prepared: &Problem,
     result: &Inference,
     (answers, foreseen): (&Answers, Option<&Prospects>),
     tracks: Option<(TracksReport, Option<ActivityReport>)>,
@@ -34,24 +35,24 @@ pub(super) fn report(
         verdict,
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
         cells: outcome::cell_counts(prepared, result),
-        measurement: Measurement { tracks, ..outcome::measurement(data, prepared) },
-        flow: prepared.velocities.flow().map(OrderedField::described),
+        measurement: Measurement { tracks, ..outcome::measurement(stated, data, prepared) },
+        flow: prepared.velocities.flow().map(described),
         constraints: outcome::given(&prepared.constraints),
         parameters,
         activity,
         spreads: spreads::report(result),
         implied_moduli: implied::implied(prepared, result, &units),
         naive: NaiveParameters {
-            K_A: naive.area_elasticity * factor(scale, What::AreaElasticity),
-            K_P: naive.perimeter_elasticity * factor(scale, What::PerimeterElasticity),
-            P_0: naive.preferred_perimeter * factor(scale, What::PreferredPerimeter),
-            alpha: naive.chirality * factor(scale, What::Chirality),
-            K_P_alpha: naive.perimeter_elasticity * naive.chirality * factor(scale, What::ChiralCoefficient),
+            K_A: naive.area_elasticity * scale.factor(What::AreaElasticity),
+            K_P: naive.perimeter_elasticity * scale.factor(What::PerimeterElasticity),
+            P_0: naive.preferred_perimeter * scale.factor(What::PreferredPerimeter),
+            alpha: naive.chirality * scale.factor(What::Chirality),
+            K_P_alpha: naive.perimeter_elasticity * naive.chirality * scale.factor(What::ChiralCoefficient),
             shape_index: naive.preferred_perimeter,
         },
         units,
         nmse,
-        noise: outcome::noise(prepared, result),
+        noise: outcome::noise(stated, prepared, result),
         nudge: outcome::nudge(prepared, result),
         identifiability: outcome::identifiability(result),
         profiles: answers.profiles.iter().map(|profile| answers::profile(profile, scale)).collect(),
@@ -61,7 +62,7 @@ pub(super) fn report(
     }
 }
 
-fn nmse(prepared: &Prepared, result: &Inference) -> Nmse {
+fn nmse(prepared: &Problem, result: &Inference) -> Nmse {
     Nmse {
         naive: result.nmse.naive,
         nudged: result.nmse.nudged,
@@ -73,7 +74,7 @@ fn nmse(prepared: &Prepared, result: &Inference) -> Nmse {
         },
         cross_validated: result.nmse.cross_validated.map(|c| c[0]),
         cross_validated_standard_error: result.nmse.cross_validated.map(|c| c[1]),
-        mean_removed: prepared.mean_removed,
+        mean_removed: outcome::mean_removed(prepared),
         background: prepared.background,
     }
 }

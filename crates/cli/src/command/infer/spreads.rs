@@ -1,8 +1,8 @@
 //! Cells that differ: what a fit says of them.
 
-use crate::command::fit::Prepared;
 use crate::command::fit::spreads::symbol;
 use crate::failure::Failure;
+use voronudge::problem::Problem;
 use voronudge_infer::{Inference, Method, Spread};
 use voronudge_model::CellParameter;
 use voronudge_report::infer_report::SpreadReport;
@@ -20,19 +20,14 @@ pub(super) fn parameter(name: &str) -> Result<CellParameter, String> {
 }
 
 /// Refuses data and requests that do not go with cells that differ.
-pub(super) fn check(
-    vary: &[CellParameter],
-    prepared: &Prepared,
-    tracks: bool,
-    asked: bool,
-) -> Result<(), Failure> {
+pub(super) fn check(vary: &[CellParameter], prepared: &Problem, asked: bool) -> Result<(), Failure> {
     if vary.is_empty() {
         return Ok(());
     }
     let twice = (1..vary.len()).find(|k| vary[..*k].contains(&vary[*k]));
     let problem = match twice {
         Some(k) => format!("--vary has {} twice", vary[k].name()),
-        None if tracks || prepared.velocities.flow().is_some() => {
+        None if prepared.tracks.is_some() || prepared.velocities.flow().is_some() => {
             "--vary is for velocities of cells, not for tracks or a flow field".into()
         }
         None if asked => "--vary does not go with --profile, --landscape or --bootstrap".into(),

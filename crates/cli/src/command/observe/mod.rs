@@ -5,11 +5,11 @@ mod report;
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments};
+use crate::boundary::domain_at;
 use crate::command::fit::{MeanToRemove, check_largest_area};
 use crate::failure::Failure;
 use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
 use crate::run::Run;
-use crate::snapshot::{domain_at, field_of_view};
 use clap::Args;
 use ndarray::{Array2, Array3, Axis};
 use voronudge_geometry::{Domain, FieldOfView, Vector};
@@ -100,7 +100,7 @@ impl Arguments {
             }
             other => Failure::from(other).at(place),
         };
-        let view = FieldOfView { largest_area: self.largest_area, ..field_of_view(data)? };
+        let view = FieldOfView { largest_area: self.largest_area, ..data.view()? };
         let times: Vec<f64> = frames.iter().map(|frame| *frame as f64 * data.frame_interval).collect();
         let domains =
             frames.iter().map(|frame| domain_at(data, *frame)).collect::<Result<Vec<Domain>, Failure>>()?;

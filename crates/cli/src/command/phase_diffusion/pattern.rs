@@ -1,7 +1,6 @@
 //! From tracks to displacements.
 
 use crate::failure::Failure;
-use crate::snapshot::y_sign;
 use std::path::Path;
 use voronudge_geometry::{PeriodicBox, Vector};
 use voronudge_infer::phase_diffusion::Pattern;
@@ -75,6 +74,6 @@ fn places(data: &DataSet, path: &Path) -> Result<Vec<Vector<f64>>, Failure> {
         ))
         .with_hint("give one place for each entry of the axis of cells, NaN where it is not known"));
     }
-    let up = y_sign(data);
+    let up = data.y_sign();
     Ok((0..cells).map(|cell| Vector::new(read[(0, cell, 0)], up * read[(0, cell, 1)])).collect())
 }

@@ -1,13 +1,13 @@
 //! Where the cells begin.
 
+use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
-use crate::snapshot::{Snapshot, domain_at};
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_io::Source;
+use voronudge_io::{Snapshot, Source};
 use voronudge_simulate::{RandomPlacement, generator, honeycomb, sort_in_space};
 
 /// Where to begin.

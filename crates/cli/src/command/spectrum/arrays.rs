@@ -2,7 +2,6 @@
 
 use super::frame::Solved;
 use crate::failure::Failure;
-use crate::snapshot::{as_given, y_sign};
 use ndarray::{Array2, Array3, Array4};
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_spectrum::Mode;
@@ -59,14 +58,14 @@ fn shaped<D: ndarray::RemoveAxis>(
     if solved.len() == 1 {
         array.index_axis_move(ndarray::Axis(0), 0).into_dyn()
     } else {
-        as_given(data, array)
+        data.as_given(array)
     }
 }
 
 /// Displacements (modes, N, 2, 2); zero for cells that are held, NaN for absent ones.
 fn vectors(data: &DataSet, solved: &Solved) -> Array4<f64> {
     let count = solved.modes.modes.len();
-    let flip = y_sign(data);
+    let flip = data.y_sign();
     let mut array = Array4::from_elem((count, data.cells(), 2, 2), f64::NAN);
     for mode in 0..count {
         for &cell in &solved.snapshot.cells {

@@ -3,13 +3,13 @@
 use super::request::ModeRequest;
 use super::search::compute;
 use crate::arguments::{ChosenEffects, environment};
+use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_CELL_WITH_MODES, refuse_beyond};
 use crate::progress::Progress;
-use crate::snapshot::{Snapshot, domain_at, field_of_view, labels};
 use std::sync::Arc;
 use voronudge_geometry::{Certificate, Tessellation};
-use voronudge_io::DataSet;
+use voronudge_io::{DataSet, Snapshot};
 use voronudge_model::{Model, Parameters, velocities};
 use voronudge_spectrum::{LinearProblem, Modes, Scope, Selection, TransitionDistance, dense_memory};
 
@@ -44,12 +44,12 @@ impl Solved {
         let positions = &snapshot.positions;
         let tessellation =
             Tessellation::new(positions, domain).map_err(|error| snapshot.in_file_numbers(error))?;
-        let view = field_of_view(data)?.judge(&tessellation, positions);
+        let view = data.view()?.judge(&tessellation, positions);
         if (0..positions.len()).all(|cell| !view.counts(cell)) {
             return Err(voronudge_spectrum::Error::NoCells.into());
         }
         let mut surroundings = environment(&tessellation, positions, &view)?;
-        if let Some(labels) = labels(data, &snapshot, frame) {
+        if let Some(labels) = data.labels_of(&snapshot, frame) {
             surroundings =
                 surroundings.with_labels(labels).map_err(|error| Failure::new(error.to_string()))?;
         }

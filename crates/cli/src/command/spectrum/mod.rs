@@ -11,10 +11,10 @@ mod view;
 
 use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
+use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use crate::run::Run;
-use crate::snapshot::domain_at;
 use clap::Args;
 use frame::Solved;
 use lattice::Lattice;
