@@ -23,7 +23,7 @@ pub struct Snapshot {
 }
 
 impl Snapshot {
-    /// The cells of a frame of a data set.
+    /// The cells of a frame, below [`DataSet::frames`], of a data set.
     ///
     /// ```
     /// use ndarray::array;

@@ -29,9 +29,17 @@ pub enum Error {
     /// No velocities, and no tracks to derive them from.
     #[error("there is one frame and no velocities: nothing tells how cells move")]
     NothingTellsMotion,
-    /// Fewer frames than are fitted together.
+    /// No frames.
     #[error("there is no frame")]
     NoFrame,
+    /// A frame behind the last one.
+    #[error("frame {frame} does not exist, the data set has {frames} frames")]
+    NoSuchFrame {
+        /// The frame asked for.
+        frame: usize,
+        /// Number of frames.
+        frames: usize,
+    },
 }
 
 impl Error {
@@ -47,6 +55,7 @@ impl Error {
                 "give velocities, a flow field, or the positions of the same cells in two frames or more"
                     .into(),
             ),
+            Self::NoSuchFrame { .. } => Some("frames count from zero".into()),
             Self::NoFrame => None,
         }
     }

@@ -90,7 +90,7 @@ impl Problem {
     /// What a question asks of a data set: the velocities that there are, or the tracks, in the frames asked for.
     ///
     /// # Errors
-    /// [`Error`] if the data lack velocities and tracks, a frame cannot be tessellated, or no cell counts or moves.
+    /// [`Error`] if the data lack velocities and tracks, a frame does not exist or cannot be tessellated, or no cell counts or moves.
     pub fn new(data: &DataSet, question: &Question) -> Result<Self, Error> {
         let velocities = Measured::of(data, question.difference)?;
         let frames = question.frames.clone().unwrap_or_else(|| velocities.frames());
@@ -107,6 +107,9 @@ impl Problem {
         mut velocities: Measured,
         frames: Vec<usize>,
     ) -> Result<Self, Error> {
+        if let Some(&frame) = frames.iter().find(|frame| **frame >= data.frames()) {
+            return Err(Error::NoSuchFrame { frame, frames: data.frames() });
+        }
         let jumps = match &velocities {
             Measured::Tracks(_) => jumps(data, &frames)?,
             _ => Vec::new(),
@@ -252,5 +255,33 @@ impl Problem {
                 .map(|(result, tracked)| (result, Some(tracked))),
             None => infer(&self.observations, &self.request, observe).map(|result| (result, None)),
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use ndarray::Array3;
+    use voronudge_io::Boundary;
+
+    #[test]
+    fn what_is_not_there_is_refused() {
+        let data = |frames| {
+            let place = |(frame, cell, axis): (usize, usize, usize)| {
+                let (row, column) = (cell / 6, cell % 6);
+                let place = [column, row][axis] as f64;
+                place + 0.3 * ((1 + cell + 7 * axis + 3 * frame) as f64).sin()
+            };
+            DataSet::new(
+                Array3::from_shape_fn((frames, 36, 2), place),
+                Boundary::Periodic { lengths: [6.0; 2] },
+            )
+        };
+        let refusal = |frames, question: &Question| Problem::new(&data(frames), question).err();
+        let usual = Question::default();
+        assert!(matches!(refusal(1, &usual), Some(Error::NothingTellsMotion)));
+        assert!(refusal(2, &usual).is_none());
+        let beyond = Question { frames: Some(vec![0, 2]), ..Question::default() };
+        assert!(matches!(refusal(2, &beyond), Some(Error::NoSuchFrame { frame: 2, frames: 2 })));
     }
 }
