@@ -5,16 +5,20 @@ use crate::refusal::assert_told;
 use crate::scratch::{Folder, report};
 use serde_json::Value;
 use sha2::Digest;
+use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::fs;
 use std::path::Path;
 use std::process::{Command, Stdio};
+use std::sync::LazyLock;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
 const SEARCH: &str = "discover --effects drift --null-sets 6 --level 0.3";
 const BOOTSTRAP: &str = "infer --fix K_A=0.1 --fix P_0=4 --max-steps 2 --position-noise 0.5% --velocity-noise 5% \
                          --bootstrap 40";
+const SEARCH_DATA: &str = "undeclared/set-05";
+const BOOTSTRAP_DATA: &str = "chiral-liquid";
 
 fn words(line: &str, data: &Path, out: &Path) -> Vec<OsString> {
     let words = line.split_whitespace().map(OsString::from);
@@ -29,31 +33,54 @@ fn run(line: &str, data: &Path, out: &Path) -> Outcome {
     outcome
 }
 
-/// Asserts that two runs have the same results, but for their records.
-#[track_caller]
-fn assert_same(found: &Path, expected: &Path) {
-    let names = crate::scratch::names(expected);
-    assert_eq!(crate::scratch::names(found), names);
-    for name in names.iter().filter(|name| !name.starts_with("report")) {
-        let bytes = |folder: &Path| fs::read(folder.join(name)).unwrap();
-        assert!(bytes(found) == bytes(expected), "{name}");
-    }
-    let told = |folder: &Path| -> Value {
+/// Results of a run, without what is recorded of the run itself.
+struct Results {
+    /// Files other than the report, by name.
+    files: BTreeMap<String, Vec<u8>>,
+    report: Value,
+    page: String,
+}
+
+impl Results {
+    fn in_folder(folder: &Path) -> Self {
+        let mut files: BTreeMap<String, Vec<u8>> = crate::scratch::names(folder)
+            .into_iter()
+            .map(|name| (name.clone(), fs::read(folder.join(name)).unwrap()))
+            .collect();
+        assert!(files.remove("report.json").is_some());
         let mut report = report(folder);
         for of_record in ["command_line", "wall_seconds", "threads"] {
             assert!(report.as_object_mut().unwrap().remove(of_record).is_some());
         }
-        report
-    };
-    assert_eq!(told(found), told(expected));
-    let page = |folder: &Path| -> String {
-        let page = fs::read_to_string(folder.join("report.html")).unwrap();
+        let page = String::from_utf8(files.remove("report.html").unwrap()).unwrap();
         let record = ["command line", "wall time", "threads"];
         let lines =
             page.lines().filter(|line| !record.iter().any(|own| line.contains(&format!("<th>{own}</th>"))));
-        lines.collect()
-    };
-    assert!(page(found) == page(expected));
+        Self { files, report, page: lines.collect() }
+    }
+
+    /// Those of a run that nothing cuts off.
+    fn of(line: &str, data: &str) -> Self {
+        let out = Folder::new();
+        run(line, &fixture(data), out.path());
+        Self::in_folder(out.path())
+    }
+}
+
+/// Whole runs, which several tests compare with.
+static SEARCHED: LazyLock<Results> = LazyLock::new(|| Results::of(SEARCH, SEARCH_DATA));
+static BOOTSTRAPPED: LazyLock<Results> = LazyLock::new(|| Results::of(BOOTSTRAP, BOOTSTRAP_DATA));
+
+/// Asserts that a run has these results.
+#[track_caller]
+fn assert_same(found: &Path, expected: &Results) {
+    let found = Results::in_folder(found);
+    assert!(found.files.keys().eq(expected.files.keys()));
+    for (name, bytes) in &found.files {
+        assert!(*bytes == expected.files[name], "{name}");
+    }
+    assert_eq!(found.report, expected.report);
+    assert!(found.page == expected.page);
 }
 
 /// Lines of the journal of an interrupted run.
@@ -79,9 +106,14 @@ fn cut_off(line: &str, data: &Path, out: &Path, signal: &str) -> Outcome {
 }
 
 #[cfg(unix)]
-fn assert_cut_off_and_resumed_is_the_same(line: &str, name: &str, data: &Path, others: &[(&str, &str)]) {
-    let (whole, out) = (Folder::new(), Folder::new());
-    run(line, data, whole.path());
+fn assert_cut_off_and_resumed_is_the_same(
+    line: &str,
+    name: &str,
+    data: &Path,
+    others: &[(&str, &str)],
+    whole: &Results,
+) {
+    let out = Folder::new();
     let told = cut_off(&format!("{line} --threads 2"), data, out.path(), "-TERM");
     assert_eq!((told.code, told.stdout.as_str()), (Some(130), ""), "{told:?}");
     assert!(told.stderr.contains("error: interrupted after ") && told.stderr.contains(name), "{told:?}");
@@ -107,7 +139,7 @@ fn assert_cut_off_and_resumed_is_the_same(line: &str, name: &str, data: &Path, o
     fs::write(&torn, fs::read_to_string(&torn).unwrap() + "{\"series\":0,\"ind").unwrap();
     let outcome = run(&format!("{line} --resume --threads 1"), data, out.path());
     assert_eq!(outcome.stderr, "");
-    assert_same(out.path(), whole.path());
+    assert_same(out.path(), whole);
 }
 
 #[cfg(unix)]
@@ -119,24 +151,24 @@ fn a_search_that_was_cut_off_goes_on_to_the_same_bytes() {
         ("--fix K_A=0.1", "\"--fix\""),
         ("--shard 1/2", "\"--shard\""),
     ];
-    let data = fixture("undeclared/set-05");
-    assert_cut_off_and_resumed_is_the_same(SEARCH, "6 null sets, which are kept", &data, &others);
+    let data = fixture(SEARCH_DATA);
+    assert_cut_off_and_resumed_is_the_same(SEARCH, "6 null sets, which are kept", &data, &others, &SEARCHED);
 }
 
 #[cfg(unix)]
 #[test]
 fn a_bootstrap_that_was_cut_off_goes_on_to_the_same_bytes() {
     let others = [("--seed 4", "\"--seed\""), ("--stable", "\"--stable\"")];
-    let data = fixture("chiral-liquid");
-    assert_cut_off_and_resumed_is_the_same(BOOTSTRAP, "40 replicates, which are kept", &data, &others);
+    let data = fixture(BOOTSTRAP_DATA);
+    let name = "40 replicates, which are kept";
+    assert_cut_off_and_resumed_is_the_same(BOOTSTRAP, name, &data, &others, &BOOTSTRAPPED);
 }
 
 #[cfg(unix)]
 #[test]
 fn a_search_that_was_killed_goes_on_with_what_is_on_the_disk() {
-    let (whole, out) = (Folder::new(), Folder::new());
-    let data = fixture("undeclared/set-05");
-    run(SEARCH, &data, whole.path());
+    let out = Folder::new();
+    let data = fixture(SEARCH_DATA);
     let told = cut_off(SEARCH, &data, out.path(), "-KILL");
     assert_eq!(told.code, None);
     // What was made is not made again: a number that is put into the journal comes out.
@@ -152,17 +184,16 @@ fn a_search_that_was_killed_goes_on_with_what_is_on_the_disk() {
     let sum: String = sum.iter().take(8).map(|byte| format!("{byte:02x}")).collect();
     fs::write(&path, text.replace(last, &format!("{sum} {line}"))).unwrap();
     run(&format!("{SEARCH} --resume"), &data, out.path());
-    let smallest =
-        |folder: &Folder| report(folder.path())["calibration"]["words"].as_str().unwrap().to_owned();
-    assert!(smallest(&out).contains("0.0012"), "{}", smallest(&out));
-    assert!(!smallest(&whole).contains("0.0012"));
+    let smallest = |report: &Value| report["calibration"]["words"].as_str().unwrap().to_owned();
+    let found = smallest(&report(out.path()));
+    assert!(found.contains("0.0012"), "{found}");
+    assert!(!smallest(&SEARCHED.report).contains("0.0012"));
 }
 
 /// Asserts that parts make the whole; returns them.
 #[track_caller]
-fn assert_parts_make_the_whole(line: &str, data: &Path) -> [Folder; 2] {
-    let (whole, merged) = (Folder::new(), Folder::new());
-    run(line, data, whole.path());
+fn assert_parts_make_the_whole(line: &str, data: &Path, whole: &Results) -> [Folder; 2] {
+    let merged = Folder::new();
     let parts = [1, 2].map(|part| {
         let out = Folder::new();
         run(&format!("{line} --shard {part}/2"), data, out.path());
@@ -173,7 +204,7 @@ fn assert_parts_make_the_whole(line: &str, data: &Path) -> [Folder; 2] {
     let out = ["--out".as_ref(), merged.path().as_os_str()];
     let outcome = voronudge(["merge".as_ref(), "--quiet".as_ref(), second, first].into_iter().chain(out));
     assert!(matches!(outcome.code, Some(0 | 1)), "{outcome:?}");
-    assert_same(merged.path(), whole.path());
+    assert_same(merged.path(), whole);
     parts
 }
 
@@ -190,8 +221,8 @@ fn assert_merge_refused(parts: &[&Folder], facts: &[&str]) {
 
 #[test]
 fn parts_of_a_search_make_the_whole() {
-    let data = fixture("undeclared/set-05");
-    let [first, second] = assert_parts_make_the_whole(SEARCH, &data);
+    let data = fixture(SEARCH_DATA);
+    let [first, second] = assert_parts_make_the_whole(SEARCH, &data, &SEARCHED);
     let other = Folder::new();
     run(&format!("{SEARCH} --shard 2/2 --seed 3"), &data, other.path());
     assert_merge_refused(&[&first], &["part 2 of 2 is missing"]);
@@ -223,8 +254,8 @@ fn parts_of_a_search_make_the_whole() {
 
 #[test]
 fn parts_of_a_bootstrap_make_the_whole() {
-    let data = fixture("chiral-liquid");
-    let [first, _] = assert_parts_make_the_whole(BOOTSTRAP, &data);
+    let data = fixture(BOOTSTRAP_DATA);
+    let [first, _] = assert_parts_make_the_whole(BOOTSTRAP, &data, &BOOTSTRAPPED);
     let search = Folder::new();
     run(&format!("{SEARCH} --shard 2/2"), &data, search.path());
     assert_merge_refused(&[&first, &search], &["\"command\""]);

@@ -7,9 +7,6 @@ use std::collections::BTreeSet;
 use std::ffi::OsStr;
 use std::fs;
 
-/// Every so many sets are one test, so that tests run side by side.
-const TESTS: usize = 4;
-
 fn names() -> Vec<String> {
     let folders = fs::read_dir(fixture("undeclared")).unwrap().map(|folder| folder.unwrap());
     let sets = folders.filter(|folder| folder.file_type().unwrap().is_dir());
@@ -76,22 +73,26 @@ fn check(part: usize) {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
-#[test]
-fn the_truth_is_found_in_the_first_part() {
-    check(0);
+/// Every so many sets are one test, so that tests run side by side.
+macro_rules! parts {
+    ($($part:literal $name:ident)*) => {
+        const TESTS: usize = [$($part),*].len();
+        $(
+            #[test]
+            fn $name() {
+                check($part);
+            }
+        )*
+    };
 }
 
-#[test]
-fn the_truth_is_found_in_the_second_part() {
-    check(1);
-}
-
-#[test]
-fn the_truth_is_found_in_the_third_part() {
-    check(2);
-}
-
-#[test]
-fn the_truth_is_found_in_the_fourth_part() {
-    check(3);
+parts! {
+    0 the_truth_is_found_in_the_first_part
+    1 the_truth_is_found_in_the_second_part
+    2 the_truth_is_found_in_the_third_part
+    3 the_truth_is_found_in_the_fourth_part
+    4 the_truth_is_found_in_the_fifth_part
+    5 the_truth_is_found_in_the_sixth_part
+    6 the_truth_is_found_in_the_seventh_part
+    7 the_truth_is_found_in_the_eighth_part
 }
