@@ -7,6 +7,9 @@ use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
 
+/// Share of the diagonal of XᵀX that rounding leaves where data say nothing of a coefficient.
+const ROUNDING: f64 = 1e-9;
+
 /// Distance from a bound, in standard errors, at which it counts as active.
 const ACTIVE: f64 = 1e-6;
 
@@ -172,8 +175,9 @@ impl NormalEquations {
         self.frames.iter().map(Linearisation::order).sum::<usize>() / 2
     }
 
-    /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kHᵀH for nudges and
-    /// of the diagonal of XᵀX for coefficients. Some places may be held harder, each by a damping of its own; none if there are none.
+    /// A damped Gauss–Newton step within the bounds. Damping is in units of the mean diagonal of JᵀJ + kHᵀH for nudges, and for
+    /// coefficients of the diagonal of what nudges that follow them leave of their information. That can be a thousandth of XᵀX: in
+    /// units of this, coefficients crawl along the valley of the nudges. Some places may be held harder, each by a damping of its own; none if there are none.
     pub fn step(&self, damping: f64, held: &[f64]) -> Result<Step, Error> {
         let p = self.free.len();
         self.step_near(damping, held, &DMatrix::zeros(p, p))
@@ -203,12 +207,13 @@ impl NormalEquations {
             .collect::<Result<_, _>>()?;
         let p = self.free.len();
         let (mut schur, mut gradient) = (&self.priors.normal + known, self.priors.gradient.clone());
-        let mut damped = DVector::zeros(p);
+        let mut rounding = DVector::zeros(p);
         for (frame, part) in self.frames.iter().zip(&eliminated) {
             schur += &part.schur;
             gradient += &part.gradient;
-            damped += frame.free_normal().diagonal() * damping;
+            rounding += frame.free_normal().diagonal() * ROUNDING;
         }
+        let damped = schur.diagonal().sup(&rounding) * damping;
         let hessian = &schur + DMatrix::from_diagonal(&damped);
         let free_step = if p == 0 {
             gradient.clone()
