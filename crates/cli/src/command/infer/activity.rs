@@ -29,7 +29,7 @@ pub(super) fn caution(result: &Inference, tracked: &Tracked) -> Option<&'static 
     let shows = tracked.polarity.as_ref()?.rate_interval.is_some();
     let fitted = result.parameters.get(Quantity::PerimeterElasticity).standard_error > 0.0;
     (shows && fitted).then_some(
-        "K_P of cells that crawl comes out too small, and alpha too large: by some 5 % in tissues that flow, by a quarter \
+        "K_P of cells that crawl comes out too small, and alpha too large: by some 5 to 10 % in tissues that flow, by a quarter \
          to a half in solid ones, beyond the interval. Quote K_P_alpha, P_0 and v_0, which suffer less",
     )
 }
