@@ -30,9 +30,9 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     }
     let naive = found.naive.perimeter_elasticity * found.naive.chirality / problem.scale.time;
     println!("K_P alpha without nudges: {naive:.3}");
-    println!(
-        "error of velocities held out {:.3?}, of noise alone {:.3}",
-        found.nmse.cross_validated, found.nmse.noise_floor
-    );
+    if let Some([held_out, error]) = found.nmse.cross_validated {
+        let noise = found.nmse.noise_floor;
+        println!("error of velocities held out {held_out:.3} ± {error:.3}, of noise alone {noise:.3}");
+    }
     Ok(())
 }
