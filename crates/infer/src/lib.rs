@@ -31,6 +31,7 @@ mod least_squares;
 mod levenberg_marquardt;
 mod linearisation;
 mod measurement;
+mod median;
 mod noise;
 mod noisy_fit;
 mod normal_equations;

@@ -5,8 +5,9 @@
 //! `σ² = [Σ_{m ≤ r} x_(m) + (n − r) x_(r)] / r`. Then `2 r σ²` is χ² with 2 r degrees of freedom, and
 //! `P(x' > x) = (1 + x / r σ²)^(−r)`. A cell is an outlier if this times the number of cells is less than 0.05.
 
-use super::pool::{Pool, median};
+use super::pool::Pool;
 use super::{LEVEL, ResidualField};
+use crate::median::median;
 use voronudge_geometry::Vector;
 
 /// Areas of merged cells are more than this many median areas.

@@ -1,6 +1,7 @@
 //! The residuals of one frame, and those of all frames as one list.
 
 use crate::Error;
+use crate::median::median;
 use voronudge_geometry::{Domain, Tessellation, Vector};
 
 /// Edges longer than this many times the median edge do not make neighbours: they bridge holes and bays of the data.
@@ -97,13 +98,6 @@ fn neighbours(tessellation: &Tessellation, places: &[Vector<f64>]) -> Vec<Vec<u3
             near
         })
         .collect()
-}
-
-/// The middle of some finite values, the mean of the two in the middle of an even number. NaN are left out by the caller.
-pub(super) fn median(values: &mut [f64]) -> Option<f64> {
-    values.sort_unstable_by(f64::total_cmp);
-    let count = values.len();
-    (count > 0).then(|| 0.5 * (values[(count - 1) / 2] + values[count / 2]))
 }
 
 /// All frames as one list; each residual in units of its frame's standard.

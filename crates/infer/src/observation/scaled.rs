@@ -2,6 +2,7 @@
 
 use super::{Observation, Velocities};
 use crate::flow::{Flow, Window};
+use crate::median::median;
 use crate::{Error, Scale};
 use voronudge_geometry::{Domain, Grid, PeriodicBox, Vector};
 
@@ -35,17 +36,9 @@ impl Observation {
     /// Removes the median of the velocities to be explained, component by component, from all: drift of the stage shows as one. The median does
     /// not follow a few fast cells.
     pub fn remove_median(&mut self) {
-        let targets: Vec<Vector<f64>> = self.targets().map(|(_, v)| v).collect();
-        if targets.is_empty() {
-            return;
-        }
-        let median = |axis: usize| {
-            let mut values: Vec<f64> = targets.iter().map(|v| v[axis]).collect();
-            values.sort_unstable_by(f64::total_cmp);
-            let middle = values.len() / 2;
-            if values.len() % 2 == 1 { values[middle] } else { 0.5 * (values[middle - 1] + values[middle]) }
-        };
-        let drift = Vector::new(median(0), median(1));
+        let median = |axis: usize| median(&mut self.targets().map(|(_, v)| v[axis]).collect::<Vec<f64>>());
+        let (Some(x), Some(y)) = (median(0), median(1)) else { return };
+        let drift = Vector::new(x, y);
         self.velocities.values_mut().iter_mut().flatten().for_each(|v| *v -= drift);
     }
 }
