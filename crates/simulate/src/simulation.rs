@@ -5,6 +5,7 @@ mod replacement;
 mod state;
 mod step;
 
+pub(crate) use derivatives::slopes;
 pub use derivatives::{Direction, derivatives};
 use state::Stage;
 pub use state::{Bond, State};

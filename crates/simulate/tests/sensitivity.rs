@@ -43,19 +43,6 @@ fn directions() -> [Direction; 3] {
     [parameter("alpha"), parameter("P_0"), Direction::position(17, 1)]
 }
 
-/// The same tissue, a little way along a direction.
-fn beside(tissue: &Simulation, direction: &Direction, way: f64) -> Simulation {
-    let mut model = tissue.model().clone();
-    for (own, slope) in model.terms.iter_mut().zip(&direction.coefficients) {
-        own.coefficient += way * slope;
-    }
-    let mut state = tissue.state().clone();
-    for (cell, displacement) in &direction.displacements {
-        state.positions[*cell] += displacement * way;
-    }
-    tissue.clone().with_model(model).unwrap().in_state(state).unwrap()
-}
-
 type Edges = Vec<(u32, u32, [i16; 2])>;
 
 /// Where the cells are after a run, and the edges at each step.
@@ -80,7 +67,7 @@ fn compare(tissue: &Simulation, steps: usize) -> usize {
         assert!((r - Vector::new(exact.x.re, exact.y.re)).norm() < 1e-11);
     }
     for (k, direction) in directions.iter().enumerate() {
-        let both = |way: f64| [way, -way].map(|way| run(beside(tissue, direction, way), steps));
+        let both = |way: f64| [way, -way].map(|way| run(tissue.beside(direction, way).unwrap(), steps));
         let same = |ends: &[(Vec<Vector<f64>>, Vec<Edges>); 2]| ends.iter().all(|end| end.1 == edges);
         // Near enough for the same transitions at the same steps.
         let (way, [(plus, _), (minus, _)]) =

@@ -13,7 +13,7 @@ use voronudge_io::{FrameSelection, Snapshot};
 use voronudge_model::Model;
 use voronudge_model::gradient_check::{GradientReport, Place, check, check_model, made_up_environment};
 use voronudge_report::infer_report::RunRecord;
-use voronudge_simulate::{RandomPlacement, generator};
+use voronudge_simulate::{RandomPlacement, check_run, generator};
 
 /// Checks derivatives and symmetries of every force term and effect on given or built-in positions.
 ///
@@ -101,6 +101,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             let environment = made_up_environment(&snapshot.positions, domain)?;
             let model = effects.add_to(Model::chiral_voronoi(&parameters), environment, domain)?;
             report.rows.extend(check_model(&snapshot.positions, domain, &model)?.rows);
+        }
+        if matches!(domain, Domain::Periodic(_)) {
+            report.rows.extend(check_run(&snapshot.positions, domain, &parameters)?);
         }
         for row in &mut report.rows {
             renumber(&mut row.place, &snapshot.cells);

@@ -35,6 +35,7 @@ mod reliability;
 mod replicates;
 mod resumption;
 mod scratch;
+mod sensitivities;
 mod shape_imports;
 mod simulations;
 mod spectra;

@@ -104,7 +104,7 @@ fn assert_described(report: &serde_json::Value) {
 #[test]
 fn reports_are_as_the_schema_says() {
     for (time, flags) in [
-        ("--time 2 --frames 4", "--alpha 1 --lyapunov"),
+        ("--time 2 --frames 4", "--alpha 1 --lyapunov --sensitivity alpha,x3"),
         ("--time 1 --frames 1", "--method adaptive --effect drift=0.1,0"),
         ("--time 1 --frames 3", "--self-propulsion 0.3 --rotational-diffusion 1 --diffusion 0.01"),
     ] {

@@ -76,6 +76,9 @@ pub enum Quantity {
     Mirror,
     /// The derivative of the velocities with respect to the parameter of this name, against central differences.
     ParameterDerivative(&'static str),
+    /// The derivative of the positions after a short run by the parameter, or the coordinate at the start, of this name, against central differences
+    /// of runs.
+    RunDerivative(&'static str),
 }
 
 impl Quantity {
@@ -83,7 +86,7 @@ impl Quantity {
     /// where it is exact to rounding.
     pub fn tolerance(self) -> f64 {
         match self {
-            Self::JacobianByDifferences | Self::EnergyByDifferences => 1e-6,
+            Self::JacobianByDifferences | Self::EnergyByDifferences | Self::RunDerivative(_) => 1e-6,
             _ => ROUNDING_TOLERANCE,
         }
     }
@@ -104,6 +107,7 @@ impl fmt::Display for Quantity {
             Self::Wrapping => "periodic wrapping",
             Self::Rotation => "rotation",
             Self::Mirror => "mirror",
+            Self::RunDerivative(name) => return f.pad(&format!("run: ∂r/∂{name} = central differences")),
             Self::ParameterDerivative(name) => return f.pad(&format!("∂v/∂{name} = central differences")),
         };
         f.pad(text)

@@ -64,6 +64,14 @@ pub fn derivatives<const D: usize>(number: &DualSVec64<D>) -> [f64; D] {
     number.eps.0.map_or([0.0; D], |eps| std::array::from_fn(|k| eps[k]))
 }
 
+/// Derivatives of vectors along one direction.
+pub(crate) fn slopes<const D: usize>(
+    vectors: &[Vector<DualSVec64<D>>],
+    direction: usize,
+) -> Vec<Vector<f64>> {
+    vectors.iter().map(|v| v.map(|x| derivatives(&x)[direction])).collect()
+}
+
 impl Simulation {
     /// The same simulation from now on with derivatives along some directions, from which [`derivatives`] are read.
     ///
@@ -141,5 +149,27 @@ impl Simulation {
             speeds: constants(speeds),
         };
         self.carried_over(model, now)
+    }
+
+    /// The same simulation from now on a way along a direction, with the model and from the positions that are there.
+    ///
+    /// # Errors
+    /// [`Error::NoSuchCell`]; [`Error::Tessellation`] as in [`Simulation::new`].
+    pub fn beside(&self, direction: &Direction, way: f64) -> Result<Self, Error> {
+        let mut model = self.model().clone();
+        let terms = model.terms.iter_mut().map(|own| &mut own.coefficient);
+        let responses = model.responses.iter_mut().map(|own| &mut own.coefficient);
+        for (own, slope) in terms.chain(responses).zip(&direction.coefficients) {
+            *own += way * slope;
+        }
+        let mut state = self.state().clone();
+        let cells = state.positions.len();
+        for (cell, displacement) in &direction.displacements {
+            let Some(r) = state.positions.get_mut(*cell) else {
+                return Err(Error::NoSuchCell { cell: *cell, cells });
+            };
+            *r += displacement * way;
+        }
+        self.clone().with_model(model)?.in_state(state)
     }
 }

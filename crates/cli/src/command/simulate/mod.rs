@@ -8,6 +8,7 @@ mod outcome;
 mod page;
 mod recorder;
 mod report;
+mod sensitivity;
 mod start;
 mod surroundings;
 
@@ -23,6 +24,7 @@ use driving::DrivingArguments;
 use outcome::Finished;
 use recorder::{Kept, Recorder};
 use report::Request;
+use sensitivity::Asked;
 pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
 use std::time::{Duration, Instant};
@@ -59,6 +61,9 @@ pub(crate) struct Arguments {
     /// Also measure the largest Lyapunov exponent, over a further run as long as this one: about four times its cost.
     #[arg(long)]
     lyapunov: bool,
+    /// Also differentiate the run: some of K_A, K_P, P_0, alpha, and coordinates of cells at the start, as in `alpha,P_0,y17`.
+    #[arg(long, value_name = "NAMES", value_delimiter = ',')]
+    sensitivity: Vec<String>,
     #[command(flatten)]
     surroundings: SurroundingsArguments,
     /// Go on with the run that was interrupted in --out.
@@ -138,6 +143,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         simulation = simulation.with_walls(walls)?;
     }
     let schedule = Schedule { time: request.time, time_step: request.dt, frames: request.frames };
+    let asked = Asked::of(&arguments.sensitivity, &parameters, &simulation, &schedule)?;
     let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
     if request.method == Method::RungeKutta4 && request.dt > advised {
         run.warn(format!(
@@ -199,21 +205,23 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     debug_assert_eq!(summary.completion, Completion::Finished);
     let seconds = begun.elapsed().as_secs_f64();
+    if measure_chaos == Measure::Chaos || asked.is_some() {
+        // So that an interruption finds the run complete.
+        recorder.checkpoint(&simulation, &last)?;
+    }
     let lyapunov = match measure_chaos {
-        Measure::Chaos => {
-            // So that an interruption finds the run complete.
-            recorder.checkpoint(&simulation, &last)?;
-            Some(chaos::exponent(&simulation, &request, &mut progress)?)
-        }
+        Measure::Chaos => Some(chaos::exponent(&simulation, &request, &mut progress)?),
         Measure::NoChaos => None,
     };
+    let differentiated = asked.map(|asked| asked.differentiate(&schedule, &mut progress)).transpose()?;
     progress.finish();
     let crossings = simulation.state().crossings;
     if crossings > 0 {
         run.warn(format!("cells crossed a wall {crossings} times and were put in front of it"));
     }
     let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
-    let finished = Finished { simulation: &simulation, schedule, summary, lyapunov, steps_per_second };
+    let finished =
+        Finished { simulation: &simulation, schedule, summary, lyapunov, differentiated, steps_per_second };
     let units = Units { length: start.length_unit, time: start.time_unit };
     outcome::finish(&run, recorder, (request, start.cell_box, units), finished)?;
     Ok(Answer::Positive)

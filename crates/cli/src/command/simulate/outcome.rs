@@ -4,6 +4,7 @@ use super::measurements::{Measurements, Spectra};
 use super::page::{cell_box, page};
 use super::recorder::Recorder;
 use super::report::{Displacement, Exponent, Report, Request, Spread, Structure};
+use super::sensitivity::Differentiated;
 use super::surroundings::describe;
 use crate::failure::Failure;
 use crate::run::Run;
@@ -22,6 +23,7 @@ pub(super) struct Finished<'a> {
     pub schedule: Schedule,
     pub summary: Summary,
     pub lyapunov: Option<Exponent>,
+    pub differentiated: Option<Differentiated>,
     pub steps_per_second: f64,
 }
 
@@ -32,7 +34,7 @@ pub(super) fn finish(
     (request, start, units): (Request, PeriodicBox, Units),
     finished: Finished<'_>,
 ) -> Result<(), Failure> {
-    let Finished { simulation, schedule, summary, lyapunov, steps_per_second } = finished;
+    let Finished { simulation, schedule, summary, lyapunov, differentiated, steps_per_second } = finished;
     if summary.mean_square_velocity.is_some_and(|square| !square.is_finite()) {
         return Err(Failure::new("the squares of the velocities are too large to be numbers")
             .with_hint("give parameters in units in which lengths and times of cells are about 1"));
@@ -48,6 +50,9 @@ pub(super) fn finish(
     describe(&mut settings, &request, start, schedule.frame_interval())?;
     settings.save_settings(&mut results)?;
     measurements.write(&mut results)?;
+    if let Some(own) = &differentiated {
+        own.write(&mut results)?;
+    }
     let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
     let cells = request.cells;
     let hexatic = hexatic_among(tessellation, positions, |cell| cell < cells);
@@ -74,12 +79,16 @@ pub(super) fn finish(
             peak: measurements.peak(),
         },
         lyapunov,
+        sensitivity: differentiated.as_ref().map_or_else(Vec::new, Differentiated::in_short),
         steps: summary.steps,
         steps_per_second,
     };
     let json = serde_json::to_string_pretty(&report)?;
     results.write_text("report.json", &json)?;
-    results.write_text("report.html", &page(&report, &measurements, simulation, &units)?)?;
+    results.write_text(
+        "report.html",
+        &page(&report, &measurements, (simulation, differentiated.as_ref()), &units)?,
+    )?;
     let error = |error: Option<f64>| error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
     let mut text = format!(
         "{} cells, {} steps, {:.0} steps per second\nmean square velocity over the second half: {}{}\n",
@@ -92,6 +101,14 @@ pub(super) fn finish(
     if let Some(exponent) = &report.lyapunov {
         text +=
             &format!("largest Lyapunov exponent: {:.3e}{}\n", exponent.value, error(exponent.standard_error));
+    }
+    for own in &report.sensitivity {
+        text += &format!(
+            "derivatives of positions by {}: {:.3e} (root mean square) at the end; {}\n",
+            own.by,
+            own.root_mean_square,
+            own.agreement(report.request.time)
+        );
     }
     text += &format!("written to {}, figures in report.html\n", results.path().display());
     run.finish(Some(results), &json, &text)

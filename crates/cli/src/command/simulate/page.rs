@@ -2,13 +2,14 @@
 
 use super::measurements::Measurements;
 use super::report::{Report, Request};
+use super::sensitivity::Differentiated;
 use crate::command::drawing::cell_view;
 use crate::failure::Failure;
 use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, areas};
 use voronudge_observables::{StructureFactor, shape_indices};
 use voronudge_report::arrows::ArrowScale;
 use voronudge_report::chart::AxisScale;
-use voronudge_report::colour::{BLUE, GREY, VERMILLION};
+use voronudge_report::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use voronudge_report::figure::{
     CellScalar, CurveSeries, ErrorPoint, Landmark, PointSeries, PointsAndCurves, Stroke, configuration_map,
     distribution, points_and_curves,
@@ -18,7 +19,7 @@ use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure};
 use voronudge_report::units::label_with_unit;
 use voronudge_report::{ChangedEdges, FrameView, SimulatePage, Units};
-use voronudge_simulate::Simulation;
+use voronudge_simulate::{Derivatives, Simulation};
 use voronudge_theory::hexagon_perimeter;
 
 /// Cells up to which all are drawn; of more, those in a corner of the box.
@@ -31,16 +32,18 @@ const AT_REST: f64 = 1e-4;
 pub(super) fn page(
     report: &Report,
     measurements: &Measurements,
-    simulation: &Simulation,
+    (simulation, differentiated): (&Simulation, Option<&Differentiated>),
     units: &Units,
 ) -> Result<String, Failure> {
+    let mut in_time = course(report, measurements, units);
+    in_time.extend(differentiated.map(|own| derivatives(own, report.spacing(), units)));
     let page = SimulatePage {
         title: &format!("{} cells", report.request.cells),
         headline: &headline(report, units),
         summary: &paragraphs(report, measurements),
         cards: &cards(report, units),
         configuration: &configuration(simulation, &cell_box(simulation, &report.request)?, units),
-        course: &course(report, measurements, units),
+        course: &in_time,
         structure: &structure(measurements, simulation, units),
         run: &report.run,
     };
@@ -74,6 +77,13 @@ fn paragraphs(report: &Report, measurements: &Measurements) -> Vec<String> {
             _ => "not distinct from zero",
         };
         text.push(format!("The largest Lyapunov exponent is {}: {meaning}.", significant(exponent.value, 3)));
+    }
+    for own in &report.sensitivity {
+        text.push(format!(
+            "Derivatives of the positions by {}: {}.",
+            own.by,
+            own.agreement(report.request.time)
+        ));
     }
     if report.request.frames > measurements.displacement_frames {
         text.push(format!(
@@ -184,6 +194,34 @@ fn course(report: &Report, measurements: &Measurements, units: &Units) -> Vec<Fi
     vec![velocities, displacements]
 }
 
+/// What changes of parameters and starting positions do to the cells, and what of that their derivatives miss.
+fn derivatives(own: &Differentiated, spacing: f64, units: &Units) -> Figure {
+    let colours = [BLUE, VERMILLION, GREEN, GREY, INK];
+    let mut curves = Vec::new();
+    for ((name, found), colour) in own.names.iter().zip(&own.found).zip(colours.into_iter().cycle()) {
+        let moved = |factor: &dyn Fn(&Derivatives) -> Option<f64>| -> Vec<[f64; 2]> {
+            let at = |(time, frame): (&f64, &Derivatives)| {
+                Some([*time, factor(frame)? * frame.root_mean_square() * found.aside / spacing])
+            };
+            own.times.iter().zip(&found.frames).filter_map(at).filter(|point| point[1] > 0.0).collect()
+        };
+        curves.push(curve(name, colour, Stroke::Solid, moved(&|_| Some(1.0))));
+        curves.push(curve("", colour, Stroke::Dashed, moved(&|frame| frame.missed)));
+    }
+    let time = label_with_unit("time", &units.time);
+    let axes = [(&*time, AxisScale::Linear), ("displacement by a small change, ℓ₀", AxisScale::Logarithmic)];
+    let chart = plot("derivatives of the positions", axes, &[], &curves);
+    let changes: Vec<String> = (own.names.iter().zip(&own.found))
+        .map(|(name, found)| format!("{name} by {}", significant(found.aside, 2)))
+        .collect();
+    let caption = format!(
+        "How far a small change moves the cells (root mean square) by the derivatives of the run, and dashed, what these miss of two runs with that change to either side: {}. \
+         Where both meet, a derivative says nothing any more.",
+        changes.join(", ")
+    );
+    Figure::new(chart, &caption)
+}
+
 fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units) -> Vec<Figure> {
     let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
     let hexagon = Landmark { label: "regular hexagon".into(), value: hexagon_perimeter() };
@@ -208,7 +246,7 @@ fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units
         [(&q, linear), (&velocity_label, linear)],
         &[
             curve("longitudinal", BLUE, Stroke::Solid, shells(|shell| shell.longitudinal)),
-            curve("transverse", VERMILLION, Stroke::Dashed, shells(|shell| shell.transverse)),
+            curve("transverse", VERMILLION, Stroke::Solid, shells(|shell| shell.transverse)),
         ],
     );
     let frames = measurements.structure_frames;
@@ -242,20 +280,24 @@ fn curve<'a>(label: &'a str, colour: &'a str, stroke: Stroke, points: Vec<[f64; 
 }
 
 /// Curves; the points of unbroken ones are marked where they are few.
-fn chart(title: &str, [x, y]: [(&str, AxisScale); 2], curves: &[CurveSeries<'_>]) -> String {
+fn chart(title: &str, axes: [(&str, AxisScale); 2], curves: &[CurveSeries<'_>]) -> String {
     let few = |curve: &&CurveSeries<'_>| curve.stroke == Stroke::Solid && curve.points.len() <= MOST_MARKS;
-    let marked = curves.iter().filter(few).map(|curve| PointSeries {
+    let shapes = [Marker::Circle, Marker::Square].into_iter().cycle();
+    let marked = curves.iter().filter(few).zip(shapes).map(|(curve, marker)| PointSeries {
         label: "",
         colour: curve.colour,
-        marker: Marker::Circle,
+        marker,
         points: curve.points.iter().map(|&at| ErrorPoint::from(at)).collect(),
     });
-    let marked: Vec<PointSeries<'_>> = marked.collect();
-    points_and_curves(&PointsAndCurves {
-        title,
-        labels: [x.0, y.0],
-        scales: [x.1, y.1],
-        series: &marked,
-        curves,
-    })
+    plot(title, axes, &marked.collect::<Vec<_>>(), curves)
+}
+
+fn plot(
+    title: &str,
+    [x, y]: [(&str, AxisScale); 2],
+    series: &[PointSeries<'_>],
+    curves: &[CurveSeries<'_>],
+) -> String {
+    let (labels, scales) = ([x.0, y.0], [x.1, y.1]);
+    points_and_curves(&PointsAndCurves { title, labels, scales, series, curves })
 }

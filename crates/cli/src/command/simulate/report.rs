@@ -7,6 +7,7 @@ use crate::command::evaluate::ModelParameters;
 use serde::Serialize;
 use voronudge_report::histogram::Histogram;
 use voronudge_report::infer_report::RunRecord;
+use voronudge_report::numbers::significant;
 use voronudge_simulate::{Driving, Method, Walls};
 
 /// Everything that the positions of a run depend on.
@@ -48,6 +49,7 @@ pub(super) struct Report {
     pub displacement: Displacement,
     pub structure: Structure,
     pub lyapunov: Option<Exponent>,
+    pub sensitivity: Vec<Sensitive>,
     pub steps: usize,
     pub steps_per_second: f64,
 }
@@ -82,6 +84,34 @@ pub(super) struct Structure {
 pub(super) struct Peak {
     pub wave_number: f64,
     pub value: f64,
+}
+
+/// Derivatives by one parameter or starting coordinate at the end of the run, in short.
+#[derive(Serialize)]
+pub(super) struct Sensitive {
+    /// Its name.
+    pub by: String,
+    /// Of positions, over the cells.
+    pub root_mean_square: f64,
+    pub mean_square_velocity: f64,
+    pub stress: [[f64; 2]; 2],
+    /// By how much the runs differ that derivatives are compared with, to either side.
+    pub aside: f64,
+    /// By which share derivatives of positions miss the difference of these, at the end.
+    pub missed: Option<f64>,
+    /// Time of the last frame up to which that is at most a tenth.
+    pub agrees_until: Option<f64>,
+}
+
+impl Sensitive {
+    /// For how long derivatives agree with differences of a run of some time, in words.
+    pub fn agreement(&self, time: f64) -> String {
+        match self.agrees_until {
+            Some(until) if until >= time * (1.0 - 1e-9) => "they tell small changes to 10 % all along".into(),
+            Some(until) => format!("they tell small changes to 10 % until t = {}", significant(until, 3)),
+            None => "they do not tell small changes to 10 % in any frame".into(),
+        }
+    }
 }
 
 #[derive(Serialize)]
