@@ -57,7 +57,7 @@ pub use driving::{Driving, Shear};
 pub use error::Error;
 pub use honeycomb::honeycomb;
 pub use method::Method;
-pub use placement::{Generator, RandomPlacement, generator, seed_of_run};
+pub use placement::{Generator, RandomPlacement, generator, seed_of_replica, seed_of_run};
 pub use schedule::{Completion, Event, Frame, MOST_STEPS, RunState, Schedule, Summary, resume, run};
 pub use simulation::{Bond, Direction, Simulation, State, derivatives};
 pub use spatial_order::sort_in_space;
