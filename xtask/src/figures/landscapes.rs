@@ -79,7 +79,7 @@ fn displaced(tissue: &Tissue, directions: &[Vector<f64>], size: f64) -> Vec<Vect
     tissue.positions.iter().zip(directions).map(|(r, d)| r + d * size).collect()
 }
 
-/// The least displacement in these directions at which a contact changes, up to 0.1.
+/// The least displacement in these directions at which a contact changes, up to 0.5.
 fn first_transition(tissue: &Tissue, directions: &[Vector<f64>]) -> Result<f64, Box<dyn Error>> {
     let changed = |size: f64| -> Result<bool, Box<dyn Error>> {
         let moved = Tessellation::new(&displaced(tissue, directions, size), tissue.tessellation.domain())?;
@@ -88,7 +88,7 @@ fn first_transition(tissue: &Tissue, directions: &[Vector<f64>]) -> Result<f64, 
     let mut high = 0.0;
     while !changed(high)? {
         high += 5e-4;
-        if high > 0.1 {
+        if high > 0.5 {
             return Err("no contact changes".into());
         }
     }
