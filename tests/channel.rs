@@ -19,6 +19,9 @@ pub const DECAY_LENGTHS: [f64; 2] = [1.4, 0.25];
 /// Beyond the layer where cells are born.
 pub const BIRTH_LAYER: f64 = 3.0 * DECAY_LENGTHS[1];
 
+/// Time before the averages.
+pub const RELAXATION: f64 = 10.0;
+
 /// A channel to simulate.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Case {
@@ -28,12 +31,13 @@ pub struct Case {
     pub preferred_perimeter: f64,
     /// `α`
     pub chirality: f64,
-    /// Time of the averages, after a relaxation of 10.
+    /// Time of the averages, after [`RELAXATION`].
     pub time: f64,
 }
 
 impl Case {
-    fn parameters(&self) -> Parameters<f64> {
+    /// The model, with K_P = 1.
+    pub fn parameters(&self) -> Parameters<f64> {
         Parameters {
             area_elasticity: 0.0,
             perimeter_elasticity: 1.0,
@@ -48,6 +52,19 @@ impl Case {
     /// # Errors
     /// Those of the simulation.
     pub fn folded_profile(&self, seed: u64) -> Result<ChannelProfile, Box<dyn Error>> {
+        self.observed(seed, recommended_time_step(&self.parameters(), 1.0), |_| {})
+    }
+
+    /// The same with a time step of one's own, and the tissue after each step.
+    ///
+    /// # Errors
+    /// Those of the simulation.
+    pub fn observed(
+        &self,
+        seed: u64,
+        time_step: f64,
+        mut observe: impl FnMut(&LivingTissue),
+    ) -> Result<ChannelProfile, Box<dyn Error>> {
         let cell_box = PeriodicBox::new(self.lengths)?;
         let positions =
             RandomPlacement::new(cell_box.area().round() as usize, cell_box).draw(&mut generator(seed))?;
@@ -63,13 +80,16 @@ impl Case {
         };
         let mut tissue = LivingTissue::new(simulation, turnover)?;
         let schedule = ChannelSchedule {
-            relaxation: 10.0,
+            relaxation: RELAXATION,
             time: self.time,
-            time_step: recommended_time_step(&self.parameters(), 1.0),
+            time_step,
             samples: 32,
             bins: 2 * (2.0 * self.lengths[0]).round() as usize,
         };
-        let run = run_channel(&mut tissue, &schedule, |_, _, _| ControlFlow::Continue(()))?;
+        let run = run_channel(&mut tissue, &schedule, |tissue, _, _| {
+            observe(tissue);
+            ControlFlow::Continue(())
+        })?;
         Ok(run.recorder.folded_profile())
     }
 

@@ -52,6 +52,7 @@ mod rows;
 mod sample;
 mod scale;
 mod search;
+mod seeds;
 mod sites;
 mod spread;
 mod stiffness;

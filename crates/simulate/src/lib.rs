@@ -59,7 +59,7 @@ pub use driving::{Driving, Shear};
 pub use error::Error;
 pub use honeycomb::honeycomb;
 pub use method::Method;
-pub use placement::{Generator, RandomPlacement, generator, seed_of_run};
+pub use placement::{Generator, RandomPlacement, generator, seed_of_replica, seed_of_run};
 pub use run_check::check_run;
 pub use schedule::{Completion, Event, Frame, MOST_STEPS, RunState, Schedule, Summary, resume, run};
 pub use sensitivity::{Derivatives, Sensitivity, sensitivities};

@@ -33,6 +33,18 @@ pub fn seed_of_run(seed: u64, point: u64, replica: u64) -> u64 {
     Pcg64::new(u128::from(seed) << 64 | 0x9E37_79B9_7F4A_7C15, stream).random()
 }
 
+/// The seed of one of many equal runs that share a seed: of the first it is that seed, so that one run alone is the first of
+/// many; of the others [`seed_of_run`]. So runs that are repeated with a neighbouring seed share nothing with those before.
+///
+/// ```
+/// use voronudge_simulate::seed_of_replica;
+/// assert_eq!(seed_of_replica(1, 0), 1);
+/// assert_ne!(seed_of_replica(1, 1), seed_of_replica(2, 0));
+/// ```
+pub fn seed_of_replica(seed: u64, replica: u64) -> u64 {
+    if replica == 0 { seed } else { seed_of_run(seed, 0, replica) }
+}
+
 /// Uniform random positions, each drawn anew until it is far enough from those before it.
 ///
 /// Where the box is too full for the distance asked for, the distance is relaxed step by step; so this ends at any
@@ -189,6 +201,17 @@ mod tests {
         let draw = |seed| RandomPlacement::new(16, cell_box).draw(&mut generator(seed)).unwrap();
         assert_eq!(draw(1), draw(1));
         assert_ne!(draw(1), draw(2));
+    }
+
+    #[test]
+    fn runs_of_neighbouring_seeds_share_nothing() {
+        let mut seen = std::collections::BTreeSet::new();
+        for seed in 0..30 {
+            assert!((0..100).all(|replica| seen.insert(seed_of_replica(seed, replica))), "{seed}");
+            for point in 1..10 {
+                assert!((0..10).all(|replica| seen.insert(seed_of_run(seed, point, replica))), "{seed}");
+            }
+        }
     }
 
     #[test]

@@ -1,8 +1,10 @@
 //! Flows in a channel in which cells are extruded and born.
 
 use super::command::{self, Output};
+use super::decays;
 use super::{Drawn, EVEN, Figure, Made, Panel, Series, Size};
-use crate::study::flows::{APART, AVERAGE, SETTLE, TRANSIENT, edge_currents, pinched_ratios};
+use crate::study::Replicas;
+use crate::study::flows::{AVERAGE, TRANSIENT, edge_currents, tell};
 use std::error::Error;
 use voronudge_io::read_flow_profile;
 use voronudge_report::figure::ErrorPoint;
@@ -26,12 +28,6 @@ pub(super) const FIGURES: &[Figure] = &[
         title: "edge currents at torque-free walls",
         stated: "in the solid edge currents appear only for |α| > √3 (P_MF − P₀)/(4 P_MF), in the liquid for any α; above the threshold v_E ∼ α",
         make: edge,
-    },
-    Figure {
-        name: "m4d",
-        title: "flow across an artificial density gradient",
-        stated: "v_y/v_x follows α/(3 − aP₀/ℓ₀), up to the sign, for 0.4 ≤ α ≤ 3.2 and 3 ≤ P₀ ≤ 4, in solids and liquids",
-        make: pinching,
     },
 ];
 
@@ -66,6 +62,7 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
         })
         .collect();
     let widths = widths(size)?;
+    let (protocols, normalised) = decays::protocols(size)?;
     Ok(Made {
         settings: format!("{}; for the widths {}", output.typed, widths.settings),
         found: vec![
@@ -76,12 +73,17 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
                 number(&flow["alpha_ci95"][0]),
                 number(&flow["alpha_ci95"][1])
             ),
-            format!("Decay lengths and 95 % intervals: {}.", lengths.join(", ")),
+            format!(
+                "Decay lengths and 95 % intervals, fitted beyond the layer of births as a decay from both edges: {}.",
+                lengths.join(", ")
+            ),
+            protocols,
             widths.found,
         ],
         panels: vec![
             output.panel("density", "Density", "density across the channel")?,
             output.panel("velocity", "Velocities, with the continuum theory", "velocities")?,
+            normalised,
             output.panel("rates", "Births and extrusions", "births and extrusions")?,
             output.panel("ratio", "v_y against v_x", "v_y against v_x")?,
             widths.panel,
@@ -217,8 +219,9 @@ fn chiralities(size: Size) -> Result<Made, Box<dyn Error>> {
 }
 
 fn edge(size: Size) -> Result<Made, Box<dyn Error>> {
-    let (seeds, times) = size.pick((2, [0.2, 0.2]), (2, [TRANSIENT, AVERAGE]));
-    let currents = edge_currents(seeds, times)?;
+    let (count, times) = size.pick((2, [0.2, 0.2]), (8, [TRANSIENT, AVERAGE]));
+    let currents = edge_currents(Replicas { seed: 1, count }, times)?;
+    tell(&currents);
     let mut perimeters: Vec<f64> = currents.iter().map(|current| current.preferred_perimeter).collect();
     perimeters.dedup();
     let (mut series, mut found) = (Vec::new(), Vec::new());
@@ -245,48 +248,10 @@ fn edge(size: Size) -> Result<Made, Box<dyn Error>> {
     let svg = super::chart("edge currents", ["α", "v_E / (K_P ℓ_0)"], EVEN, &series);
     Ok(Made {
         settings: format!(
-            "100 cells between four walls, K_A = 0.1, {seeds} seeds, averages over {} after {}; see [flows](validation/flows.md)",
+            "100 cells between four walls, K_A = 0.1, {count} tissues, averages over {} after {}; see [flows](validation/flows.md)",
             times[1], times[0]
         ),
         found: vec![format!("The current sets in at α {}.", found.join("; "))],
         panels: vec![Panel { name: "", caption: "Velocity along the walls against chirality".into(), svg }],
-    })
-}
-
-fn pinching(size: Size) -> Result<Made, Box<dyn Error>> {
-    let [settle, apart] = size.pick([0.1, 0.05], [SETTLE, APART]);
-    let ratios = pinched_ratios(2, [settle, apart])?;
-    let mut perimeters: Vec<f64> = ratios.iter().map(|ratio| ratio.preferred_perimeter).collect();
-    perimeters.dedup();
-    let mut series: Vec<Series> = Vec::new();
-    let mut found = Vec::new();
-    for perimeter in perimeters {
-        let own: Vec<_> = ratios.iter().filter(|ratio| ratio.preferred_perimeter == perimeter).collect();
-        let points = own.iter().map(|ratio| ErrorPoint {
-            at: [ratio.formulas[1], ratio.simulated.0],
-            error: [None, Some(ratio.simulated.1)],
-        });
-        series.push(Series {
-            name: format!("P_0 = {perimeter}"),
-            drawn: Drawn::Marks,
-            points: points.collect(),
-        });
-        let shares = own.iter().map(|ratio| ratio.simulated.0 / ratio.formulas[1]);
-        let [low, high] = shares.fold([f64::INFINITY, 0.0f64], |[low, high], x| [low.min(x), high.max(x)]);
-        found.push(format!("{low:.2} to {high:.2} of it at P₀ = {perimeter}"));
-    }
-    let most = ratios.iter().map(|ratio| ratio.formulas[1]).fold(0.0, f64::max);
-    series.push(Series {
-        name: "v_y/v_x = α/(3 − aP_0)".into(),
-        drawn: Drawn::BrokenLine,
-        points: vec![[0.0, 0.0].into(), [most, most].into()],
-    });
-    let svg = super::chart("flow across a density gradient", ["formula, with K_A", "v_y/v_x"], EVEN, &series);
-    Ok(Made {
-        settings: format!(
-            "400 cells, K_A = 0.1, 2 seeds, four snapshots from t = {settle} on; see [flows](validation/flows.md)"
-        ),
-        found: vec![format!("With K_A = 0.1 in the formula, simulated snapshots have {}.", found.join(", "))],
-        panels: vec![Panel { name: "", caption: "Ratio of velocities against the formula".into(), svg }],
     })
 }

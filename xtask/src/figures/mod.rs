@@ -4,11 +4,13 @@
 //! runs, `docs/figures/gallery/record.json`.
 
 mod command;
+mod decays;
 mod flows;
 mod landscapes;
 mod moduli;
 mod page;
 mod phases;
+mod pinching;
 mod slices;
 mod structure;
 
@@ -93,6 +95,7 @@ fn all() -> Vec<Figure> {
         phases::FIGURES,
         moduli::FIGURES,
         flows::FIGURES,
+        pinching::FIGURES,
         structure::FIGURES,
     ]
     .concat()

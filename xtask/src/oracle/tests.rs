@@ -1,10 +1,10 @@
 //! The oracle and the model agree.
 
 use super::{Constants, Oracle};
-use nalgebra::Vector2;
+use nalgebra::{DMatrix, DVector, Vector2};
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, areas, perimeters};
 use voronudge_model::{Model, Parameters, jacobian, stress, velocities};
-use voronudge_simulate::{RandomPlacement, generator};
+use voronudge_simulate::{RandomPlacement, Simulation, generator, moduli};
 use voronudge_spectrum::{LinearProblem, Request, Selection, modes};
 
 /// Largest difference, relative to the largest entry.
@@ -94,4 +94,66 @@ fn the_recorded_fixture_is_what_its_seed_makes() {
     assert!(difference(flat(&set.positions), recorded("positions.npy")) < 1e-9);
     let fields = Oracle::new(&set.positions, set.lengths).fields(&set.constants);
     assert!(difference(flat(&fields.velocities), recorded("velocities.npy")) < 1e-8);
+}
+
+/// `(σ_xx − σ_yy)/2` and `(σ_xy + σ_yx)/2` of a solid stretched along x by `exp(h/2)`, narrowed along y, and at rest again by Newton's
+/// method.
+fn shear_stress(rest: &[Vector2<f64>], lengths: [f64; 2], constants: &Constants, strain: f64) -> [f64; 2] {
+    let factors = [0.5, -0.5].map(|half: f64| (half * strain).exp());
+    let lengths = [0, 1].map(|k| lengths[k] * factors[k]);
+    let mut positions: Vec<Vector2<f64>> =
+        rest.iter().map(|r| Vector2::new(r.x * factors[0], r.y * factors[1])).collect();
+    let n = positions.len();
+    for _ in 0..4 {
+        let oracle = Oracle::new(&positions, lengths);
+        let rows = oracle.jacobian(constants);
+        // Translations move nothing: they are given a rate.
+        let matrix = DMatrix::from_fn(2 * n, 2 * n, |row, column| {
+            rows[row][column] - if row % 2 == column % 2 { 1.0 / n as f64 } else { 0.0 }
+        });
+        let v = DVector::from_iterator(2 * n, flat(&oracle.fields(constants).velocities));
+        let step = matrix.lu().solve(&v).unwrap();
+        positions.iter_mut().enumerate().for_each(|(i, r)| *r -= Vector2::new(step[2 * i], step[2 * i + 1]));
+    }
+    let fields = Oracle::new(&positions, lengths).fields(constants);
+    assert!(fields.velocities.iter().all(|v| v.norm() < 1e-12));
+    let s = fields.stress;
+    [0.5 * (s[0][0] - s[1][1]), 0.5 * (s[0][1] + s[1][0])]
+}
+
+/// Kᵒ of disordered solids, which is well below that of the honeycomb, is a property of the equations.
+#[test]
+fn shear_moduli_of_disordered_solids_agree() {
+    let lengths = [5.0, 5.0];
+    let constants = Constants {
+        area_elasticity: 0.1,
+        perimeter_elasticity: 1.0,
+        preferred_perimeter: 3.0,
+        preferred_area: 1.0,
+        chirality: 0.3,
+    };
+    let parameters = Parameters { preferred_perimeter: 3.0, chirality: 0.3, ..Parameters::default() };
+    let honeycomb = -(3f64.sqrt()) * 0.3;
+    let mut shares = Vec::new();
+    for seed in 1..=6 {
+        let cell_box = PeriodicBox::new(lengths).unwrap();
+        let positions = RandomPlacement::new(25, cell_box).draw(&mut generator(seed)).unwrap();
+        let model = Model::chiral_voronoi(&parameters);
+        let mut tissue = Simulation::new(positions, Domain::Periodic(cell_box), model).unwrap();
+        let found = moduli::elastic(&tissue, &moduli::Settings::default()).unwrap();
+        for _ in 0..20_000 {
+            tissue.step(0.01).unwrap();
+        }
+        let h = 1e-5;
+        let [plus, minus] = [h, -h].map(|h| shear_stress(tissue.positions(), lengths, &constants, h));
+        let [even, odd] = [0, 1].map(|k| (plus[k] - minus[k]) / (2.0 * h));
+        let expected = [found.response[2][1], found.response[3][1]];
+        assert!(
+            (even - expected[0]).abs() < 1e-4 && (odd - expected[1]).abs() < 1e-4,
+            "{even} {odd} {expected:?}"
+        );
+        shares.push(-odd / honeycomb);
+    }
+    let mean = shares.iter().sum::<f64>() / shares.len() as f64;
+    assert!((0.4..0.85).contains(&mean), "{shares:?}");
 }

@@ -3,7 +3,7 @@
 //! Tissues that crawl are filmed as `claims::measured` films them. Models without and with a polarity are fitted to the first half of the frames; they and
 //! the true one say what comes in the other half, and simulate the whole movie.
 
-use super::flows::mean;
+use super::seeds::mean;
 use super::seeds::{on_cores, quartiles};
 use crate::Outcome;
 use claims::measured::{Class, MeasuredSet};

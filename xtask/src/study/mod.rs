@@ -12,14 +12,16 @@ mod nada;
 mod noise;
 mod phases;
 mod pinch_relaxation;
+pub(crate) mod pinching;
 mod recovery;
 mod seeds;
 mod spectrum;
 mod spreads;
+mod transport;
 
 pub(crate) use flows::{parameters, random};
 pub(crate) use measured::Program;
-pub(crate) use seeds::quartiles;
+pub(crate) use seeds::{Replicas, mean, quartiles};
 
 use crate::Outcome;
 use clap::{Args, ValueEnum};
@@ -85,6 +87,8 @@ enum Study {
     Pinching,
     /// What becomes of it in a liquid.
     PinchRelaxation,
+    /// What drives the flow along a channel: torques of uniform liquids, and shapes of cells against their age.
+    Transport,
     /// The program on data as they are measured.
     Measured,
     /// Cells that differ in a parameter.
@@ -106,10 +110,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Spectrum => spectrum::run(arguments.seeds, arguments.cells),
         Study::Velocities => phases::velocities(),
         Study::Lyapunov => phases::lyapunov(arguments.seeds),
-        Study::Channel => channel::run(arguments.seeds),
-        Study::Edge => flows::edge(arguments.seeds),
-        Study::Pinching => flows::pinching(arguments.seeds),
-        Study::PinchRelaxation => pinch_relaxation::run(arguments.seeds),
+        Study::Channel => channel::run(arguments.replicas()),
+        Study::Edge => flows::edge(arguments.replicas()),
+        Study::Pinching => pinching::run(arguments.replicas()),
+        Study::PinchRelaxation => pinch_relaxation::run(arguments.replicas()),
+        Study::Transport => transport::run(arguments.replicas()),
         Study::Measured => measured::run(&arguments.measured, arguments.seeds, arguments.cells),
         Study::Spreads => {
             let searching = arguments.measured.discover;
@@ -122,6 +127,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
+    /// How many tissues, and the seed that theirs are made from.
+    fn replicas(&self) -> Replicas {
+        Replicas { seed: self.measured.seed, count: self.seeds }
+    }
+
     /// The study of the search for missing effects.
     fn plan(&self) -> discover::Plan {
         discover::Plan {

@@ -1,7 +1,8 @@
 //! What becomes of the flow that a density gradient sets off in a liquid.
 
-use super::flows::{PINCH_CELLS, mean, parameters, random};
-use super::seeds::on_one_core_each;
+use super::flows::{parameters, random};
+use super::pinching::PINCH_CELLS;
+use super::seeds::{Replicas, mean, on_one_core_each};
 use crate::Outcome;
 use std::f64::consts::TAU;
 use voronudge_geometry::{Domain, Vector};
@@ -58,12 +59,14 @@ fn follow(simulation: &Simulation, phase: u32, sums: &mut [Response]) -> Result<
     Ok(())
 }
 
-pub fn run(seeds: u64) -> Outcome {
+pub fn run(replicas: Replicas) -> Outcome {
+    let seeds: Vec<u64> = replicas.seeds().collect();
     println!("| α | time | −v_x/(a q²) | −v_y/(a q²) | v_y/v_x | density wave left |");
     println!("|---|---|---|---|---|---|");
     for chirality in CHIRALITIES {
-        let each = on_one_core_each(seeds, |seed| {
-            let mut simulation = random(PINCH_CELLS, &parameters(PREFERRED_PERIMETER, chirality), seed + 1)?;
+        let each = on_one_core_each(replicas.count, |k| {
+            let parameters = parameters(PREFERRED_PERIMETER, chirality);
+            let mut simulation = random(PINCH_CELLS, &parameters, seeds[k as usize])?;
             let mut sums = [Response::default(); STEPS.len()];
             for time in SETTLE {
                 for _ in 0..(time / STEP).round() as usize {

@@ -1,5 +1,7 @@
 //! Many seeds, and what they come to.
 
+use voronudge_simulate::seed_of_replica;
+
 /// Quartiles of some numbers: lower, median, upper. NaN of none.
 pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
     values.sort_by(f64::total_cmp);
@@ -11,6 +13,28 @@ pub fn quartiles(mut values: Vec<f64>) -> [f64; 3] {
         let low = at.floor() as usize;
         values[low] + at.fract() * (values[(low + 1).min(last)] - values[low])
     })
+}
+
+/// Tissues that differ in their starting positions alone.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct Replicas {
+    /// The seed that theirs are made from: those of neighbouring ones share none.
+    pub seed: u64,
+    pub count: u64,
+}
+
+impl Replicas {
+    pub fn seeds(self) -> impl Iterator<Item = u64> {
+        (0..self.count).map(move |replica| seed_of_replica(self.seed, replica))
+    }
+}
+
+/// Mean and standard error of the mean.
+pub fn mean(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
+    (mean, (squares / (count * (count - 1.0))).sqrt())
 }
 
 /// Runs a task for each seed, one thread per seed and none within, so that times are those of one core.
@@ -50,4 +74,17 @@ pub fn on_cores<R: Send>(
     let mut results = results.into_inner().map_err(|_| "a thread failed")?;
     results.sort_by_key(|(seed, _)| *seed);
     Ok(results.into_iter().map(|(_, result)| result).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn studies_of_neighbouring_seeds_share_no_tissue() {
+        let mut seen = std::collections::BTreeSet::new();
+        for seed in 0..50 {
+            assert!(Replicas { seed, count: 50 }.seeds().all(|own| seen.insert(own)), "{seed}");
+        }
+    }
 }

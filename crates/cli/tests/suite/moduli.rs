@@ -53,6 +53,26 @@ fn replicas_are_averaged_and_viscosities_measured() {
     assert!((viscosity["value"].as_f64().unwrap() - 0.5 * (each[0] + each[1])).abs() < 1e-12);
 }
 
+/// A repeat with the next seed is another measurement, and one run alone is the first of many.
+#[test]
+fn replicas_of_neighbouring_seeds_share_nothing() {
+    let of = |line: &str| {
+        let out = Folder::new();
+        succeed(&format!("moduli --cells 16 --P_0 3 --time 20 {line} --quiet"), &[("--out", out.path())]);
+        let report = report(out.path());
+        let seeds = report["replicas"].as_array().unwrap().iter().map(|own| own["seed"].as_u64().unwrap());
+        let moduli = report["moduli"][0]["replicas"].as_array().unwrap().iter();
+        seeds.zip(moduli.map(|own| own.as_f64().unwrap())).collect::<Vec<_>>()
+    };
+    let runs = [1, 2, 3].map(|seed| of(&format!("--replicas 3 --seed {seed}")));
+    for (k, run) in runs.iter().enumerate() {
+        for (seed, value) in runs[k + 1..].iter().flatten() {
+            assert!(run.iter().all(|own| own.0 != *seed && own.1 != *value), "{runs:?}");
+        }
+    }
+    assert_eq!(of("--seed 2"), runs[1][..1]);
+}
+
 #[test]
 fn results_do_not_depend_on_threads() {
     let of = |threads: &str| {

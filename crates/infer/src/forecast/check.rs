@@ -10,6 +10,7 @@ use super::replica::{Places, Stage, measured};
 use super::start::Start;
 use super::{Ahead, Forecaster, PAST, steps};
 use crate::search::Watch;
+use crate::seeds::{Purpose, seed_of};
 use crate::tracks::Drift;
 use crate::{Error, Movie, Progress};
 use std::ops::ControlFlow;
@@ -98,7 +99,7 @@ pub fn check(
         let noise = ahead.noise.position;
         let name = NAMES[number.min(NAMES.len() - 1)];
         let stage = Stage { movie, model, name, starts: &starts, outset, steps, noise };
-        let seed = |draw: usize| starts[0].seed(ahead.seed.wrapping_add(number as u64), draw as u64);
+        let seed = |draw: usize| seed_of(ahead.seed, Purpose::Model(number), draw as u64);
         places.push(stage.play(0, seed(0))?);
         let draws: Vec<usize> = (0..ahead.draws).collect();
         let simulated = watch.each("simulate", &draws, 1.0, |draw| {

@@ -1,6 +1,7 @@
 //! The cells at the beginning of a forecast, and what is seen of them before and after.
 
 use super::Said;
+use crate::seeds::{Purpose, seed_of};
 use crate::tracks::Present;
 use crate::{Error, Movie, Observation};
 use std::sync::Arc;
@@ -105,7 +106,7 @@ impl<'a> Start<'a> {
 
     /// A seed of its own for each draw.
     pub fn seed(&self, seed: u64, draw: u64) -> u64 {
-        seed.wrapping_mul(1_000_003).wrapping_add(self.frame as u64).wrapping_mul(1009).wrapping_add(draw)
+        seed_of(seed, Purpose::After(self.frame), draw)
     }
 
     /// Time from the start to each horizon.

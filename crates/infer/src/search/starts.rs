@@ -3,6 +3,7 @@
 use super::{Effort, Found, TOLERANCE, Watch, optimise, transitions};
 use crate::Error;
 use crate::objective::Objective;
+use crate::seeds::{Purpose, seed_of};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
@@ -19,7 +20,7 @@ pub(super) fn try_another(
     start: usize,
     watch: &mut Watch<'_>,
 ) -> Result<(), Error> {
-    let mut rng = Pcg64::seed_from_u64(effort.seed.wrapping_add(start as u64));
+    let mut rng = Pcg64::seed_from_u64(seed_of(effort.seed, Purpose::Start, start as u64));
     let normal = Normal::new(0.0, DISPLACEMENT * objective.levels.position)
         .map_err(|_| Error::Noise { name: "position", value: objective.levels.position })?;
     let mut at = found.parameters.clone();

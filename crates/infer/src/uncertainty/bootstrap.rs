@@ -3,6 +3,7 @@
 use crate::discover::Observer;
 use crate::replicates::{Keeper, Series};
 use crate::search::Watch;
+use crate::seeds::{Purpose, seed_of};
 use crate::{
     CrossValidation, Error, Examination, Flow, Inference, Observation, Prior, Quantity, Request, Velocities,
     infer,
@@ -120,7 +121,7 @@ pub(crate) fn synthetic(
     let mut request = Request {
         cross_validation: CrossValidation::Skipped,
         examination: Examination::Skipped,
-        seed: number,
+        seed: seed_of(request.seed, Purpose::Refit, number),
         ..request.clone()
     };
     // A prior is a measurement too.

@@ -28,9 +28,11 @@
 mod average;
 mod deformation;
 mod relaxation;
+mod step;
 mod viscosity;
 
 pub use relaxation::Relaxation;
+pub use step::after_a_step;
 pub use viscosity::{Viscosity, ViscosityProtocol, viscous};
 
 use crate::{Error, Simulation};
@@ -267,13 +269,8 @@ fn stress_of(simulation: &Simulation) -> [[f64; 2]; 2] {
     stress(simulation.tessellation(), simulation.positions(), simulation.model(), |_| true)
 }
 
-fn strained(
-    base: &Simulation,
-    deformation: &Deformation,
-    motion: Motion,
-    settings: &Settings,
-    observer: Observer<'_>,
-) -> Result<StrainedState, Error> {
+/// The same tissue in a strained box, with cells that follow the strain.
+fn deformed(base: &Simulation, deformation: &Deformation) -> Result<Simulation, Error> {
     let Domain::Periodic(cell_box) = base.tessellation().domain() else {
         return Err(Error::OpenDomain);
     };
@@ -281,7 +278,17 @@ fn strained(
     let cell_box = deformation
         .cell_box(&cell_box)
         .map_err(|source| Error::Tessellation { time: base.time(), source })?;
-    let mut simulation = Simulation::new(positions, Domain::Periodic(cell_box), base.model().clone())?;
+    Simulation::new(positions, Domain::Periodic(cell_box), base.model().clone())
+}
+
+fn strained(
+    base: &Simulation,
+    deformation: &Deformation,
+    motion: Motion,
+    settings: &Settings,
+    observer: Observer<'_>,
+) -> Result<StrainedState, Error> {
+    let mut simulation = deformed(base, deformation)?;
     let in_parts = |stress| parts(deformation.turn_back(stress));
     let affine = in_parts(stress_of(&simulation));
     match motion {

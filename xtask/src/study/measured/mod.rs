@@ -25,9 +25,9 @@ pub struct Arguments {
     /// Classes of data, by name.
     #[arg(long, value_delimiter = ',', value_parser = class)]
     classes: Vec<Class>,
-    /// Seed of the first set.
+    /// Seed of the first set; of channel, edge, pinching, pinch-relaxation and transport, the seed that those of their tissues are made from.
     #[arg(long, default_value_t = 1)]
-    seed: u64,
+    pub seed: u64,
     /// Fits at the same time, each on one thread.
     #[arg(long)]
     jobs: Option<usize>,

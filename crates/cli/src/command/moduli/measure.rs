@@ -13,7 +13,7 @@ use voronudge_model::{Model, Parameters};
 use voronudge_simulate::moduli::{
     Elastic, Flowing, Relaxation, Settings, Viscosity, ViscosityProtocol, elastic_until, viscous,
 };
-use voronudge_simulate::{Error, Simulation};
+use voronudge_simulate::{Error, Simulation, seed_of_replica};
 
 /// Speeds in units of K_P ℓ₀ below which a tissue is at rest, and below which implicit steps are tried.
 const AT_REST: f64 = 1e-10;
@@ -81,7 +81,7 @@ pub(super) fn starts(arguments: &Arguments) -> Result<Vec<(u64, Start)>, Failure
         return Err(Failure::new(format!("--replicas {} of one and the same start", arguments.replicas))
             .with_hint("replicas differ in random starting positions: leave --start out, or --replicas"));
     }
-    let seeds = (0..arguments.replicas).map(|k| arguments.common.seed.wrapping_add(k));
+    let seeds = (0..arguments.replicas).map(|k| seed_of_replica(arguments.common.seed, k));
     seeds.map(|seed| Ok((seed, Start::of(&arguments.start, seed, 1)?))).collect()
 }
 

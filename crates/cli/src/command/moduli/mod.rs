@@ -20,7 +20,7 @@ use voronudge_simulate::{Schedule, recommended_time_step};
 pub(crate) struct Arguments {
     #[command(flatten)]
     start: StartArguments,
-    /// Random starts, with seeds from --seed on.
+    /// Random starts: the first has --seed, the others seeds made from it.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     replicas: u64,
     /// Longest time to come to rest.

@@ -1,0 +1,87 @@
+//! The stress after a step strain, in time.
+
+use super::deformation::{Deformation, Strain, parts};
+use super::{Moduli, Observer, Relaxation, Response, Stop, deformed, stress_of};
+use crate::{Error, Simulation};
+use rayon::prelude::*;
+
+/// Moduli at some times after a small strain that all cells follow at once: first those without relaxation, and in the end those at
+/// rest. None if the tissue does not come to rest before the strain.
+///
+/// Dilation and both shears of `±strain` are put on the tissue. `times` ascend; the time step is that of the relaxation.
+///
+/// # Errors
+/// [`Error::Interrupted`], [`Error::OpenDomain`], and the errors of [`Simulation::step`].
+pub fn after_a_step(
+    simulation: &Simulation,
+    relaxation: &Relaxation,
+    strain: f64,
+    times: &[f64],
+    stop: Stop<'_>,
+) -> Result<Option<Vec<Moduli>>, Error> {
+    let observer = Observer(stop);
+    let mut base = simulation.clone();
+    if relaxation.relax(&mut base, observer)? > relaxation.tolerance {
+        return Ok(None);
+    }
+    let jobs: Vec<_> =
+        Strain::ALL.into_iter().flat_map(|own| [1.0, -1.0].map(|sign| (own, sign * strain))).collect();
+    let series: Vec<Vec<[f64; 4]>> = jobs
+        .par_iter()
+        .map(|&(own, amount)| {
+            let deformation = Deformation::new(own, amount);
+            let mut tissue = deformed(&base, &deformation)?;
+            let mut made = 0;
+            let at = |time: &f64| {
+                let steps = (time / relaxation.time_step).round() as usize;
+                while made < steps {
+                    tissue.step(relaxation.time_step)?;
+                    made += 1;
+                }
+                observer.look()?;
+                Ok(parts(deformation.turn_back(stress_of(&tissue))))
+            };
+            times.iter().map(at).collect::<Result<_, Error>>()
+        })
+        .collect::<Result<_, Error>>()?;
+    let at = |k: usize| {
+        let response: Response = std::array::from_fn(|part| {
+            std::array::from_fn(|own| {
+                (series[2 * own][k][part] - series[2 * own + 1][k][part]) / (2.0 * strain)
+            })
+        });
+        Moduli::of(&response)
+    };
+    Ok(Some((0..times.len()).map(at).collect()))
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::moduli::{Settings, after_a_step, elastic};
+    use crate::{RandomPlacement, Simulation, generator};
+    use std::ops::ControlFlow;
+    use voronudge_geometry::{Domain, PeriodicBox};
+    use voronudge_model::{Model, Parameters};
+
+    /// The first value is that of cells that follow the strain, the last that of cells at rest.
+    #[test]
+    fn moduli_go_from_those_without_relaxation_to_those_at_rest() {
+        let cell_box = PeriodicBox::new([4.0, 4.0]).unwrap();
+        let positions = RandomPlacement::new(16, cell_box).draw(&mut generator(1)).unwrap();
+        let parameters = Parameters { preferred_perimeter: 3.0, chirality: 0.3, ..Parameters::default() };
+        let model = Model::chiral_voronoi(&parameters);
+        let simulation = Simulation::new(positions, Domain::Periodic(cell_box), model).unwrap();
+        let settings = Settings::default();
+        let found = elastic(&simulation, &settings).unwrap();
+        let go_on = || ControlFlow::Continue(());
+        let times = [0.0, 0.1, 60.0];
+        let series = after_a_step(&simulation, &settings.relaxation, 5e-6, &times, &go_on).unwrap().unwrap();
+        let near = |k: usize, expected: [f64; 4]| {
+            let pairs = series[k].to_array().into_iter().zip(expected);
+            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+        };
+        assert!(near(0, found.affine.to_array()) < 1e-6, "{series:?} {found:?}");
+        assert!(near(2, found.moduli.to_array()) < 1e-3, "{series:?} {found:?}");
+        assert!(near(0, found.moduli.to_array()) > 0.01, "{series:?} {found:?}");
+    }
+}
