@@ -48,6 +48,12 @@ pub enum Error {
         /// In how many intervals between frames.
         intervals: usize,
     },
+    /// Cells that do not stay together between two frames where they follow the model.
+    #[error("cells that follow the model from frame {frame} on fly apart before the next")]
+    Diverges {
+        /// Position of the first of both frames in the list given.
+        frame: usize,
+    },
     /// Frames that are no movie.
     #[error(
         "{frames} frames at {times} times are no movie: it takes two frames or more, at times that ascend"
@@ -137,6 +143,9 @@ impl Error {
             Self::FliesApart { .. } => {
                 Some("forces with a negative K_P or K_A have no state of rest: fix them, or fit more frames")
             }
+            Self::Diverges { .. } => Some(
+                "a parameter that is held or bounded may be far from the right one (mind its unit), or frames too far apart to follow cells between them",
+            ),
             Self::TooFewPatternCells { .. } => Some(
                 "ask for fewer wave vectors, or choose frames in which more cells are tracked throughout",
             ),

@@ -54,6 +54,14 @@ fn priors_that_are_no_priors_are_refused() {
     assert_infer_refuses("--prior P_0=4±1 --fix P_0=4", &["--prior", "P_0 is held by --fix"]);
 }
 
+/// K_A is 2·10⁴ times the true one, as where its unit was forgotten.
+#[test]
+fn a_value_with_which_cells_fly_apart_is_told_from_bad_positions() {
+    let facts = ["fly apart before the next", "positions.npy"];
+    let hint = assert_refused("infer", &fixture("open-field"), &["--fix", "K_A=0.1"], &facts);
+    assert!(hint.contains("mind its unit"), "{hint}");
+}
+
 #[test]
 fn a_polarity_takes_tracks_of_three_frames() {
     assert_infer_refuses("--active", &["--active is for tracks"]);

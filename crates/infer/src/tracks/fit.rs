@@ -197,7 +197,7 @@ impl<'a> Course<'a, '_> {
             match Integrated::at(&self.objective(states), &at) {
                 Ok(integrated) => states.integrated = Some(integrated),
                 // Where coefficients are not determined no ridge leads away from a fit.
-                Err(Error::Degenerate | Error::Geometry { .. }) => break,
+                Err(Error::Degenerate | Error::Geometry { .. } | Error::Diverges { .. }) => break,
                 Err(error) => return Err(error),
             }
         }

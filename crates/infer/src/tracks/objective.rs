@@ -141,10 +141,10 @@ impl<'a> MovieObjective<'a> {
             let evaluated = nudged.evaluate(coefficients.as_slice());
             Ok((nudged, evaluated))
         };
-        let instants = (0..states.instants.len())
-            .into_par_iter()
-            .map(moving)
-            .collect::<Result<Vec<Moving<'_>>, Error>>()?;
+        // Of several faults the first is told, whatever thread comes upon it.
+        let instants: Vec<Result<Moving<'_>, Error>> =
+            (0..states.instants.len()).into_par_iter().map(moving).collect();
+        let instants = instants.into_iter().collect::<Result<Vec<_>, _>>()?;
         let passage = |(interval, pair): (usize, &[Moving<'_>])| {
             let ends = [&pair[0].0.positions[..], &pair[1].0.positions[..]];
             let beside = self.beside(interval, ends, displacements);
@@ -153,7 +153,9 @@ impl<'a> MovieObjective<'a> {
         let passages = match self.rule {
             Rule::Trapezoid => Vec::new(),
             Rule::RungeKutta(_) => {
-                instants.par_windows(2).enumerate().map(passage).collect::<Result<Vec<_>, Error>>()?
+                let all: Vec<Result<Passage<'_>, Error>> =
+                    instants.par_windows(2).enumerate().map(passage).collect();
+                all.into_iter().collect::<Result<Vec<_>, _>>()?
             }
         };
         Ok(Placed { instants, passages })

@@ -123,7 +123,7 @@ impl<'a> Way<'a, '_> {
         positions: Vec<Vector<f64>>,
     ) -> Result<Moving<'a>, Error> {
         let MovieObjective { structure, states, .. } = self.objective;
-        moving.renew(&positions).map_err(|source| Error::Geometry { frame: self.interval, source })?;
+        moving.renew(&positions).map_err(|_| Error::Diverges { frame: self.interval })?;
         let environment = states.intervals[self.interval].halfway.environment().clone();
         let nudged = Nudged::placed(structure, environment, positions, moving.tessellation().clone(), None);
         let evaluated = nudged.evaluate(self.coefficients);

@@ -123,6 +123,9 @@ impl<'a> Place<'a> {
                 let place = format!("{}, frame {}", self.positions.display(), self.frames[frame]);
                 Failure::from(source).at(place)
             }
+            Error::Diverges { frame } => {
+                Failure::from(Error::Diverges { frame: self.frames[frame] }).at(self.positions.display())
+            }
             Error::Degenerate | Error::Algebra(_) => Failure::from(error).at(format!(
                 "{}, {}",
                 self.positions.display(),
