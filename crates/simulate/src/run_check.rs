@@ -17,10 +17,11 @@ const ASIDE: [f64; 2] = [1e-6, 2e-7];
 const DIRECTIONS: usize = PARAMETER_NAMES.len() + 1;
 
 /// The derivatives of the positions after a short run of the model, by each of its parameters and by a coordinate of one cell at the start, against
-/// central differences of runs in which contacts change at the same steps; those for which there are none have no row. The domain is periodic.
+/// central differences of runs in which contacts change at the same steps; those for which there are none have no row, and none has one where the run
+/// cannot be made. The domain is periodic.
 ///
 /// # Errors
-/// As [`Simulation::new`] and [`Simulation::step`].
+/// As [`Simulation::new`], and those of [`Simulation::step`] where a run beside one that can be made cannot.
 ///
 /// ```
 /// use voronudge_geometry::{Domain, PeriodicBox};
@@ -50,7 +51,10 @@ pub fn check_run(
     });
     let mut exact = plain.along(&directions)?;
     let first: Vec<f64> = (0..DIRECTIONS).map(|k| size(&slopes(exact.velocities(), k))).collect();
-    (0..STEPS).try_for_each(|_| exact.step(time_step))?;
+    // A tissue of the opposite stiffness, say, flies apart: there is no run to compare.
+    if (0..STEPS).try_for_each(|_| exact.step(time_step)).is_err() {
+        return Ok(Vec::new());
+    }
     let contacts = run(plain.clone(), time_step)?.1;
     let mut rows = Vec::new();
     for (k, direction) in directions.iter().enumerate() {

@@ -28,7 +28,7 @@ pub struct Derivatives {
 impl Derivatives {
     /// Root mean square of the derivatives of the positions over the cells.
     pub fn root_mean_square(&self) -> f64 {
-        root_mean_square(self.positions.iter())
+        root_mean_square(&self.positions)
     }
 }
 
@@ -49,16 +49,16 @@ impl Sensitivity {
     }
 }
 
-fn root_mean_square<'a>(vectors: impl ExactSizeIterator<Item = &'a Vector<f64>>) -> f64 {
+fn root_mean_square(vectors: &[Vector<f64>]) -> f64 {
     let count = vectors.len().max(1) as f64;
-    (vectors.map(Vector::norm_squared).sum::<f64>() / count).sqrt()
+    (vectors.iter().map(Vector::norm_squared).sum::<f64>() / count).sqrt()
 }
 
 /// A run that carries derivatives along some directions.
 trait Differentiated: Send {
     fn step(&mut self, time_step: f64) -> Result<(), Error>;
-    /// Along the direction of this number: of positions, and of velocities.
-    fn of_cells(&self, direction: usize) -> [Vec<Vector<f64>>; 2];
+    /// Of positions and of velocities along the direction of this number, root mean squares over the cells.
+    fn sizes(&self, direction: usize) -> [f64; 2];
     fn frame(&self, direction: usize) -> Derivatives;
 }
 
@@ -67,12 +67,12 @@ impl<const D: usize> Differentiated for Simulation<DualSVec64<D>> {
         self.step(time_step)
     }
 
-    fn of_cells(&self, direction: usize) -> [Vec<Vector<f64>>; 2] {
-        [self.positions(), self.velocities()].map(|all| slopes(all, direction))
+    fn sizes(&self, direction: usize) -> [f64; 2] {
+        [self.positions(), self.velocities()].map(|all| root_mean_square(&slopes(all, direction)))
     }
 
     fn frame(&self, direction: usize) -> Derivatives {
-        let [positions, _] = self.of_cells(direction);
+        let positions = slopes(self.positions(), direction);
         let cells = positions.len();
         let squares: DualSVec64<D> =
             (self.velocities().iter()).fold(DualSVec64::constant(0.0), |sum, v| sum + v.x * v.x + v.y * v.y);
@@ -88,7 +88,7 @@ impl<const D: usize> Differentiated for Simulation<DualSVec64<D>> {
     }
 }
 
-/// Directions that one run carries at most: with more its numbers no longer fit where the processor keeps them.
+/// Directions that one run carries at most.
 const TOGETHER: usize = 4;
 
 fn differentiated(
@@ -103,7 +103,6 @@ fn differentiated(
         Ok(Box::new(simulation.along(&own)?))
     }
     match directions.len() {
-        0 => carried::<0>(simulation, directions),
         1 => carried::<1>(simulation, directions),
         2 => carried::<2>(simulation, directions),
         3 => carried::<3>(simulation, directions),
@@ -118,13 +117,13 @@ struct Beside {
 }
 
 impl Beside {
+    /// Of a run over some time, given the sizes of the derivatives at its start.
     fn new(
         simulation: &Simulation,
         direction: &Direction,
-        of_cells: &[Vec<Vector<f64>>; 2],
+        [places, velocities]: [f64; 2],
         time: f64,
     ) -> Self {
-        let [places, velocities] = of_cells.each_ref().map(|all| root_mean_square(all.iter()));
         // A displaced cell is one of many.
         let places = places * (simulation.positions().len() as f64).sqrt();
         let aside = ASIDE * simulation.spacing() / (places + velocities * time).max(f64::MIN_POSITIVE);
@@ -146,7 +145,7 @@ impl Beside {
         let pairs = plus.positions().iter().zip(minus.positions());
         let differences = pairs.map(|(plus, minus)| (plus - minus) / (2.0 * self.aside));
         let missed: Vec<Vector<f64>> = differences.zip(slopes).map(|(seen, slope)| seen - slope).collect();
-        let missed = root_mean_square(missed.iter()) / root_mean_square(slopes.iter());
+        let missed = root_mean_square(&missed) / root_mean_square(slopes);
         missed.is_finite().then_some(missed)
     }
 }
@@ -188,10 +187,7 @@ pub fn sensitivities(
     let mut beside: Vec<Beside> = directions
         .iter()
         .enumerate()
-        .map(|(k, own)| {
-            let of_cells = runs[k / TOGETHER].of_cells(k % TOGETHER);
-            Beside::new(simulation, own, &of_cells, schedule.time)
-        })
+        .map(|(k, own)| Beside::new(simulation, own, runs[k / TOGETHER].sizes(k % TOGETHER), schedule.time))
         .collect();
     let mut found: Vec<Sensitivity> =
         beside.iter().map(|own| Sensitivity { aside: own.aside, frames: Vec::new() }).collect();

@@ -109,7 +109,7 @@ impl Sensitive {
         match self.agrees_until {
             Some(until) if until >= time * (1.0 - 1e-9) => "they tell small changes to 10 % all along".into(),
             Some(until) => format!("they tell small changes to 10 % until t = {}", significant(until, 3)),
-            None => "they do not tell small changes to 10 % in any frame".into(),
+            None => "they do not tell small changes to 10 % even in the first frame".into(),
         }
     }
 }
