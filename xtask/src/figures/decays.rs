@@ -2,11 +2,21 @@
 
 use super::{Drawn, EVEN, Panel, Series, Size, command};
 use crate::study::mean;
+use serde::Deserialize;
 use std::error::Error;
 use voronudge_report::figure::ErrorPoint;
 
 /// Width of the paper's bins (µm), the first of them at the edge.
 const BIN: f64 = 25.0;
+
+/// A row of `folded_profile.csv`.
+#[derive(Deserialize)]
+struct Strip {
+    x: f64,
+    density: f64,
+    v_x: f64,
+    v_y: f64,
+}
 
 /// Profiles in the paper's bins: of the density, of v_x and of v_y.
 struct Profile {
@@ -17,21 +27,14 @@ struct Profile {
 impl Profile {
     /// From `folded_profile.csv`, whose strips are narrower.
     fn read(path: &std::path::Path) -> Result<Self, Box<dyn Error>> {
-        let text = std::fs::read_to_string(path)?;
-        let mut lines = text.lines();
-        let header: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-        let column =
-            |name: &str| header.iter().position(|own| *own == name).ok_or(format!("no column {name}"));
-        let places = [column("x")?, column("density")?, column("v_x")?, column("v_y")?];
         let mut sums: Vec<[f64; 5]> = Vec::new();
-        for line in lines {
-            let fields: Vec<f64> = line.split(',').map(|field| field.parse().unwrap_or(f64::NAN)).collect();
-            let [x, rho, v_x, v_y] = places.map(|place| fields[place]);
+        for row in csv::Reader::from_path(path)?.deserialize() {
+            let Strip { x, density, v_x, v_y } = row?;
             let bin = (x / BIN) as usize;
             if sums.len() <= bin {
                 sums.resize(bin + 1, [0.0; 5]);
             }
-            for (sum, value) in sums[bin].iter_mut().zip([1.0, x, rho, v_x, v_y]) {
+            for (sum, value) in sums[bin].iter_mut().zip([1.0, x, density, v_x, v_y]) {
                 *sum += value;
             }
         }
