@@ -3,10 +3,10 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::TAU;
-use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector, honeycomb};
+use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector, circumcentre, honeycomb};
 use voronudge_model::{BlockMatrix, HalfEdgeForces, Model, jacobian, stress};
 use voronudge_spectrum::bloch_matrix;
-use voronudge_theory::{MeanField, Orientation, Parameters, hexagon_perimeter};
+use voronudge_theory::{MeanField, Orientation, Parameters, hexagon_perimeter, hexagon_side};
 
 /// (P_0, α): solid, solid with waves, just below the limit of stability, beyond it.
 const CASES: [(f64, f64); 6] = [(3.0, 0.0), (3.0, 0.3), (3.5, -0.2), (3.7, 1.0), (3.72, 0.01), (4.0, 2.9)];
@@ -206,5 +206,28 @@ fn an_edge_row_feels_the_force_and_the_stiffness_of_the_estimate() {
         let bulk = matrix.row(cell).filter(|(column, _)| shift(*column).y > 0.1);
         let stiffness: f64 = bulk.map(|(_, block)| block[0]).sum();
         assert!((stiffness - chiral.edge_row().stiffness).abs() < 1e-12, "{stiffness}");
+    }
+}
+
+/// A vertex of the honeycomb follows one of its cells by (2/3) b̂ b̂ᵀ with the unit vector from the cell to it, that is by 2/(3d²) b bᵀ; the paper prints (2/3) b bᵀ
+/// where it inserts this.
+#[test]
+fn a_vertex_follows_a_cell_by_two_thirds() {
+    let d = hexagon_side();
+    // Two neighbours of a cell at the origin, 60° apart.
+    let [a, c] = [30f64, 90.0].map(|degrees| {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        Vector::new(cos, sin) * (3f64.sqrt() * d)
+    });
+    let b = circumcentre(a, c);
+    assert!((b.norm() - d).abs() < 1e-12);
+    let step = 1e-6;
+    for axis in 0..2 {
+        let mut moved = Vector::zeros();
+        moved[axis] = step;
+        let place = |by: Vector<f64>| circumcentre(a - by, c - by) + by;
+        let found = (place(moved) - place(-moved)) / (2.0 * step);
+        let expected = b * (2.0 / (3.0 * d * d) * b[axis]);
+        assert!((found - expected).norm() < 1e-8, "{found} {expected}");
     }
 }

@@ -39,6 +39,7 @@ enum Command {
     CheckGradients(command::check_gradients::Arguments),
     Import(Box<command::import::Arguments>),
     PhaseDiffusion(command::phase_diffusion::Arguments),
+    Rheology(Box<command::rheology::Arguments>),
 }
 
 /// What a command that ran has to say.
@@ -87,5 +88,6 @@ fn run() -> Result<Answer, Failure> {
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
         Command::Import(arguments) => command::import::run(*arguments),
         Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
+        Command::Rheology(arguments) => command::rheology::run(*arguments),
     }
 }

@@ -33,6 +33,15 @@ pub(crate) fn read_input(path: &Path) -> Result<(Vec<u8>, InputFile), Error> {
     Ok((bytes, record))
 }
 
+/// Reads a text file, such as a report of an earlier run, and records it; what is no UTF-8 is replaced.
+///
+/// # Errors
+/// [`Error::File`] if it cannot be read.
+pub fn read_text(path: &Path) -> Result<(String, InputFile), Error> {
+    let (bytes, record) = read_input(path)?;
+    Ok((String::from_utf8_lossy(&bytes).into_owned(), record))
+}
+
 /// Reads a regular file: a folder, a pipe or a device is refused, so reading always ends.
 pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
     let failure = |fault| Error::File { path: path.to_path_buf(), fault };

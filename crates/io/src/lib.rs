@@ -73,7 +73,7 @@ pub use flow::FlowField;
 pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
 pub use frames::FrameSelection;
 pub use image_scale::ImageScale;
-pub use input::InputFile;
+pub use input::{InputFile, read_text};
 pub use journal::Journal;
 pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_labels};
 pub use measurement::{DeclaredWindow, PositionsAre, WindowKind};

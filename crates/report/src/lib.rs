@@ -39,6 +39,7 @@ pub mod observe_report;
 pub mod page;
 pub mod phase_diffusion_report;
 pub mod phase_report;
+pub mod rheology_report;
 pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;
@@ -60,6 +61,7 @@ pub use page::{
 };
 pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};
+pub use rheology_report::{RHEOLOGY_SCHEMA, RheologyReport};
 pub use shape_report::{FIELD_SCHEMA, FieldReport, SHAPE_SCHEMA, ShapeReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use units::Units;

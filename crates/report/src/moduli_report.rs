@@ -36,6 +36,10 @@ pub struct ModuliReport {
     pub mean_field_prestress: Option<[[f64; 2]; 2]>,
     /// Viscosities, where asked for.
     pub viscosities: Vec<ModulusRecord>,
+    /// Storage and loss moduli at each frequency, where asked for.
+    pub dynamic: Vec<DynamicRecord>,
+    /// Media of one elasticity and one viscosity that come nearest to the shear moduli at all frequencies, where two or more were asked for.
+    pub media: Vec<MediumRecord>,
     /// Each replica.
     pub replicas: Vec<ReplicaRecord>,
 }
@@ -72,6 +76,52 @@ pub struct ModulusRecord {
     pub replicas: Vec<f64>,
     /// The error of each replica.
     pub replica_errors: Vec<f64>,
+}
+
+/// Storage and loss moduli at one frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DynamicRecord {
+    /// Angular frequency ω, in 1/time.
+    pub frequency: f64,
+    /// `B`, `A`, `μ`, `Kᵒ`; of tissues that flow the shear moduli alone.
+    pub moduli: Vec<DynamicModulusRecord>,
+}
+
+/// A complex modulus `G′ + i G″` at one frequency.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct DynamicModulusRecord {
+    /// `bulk`, `odd_bulk`, `shear` or `odd_shear`.
+    pub name: &'static str,
+    /// Symbol.
+    pub symbol: &'static str,
+    /// Storage modulus `G′`, in phase with the strain.
+    pub storage: Estimate,
+    /// Loss modulus `G″`, in phase with the rate of strain.
+    pub loss: Estimate,
+}
+
+/// A number of one or several replicas.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Estimate {
+    /// Mean over replicas.
+    pub value: f64,
+    /// Standard error of the mean over replicas; of a single one its own.
+    pub error: f64,
+    /// The value of each replica that has one.
+    pub replicas: Vec<f64>,
+}
+
+/// A medium of one elasticity and one viscosity.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct MediumRecord {
+    /// `kelvin_voigt` or `maxwell`.
+    pub arrangement: &'static str,
+    /// Elasticity: shear modulus and odd shear modulus.
+    pub elasticity: [f64; 2],
+    /// Viscosity: shear viscosity and odd shear viscosity.
+    pub viscosity: [f64; 2],
+    /// By how much it misses the moduli: root mean square over frequencies, in parts of the size of each.
+    pub missed: f64,
 }
 
 /// One replica.

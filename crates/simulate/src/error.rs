@@ -90,6 +90,14 @@ pub enum Error {
         /// The value given.
         value: f64,
     },
+    /// The linear response of a tissue cannot be solved for.
+    #[error("the linear response at the angular frequency {frequency}: {source}")]
+    Response {
+        /// The angular frequency.
+        frequency: f64,
+        /// What the solver said.
+        source: voronudge_linalg::Error,
+    },
     /// Whoever watched a measurement broke it off.
     #[error("interrupted")]
     Interrupted,
@@ -214,6 +222,7 @@ impl Error {
             Self::Driving { .. } => Some("give zero or more, or leave it out"),
             Self::FreeSpeed => Some("let all have one speed"),
             Self::Rate { .. } => Some("leave it out for the default"),
+            Self::Response { .. } => Some("another frequency may be away from a mode of the tissue"),
             Self::Interrupted => None,
             Self::Turnover { .. } => Some("give rates per cell and time, and lengths in the unit of the box"),
             Self::ShearedChannel { .. } => Some("give a box with a right angle"),

@@ -88,8 +88,8 @@ impl<const D: usize> Differentiated for Simulation<DualSVec64<D>> {
     }
 }
 
-/// Directions that one run carries at most.
-const TOGETHER: usize = 4;
+/// Directions that one run carries at most: as many as the check of a run has.
+const TOGETHER: usize = 5;
 
 fn differentiated(
     simulation: &Simulation,
@@ -99,13 +99,13 @@ fn differentiated(
         simulation: &Simulation,
         directions: &[Direction],
     ) -> Result<Box<dyn Differentiated>, Error> {
-        let own: [Direction; D] = std::array::from_fn(|k| directions[k].clone());
+        let own: [Direction; D] = std::array::from_fn(|k| directions.get(k).cloned().unwrap_or_default());
         Ok(Box::new(simulation.along(&own)?))
     }
+    // Each number of directions is an integrator to compile: some are carried for nothing.
     match directions.len() {
         1 => carried::<1>(simulation, directions),
         2 => carried::<2>(simulation, directions),
-        3 => carried::<3>(simulation, directions),
         _ => carried::<TOGETHER>(simulation, directions),
     }
 }

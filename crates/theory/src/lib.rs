@@ -35,6 +35,7 @@ mod parameters;
 mod phase_diffusion;
 mod spectrum;
 mod stability;
+mod viscoelastic;
 
 pub use channel::{ChannelEvolution, ChannelMedium, ChannelTurnover};
 pub use continuum::Moduli;
@@ -45,3 +46,4 @@ pub use parameters::{MeanField, Parameters};
 pub use phase_diffusion::PhaseDiffusivities;
 pub use spectrum::Eigenvalue;
 pub use stability::{Mode, Phase};
+pub use viscoelastic::{Arrangement, EvenOdd, ShearResponse, ViscoelasticMedium};

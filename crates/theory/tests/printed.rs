@@ -128,3 +128,60 @@ fn the_flow_follows_the_sign_of_alpha() {
         }
     }
 }
+
+/// The shear of a flow up and along a gradient of density, v = c (B + μ, A − Kᵒ) ∂_x ρ: the traceless part of the strain rate in two dimensions.
+/// The paper takes a third of the divergence off, and prints (B + μ)/4 on the diagonal.
+#[test]
+fn the_shear_of_the_flow_along_a_gradient() {
+    let Moduli { bulk, odd_bulk, shear, odd_shear } = theory(4.0, 2.9).moduli();
+    let (curvature, flow) = (0.7, [-(bulk + shear), -(odd_bulk - odd_shear)]);
+    // ∂_x v, as ∂_x of ∂_x ρ; nothing changes along y.
+    let gradient = [[flow[0] * curvature, flow[1] * curvature], [0.0, 0.0]];
+    let divergence = gradient[0][0] + gradient[1][1];
+    let mut rate = [[0.0; 2]; 2];
+    for i in 0..2 {
+        for j in 0..2 {
+            let trace = if i == j { 0.5 * divergence } else { 0.0 };
+            rate[i][j] = 0.5 * (gradient[i][j] + gradient[j][i]) - trace;
+        }
+    }
+    let half = 0.5 * (bulk + shear);
+    let expected = [[half, 0.5 * (odd_bulk - odd_shear)], [0.5 * (odd_bulk - odd_shear), -half]];
+    assert_near(rate, expected.map(|row| row.map(|x| -curvature * x)), 1e-12);
+    let third = rate[0][0] + 0.5 * divergence - divergence / 3.0;
+    let other = rate[1][1] + 0.5 * divergence - divergence / 3.0;
+    assert!((third + other).abs() > 0.1, "with a third it is not traceless");
+}
+
+/// The printed derivative of a tensor that is carried with the medium as two vectors are, X = F Fᵀ, vanishes for a = −1: that is the upper-convected one, and
+/// a = 1 the lower-convected one, of X = F⁻ᵀ F⁻¹. The paper says the opposite.
+#[test]
+fn the_printed_slip_parameter_has_the_other_sign() {
+    type Matrix = [[f64; 2]; 2];
+    let product = |a: Matrix, b: Matrix| -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| (0..2).map(|k| a[i][k] * b[k][j]).sum()))
+    };
+    let transposed = |a: Matrix| -> Matrix { std::array::from_fn(|i| std::array::from_fn(|j| a[j][i])) };
+    let sum = |a: Matrix, b: Matrix, factor: f64| -> Matrix {
+        std::array::from_fn(|i| std::array::from_fn(|j| a[i][j] + factor * b[i][j]))
+    };
+    // ∂_j v_i, and its symmetric part and vorticity as printed.
+    let l = [[0.3, -0.8], [0.5, 0.2]];
+    let strain = sum(l, transposed(l), 1.0).map(|row| row.map(|x| 0.5 * x));
+    let vorticity = sum(transposed(l), l, -1.0).map(|row| row.map(|x| 0.5 * x));
+    let printed = |rate: Matrix, x: Matrix, a: f64| {
+        let turned = sum(rate, sum(product(vorticity, x), product(x, vorticity), -1.0), 1.0);
+        sum(turned, sum(product(strain, x), product(x, strain), 1.0), a)
+    };
+    let f = [[1.1, 0.4], [-0.2, 0.9]];
+    let carried = product(f, transposed(f));
+    let rate = sum(product(l, carried), product(carried, transposed(l)), 1.0);
+    assert_near(printed(rate, carried, -1.0), [[0.0; 2]; 2], 1e-12);
+    let determinant = carried[0][0] * carried[1][1] - carried[0][1] * carried[1][0];
+    let inverse = [
+        [carried[1][1] / determinant, -carried[0][1] / determinant],
+        [-carried[1][0] / determinant, carried[0][0] / determinant],
+    ];
+    let rate = sum(product(transposed(l), inverse), product(inverse, l), 1.0).map(|row| row.map(|x| -x));
+    assert_near(printed(rate, inverse, 1.0), [[0.0; 2]; 2], 1e-12);
+}

@@ -62,10 +62,10 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
         })
         .collect();
     let widths = widths(size)?;
-    let (protocols, normalised) = decays::protocols(size)?;
+    let (protocols, [normalised, axis]) = decays::protocols(size)?;
     Ok(Made {
         settings: format!("{}; for the widths {}", output.typed, widths.settings),
-        found: vec![
+        found: [
             format!(
                 "v_y/v_x = {}, which says α = {} ({} to {}; put in: 2.9).",
                 number(&flow["slope"]),
@@ -77,13 +77,16 @@ fn ht1080(size: Size) -> Result<Made, Box<dyn Error>> {
                 "Decay lengths and 95 % intervals, fitted beyond the layer of births as a decay from both edges: {}.",
                 lengths.join(", ")
             ),
-            protocols,
-            widths.found,
-        ],
+        ]
+        .into_iter()
+        .chain(protocols)
+        .chain([widths.found])
+        .collect(),
         panels: vec![
             output.panel("density", "Density", "density across the channel")?,
             output.panel("velocity", "Velocities, with the continuum theory", "velocities")?,
             normalised,
+            axis,
             output.panel("rates", "Births and extrusions", "births and extrusions")?,
             output.panel("ratio", "v_y against v_x", "v_y against v_x")?,
             widths.panel,
@@ -191,6 +194,18 @@ fn chiralities(size: Size) -> Result<Made, Box<dyn Error>> {
             largest(0).join(", "),
             largest(1).join(", ")
         ));
+        let crooked: Vec<String> = runs
+            .iter()
+            .map(|(_, profiles)| {
+                let [size, expected] = wiggle(&profiles[1]);
+                format!("{size:.2} ({expected:.2})")
+            })
+            .collect();
+        found.push(format!(
+            "P₀ = {shape_index} ℓ₀: v_y wiggles from strip to strip by {} µm/h (root mean square of the second differences over √6; in brackets what the errors of the \
+             strips make).",
+            crooked.join(", ")
+        ));
         for (which, name) in names.into_iter().enumerate() {
             let component = ["v_x, towards the middle", "v_y, along the edge"][which];
             let series = runs.iter().map(|(alpha, profiles)| Series {
@@ -216,6 +231,18 @@ fn chiralities(size: Size) -> Result<Made, Box<dyn Error>> {
         found,
         panels,
     })
+}
+
+/// Root mean square of the second differences of a profile over √6, which of independent errors is their size, and that size.
+fn wiggle(points: &[ErrorPoint]) -> [f64; 2] {
+    let count = points.len().saturating_sub(2).max(1) as f64;
+    let squares = points.windows(3).map(|three| {
+        let [a, b, c] = [0, 1, 2].map(|k: usize| three[k].at[1]);
+        let [e, f, g] = [0, 1, 2].map(|k: usize| three[k].error[1].unwrap_or(f64::NAN));
+        [(a - 2.0 * b + c).powi(2), e * e + 4.0 * f * f + g * g]
+    });
+    let sum = squares.fold([0.0; 2], |sum, own| [sum[0] + own[0], sum[1] + own[1]]);
+    sum.map(|sum| (sum / (6.0 * count)).sqrt())
 }
 
 fn edge(size: Size) -> Result<Made, Box<dyn Error>> {

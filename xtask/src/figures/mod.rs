@@ -8,9 +8,11 @@ mod decays;
 mod flows;
 mod landscapes;
 mod moduli;
+mod mosaics;
 mod page;
 mod phases;
 mod pinching;
+mod rheology;
 mod slices;
 mod structure;
 
@@ -93,7 +95,9 @@ fn all() -> Vec<Figure> {
         landscapes::FIGURES,
         slices::FIGURES,
         phases::FIGURES,
+        mosaics::FIGURES,
         moduli::FIGURES,
+        rheology::FIGURES,
         flows::FIGURES,
         pinching::FIGURES,
         structure::FIGURES,

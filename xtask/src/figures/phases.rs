@@ -180,44 +180,46 @@ fn velocities(size: Size) -> Result<Made, Box<dyn Error>> {
 }
 
 fn collapse(size: Size) -> Result<Made, Box<dyn Error>> {
-    let output = command::run(size.pick(
-        "phase-diagram --P_0 3.6 4.2 4 --alpha 0.04 0.2 3 --cells 36 --time 20 --quantities mean_square_velocity",
-        "phase-diagram --P_0 3.5 4.3 17 --alpha 0.04 0.2 5 --time 200 --dt 0.02 --quantities mean_square_velocity",
-    ))?;
-    let report = output.report()?;
-    let record = &report["collapse"];
-    let number = |value: &serde_json::Value| value.as_f64().map_or("–".into(), |x| format!("{x:.2}"));
-    let exponent = |name: &str| {
-        let own = &record["fitted"][name];
-        format!(
-            "{} ({} to {})",
-            number(&own["value"]),
-            number(&own["interval"][0]),
-            number(&own["interval"][1])
-        )
-    };
-    let found = if record.is_null() {
-        format!("No collapse: {}.", report["no_collapse"].as_str().unwrap_or("too few points"))
-    } else {
-        format!(
-            "The fitted exponents are β = {} and φ = {} (95 % intervals over chiralities drawn again). The scatter about one curve is {} with them and \
-             {} with the paper's.",
-            exponent("beta"),
-            exponent("phi"),
-            number(&record["fitted"]["scatter"]),
-            number(&record["given"]["scatter"])
-        )
-    };
-    let size = "These are 100 cells; the paper's are 10⁴ (W = 100 ℓ₀), which have not been run.".into();
-    Ok(Made {
-        settings: output.typed.clone(),
-        found: vec![found, size],
-        panels: vec![output.panel(
-            "",
-            "Scaled mean square velocities",
-            if record.is_null() { "mean square velocity" } else { "collapse" },
-        )?],
-    })
+    let (small, large) = size.pick(
+        (
+            "--P_0 3.6 4.2 4 --alpha 0.04 0.2 3 --cells 36 --time 20",
+            "--P_0 3.6 4.2 4 --alpha 0.04 0.2 3 --cells 49 --time 10",
+        ),
+        (
+            "--P_0 3.5 4.3 17 --alpha 0.04 0.2 5 --time 200 --dt 0.02",
+            "--P_0 3.5 4.3 9 --alpha 0.05 0.2 4 --cells 10000 --time 200 --dt 0.02",
+        ),
+    );
+    let (mut found, mut panels, mut typed) = (Vec::new(), Vec::new(), Vec::new());
+    for (name, cells, settings) in
+        [("", "100 cells", small), ("large", "10⁴ cells, as in the paper (W = 100 ℓ₀)", large)]
+    {
+        let output = command::run(&format!("phase-diagram {settings} --quantities mean_square_velocity"))?;
+        let report = output.report()?;
+        let record = &report["collapse"];
+        let number = |value: &serde_json::Value| value.as_f64().map_or("–".into(), |x| format!("{x:.2}"));
+        let exponent = |name: &str| {
+            let own = &record["fitted"][name];
+            let [value, low, high] = [&own["value"], &own["interval"][0], &own["interval"][1]].map(number);
+            format!("{value} ({low} to {high})")
+        };
+        found.push(if record.is_null() {
+            format!("{cells}: no collapse: {}.", report["no_collapse"].as_str().unwrap_or("too few points"))
+        } else {
+            format!(
+                "{cells}: the fitted exponents are β = {} and φ = {} (95 % intervals over chiralities drawn again). The scatter about one curve is {} with \
+                 them and {} with the paper's.",
+                exponent("beta"),
+                exponent("phi"),
+                number(&record["fitted"]["scatter"]),
+                number(&record["given"]["scatter"])
+            )
+        });
+        let title = if record.is_null() { "mean square velocity" } else { "collapse" };
+        panels.push(output.panel(name, &format!("Scaled mean square velocities of {cells}"), title)?);
+        typed.push(output.typed);
+    }
+    Ok(Made { settings: typed.join(" and "), found, panels })
 }
 
 /// Curves over P_0, one for each chirality, with errors where they are given, and what a theory says of them.

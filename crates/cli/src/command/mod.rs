@@ -15,5 +15,6 @@ pub(crate) mod observe;
 pub(crate) mod phase_diagram;
 pub(crate) mod phase_diffusion;
 mod replicates;
+pub(crate) mod rheology;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;

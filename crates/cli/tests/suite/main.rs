@@ -34,6 +34,7 @@ mod refusal;
 mod reliability;
 mod replicates;
 mod resumption;
+mod rheology;
 mod scratch;
 mod sensitivities;
 mod shape_imports;

@@ -96,5 +96,42 @@ fn impossible_requests_are_refused() {
         "moduli --cells 16 --time 0.1 --average 0.1 --transient 0 --viscosity --rate -1",
         "shear rate is -1",
     );
+    refuse(
+        "moduli --cells 16 --time 0.1 --average 0.1 --transient 0 --frequencies 0",
+        "angular frequency is 0",
+    );
     assert_eq!(voronudge(["moduli"]).code, Some(2));
+}
+
+/// Slow shear of a solid finds its moduli at rest; two tissues that flow have shear moduli alone, and the nearest media are told.
+#[test]
+fn storage_and_loss_moduli_are_measured_at_rest_and_flowing() {
+    let out = Folder::new();
+    let line = "moduli --cells 16 --P_0 3 --alpha 0.5 --frequencies 1e-5 1 1e6 --seed 2";
+    let text = succeed(line, &[("--out", out.path())]).stdout;
+    assert!(text.contains("kelvin–voigt") && text.contains("μ″"), "{text}");
+    let solid = report(out.path());
+    assert_described(&solid);
+    for k in 0..4 {
+        for (frequency, limit) in [(0, "value"), (2, "affine")] {
+            let at = format!("/dynamic/{frequency}/moduli/{k}");
+            let storage = number(&solid, &format!("{at}/storage/value"));
+            let expected = number(&solid, &format!("/moduli/{k}/{limit}"));
+            assert!((storage - expected).abs() < 1e-4, "{k} {limit}: {storage} {expected}");
+            assert!(number(&solid, &format!("{at}/loss/value")).abs() < 1e-3, "{k} {limit}");
+        }
+    }
+    let page = fs::read_to_string(out.path().join("report.html")).unwrap();
+    assert!(page.contains("Storage and loss moduli") && page.contains("Maxwell (in series)"));
+
+    let out = Folder::new();
+    let line = "moduli --cells 16 --P_0 4 --alpha 1 --replicas 2 --time 2 --transient 0.5 --average 2 --frequencies 10 --dt 0.02 --quiet";
+    succeed(line, &[("--out", out.path())]);
+    let liquid = report(out.path());
+    assert_described(&liquid);
+    let moduli = liquid["dynamic"][0]["moduli"].as_array().unwrap();
+    let names: Vec<_> = moduli.iter().map(|own| own["name"].as_str().unwrap()).collect();
+    assert_eq!(names, ["shear", "odd_shear"]);
+    assert_eq!(moduli[0]["loss"]["replicas"].as_array().unwrap().len(), 2);
+    assert_eq!(liquid["media"], serde_json::json!([]));
 }

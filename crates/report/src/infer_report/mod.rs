@@ -79,6 +79,8 @@ pub struct InferReport {
     pub units: Units,
     /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
     pub length_scale: Quantity,
+    /// The time that rates are measured in, in units of the data: that of `identifiability` together with the cell size.
+    pub time_scale: Quantity,
     /// Which cells were used.
     pub cells: CellCounts,
     /// How they were measured.

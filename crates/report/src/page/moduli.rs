@@ -5,14 +5,16 @@ use serde::Serialize;
 use super::{Card, Figure, PageHead, Template, render};
 use crate::error::ReportError;
 use crate::figure::moduli;
-use crate::moduli_report::{ModuliReport, ModulusRecord};
+use crate::moduli_report::{
+    DynamicModulusRecord, DynamicRecord, Estimate, MediumRecord, ModuliReport, ModulusRecord,
+};
 use crate::numbers::{NO_VALUE, significant};
 
 const TEMPLATE: Template =
     Template { name: "moduli.html", source: include_str!("../../templates/moduli.html") };
 
 /// Everything the page of `moduli` shows.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct ModuliPage<'a> {
     /// Title, for example the start.
     pub title: &'a str,
@@ -20,6 +22,8 @@ pub struct ModuliPage<'a> {
     pub headline: &'a str,
     /// Further plain sentences, one paragraph each.
     pub summary: &'a [String],
+    /// Figures of the moduli against frequency, where there are some.
+    pub dynamic: Vec<Figure>,
     /// What `report.json` holds.
     pub report: &'a ModuliReport,
 }
@@ -32,6 +36,9 @@ struct Context<'a> {
     rows: Vec<Row>,
     viscosities: Vec<Row>,
     unit: String,
+    dynamic: &'a [Figure],
+    frequencies: Vec<[String; 5]>,
+    media: Vec<Vec<String>>,
 }
 
 #[derive(Serialize)]
@@ -66,6 +73,9 @@ impl ModuliPage<'_> {
             rows: report.moduli.iter().map(row).collect(),
             viscosities: report.viscosities.iter().map(row).collect(),
             unit,
+            dynamic: &self.dynamic,
+            frequencies: report.dynamic.iter().map(frequency_row).collect(),
+            media: report.media.iter().map(medium_row).collect(),
         };
         render(TEMPLATE, &context)
     }
@@ -84,4 +94,31 @@ fn row(record: &ModulusRecord) -> Row {
             record.nonlinearity.map_or(NO_VALUE.into(), |value| significant(value, 2)),
         ],
     }
+}
+
+/// ω, and both shear moduli in phase and out of phase.
+fn frequency_row(record: &DynamicRecord) -> [String; 5] {
+    let text = |name: &str, of: fn(&DynamicModulusRecord) -> &Estimate| {
+        let found = record.moduli.iter().find(|own| own.name == name).map(of);
+        found.map_or(NO_VALUE.into(), |own| {
+            format!("{} ± {}", significant(own.value, 4), significant(own.error, 1))
+        })
+    };
+    [
+        significant(record.frequency, 4),
+        text("shear", |own| &own.storage),
+        text("shear", |own| &own.loss),
+        text("odd_shear", |own| &own.storage),
+        text("odd_shear", |own| &own.loss),
+    ]
+}
+
+fn medium_row(record: &MediumRecord) -> Vec<String> {
+    let name = match record.arrangement {
+        "maxwell" => "Maxwell (in series)",
+        _ => "Kelvin–Voigt (in parallel)",
+    };
+    let numbers = record.elasticity.into_iter().chain(record.viscosity);
+    let missed = format!("{} %", significant(100.0 * record.missed, 2));
+    [name.to_owned()].into_iter().chain(numbers.map(|value| significant(value, 3))).chain([missed]).collect()
 }

@@ -153,6 +153,7 @@ pub fn report() -> InferReport {
         },
         units: Units { length: "um".into(), time: "min".into() },
         length_scale: Quantity { value: 11.17, unit: "um".into() },
+        time_scale: Quantity { value: 12.5, unit: "min".into() },
         cells: CellCounts {
             frames: vec![6, 7],
             used: 636,

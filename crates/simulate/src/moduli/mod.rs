@@ -27,11 +27,15 @@
 
 mod average;
 mod deformation;
+mod dynamic;
 mod relaxation;
+mod settled;
 mod step;
 mod viscosity;
 
+pub use dynamic::{Dynamic, DynamicModulus, DynamicProtocol, FEWEST_PERIODS, FEWEST_STEPS};
 pub use relaxation::Relaxation;
+pub use settled::Settled;
 pub use step::after_a_step;
 pub use viscosity::{Viscosity, ViscosityProtocol, viscous};
 
@@ -185,29 +189,52 @@ pub fn elastic(simulation: &Simulation, settings: &Settings) -> Result<Elastic, 
 /// # Errors
 /// [`Error::Interrupted`], and as [`elastic`].
 pub fn elastic_until(simulation: &Simulation, settings: &Settings, stop: Stop<'_>) -> Result<Elastic, Error> {
-    for strain in [settings.strain, settings.flowing.strain] {
-        if !(strain > 0.0 && strain <= LARGEST_STRAIN) {
-            return Err(Error::Strain { strain, limit: LARGEST_STRAIN });
+    settings.check()?;
+    Settled::new(simulation, &settings.relaxation, stop)?.elastic(settings, stop)
+}
+
+impl Settings {
+    /// Refuses strains that are not small.
+    ///
+    /// # Errors
+    /// [`Error::Strain`] for an amount that is not positive, finite and at most 0.5.
+    pub fn check(&self) -> Result<(), Error> {
+        for strain in [self.strain, self.flowing.strain] {
+            if !(strain > 0.0 && strain <= LARGEST_STRAIN) {
+                return Err(Error::Strain { strain, limit: LARGEST_STRAIN });
+            }
         }
+        Ok(())
     }
-    let observer = Observer(stop);
-    let mut base = simulation.clone();
-    let speed = settings.relaxation.relax(&mut base, observer)?;
-    let motion = if speed <= settings.relaxation.tolerance { Motion::AtRest } else { Motion::Flowing };
+}
+
+impl Settled {
+    /// The moduli, as [`elastic_until`] measures them.
+    ///
+    /// # Errors
+    /// As [`elastic_until`].
+    pub fn elastic(&self, settings: &Settings, stop: Stop<'_>) -> Result<Elastic, Error> {
+        settings.check()?;
+        measured(self, settings, Observer(stop))
+    }
+}
+
+fn measured(settled: &Settled, settings: &Settings, observer: Observer<'_>) -> Result<Elastic, Error> {
+    let (base, motion) = (settled.simulation(), settled.motion());
     let largest = match motion {
         Motion::AtRest => settings.strain,
         Motion::Flowing => settings.flowing.strain,
     };
-    let before = parts(stress_of(&base));
+    let before = parts(stress_of(base));
     let jobs: Vec<_> = (Strain::ALL.into_iter())
         .flat_map(|strain| AMOUNTS.map(|share| Deformation::new(strain, share * largest)))
         .collect();
     let ends: Vec<StrainedState> = jobs
         .par_iter()
-        .map(|deformation| strained(&base, deformation, motion, settings, observer))
+        .map(|deformation| strained(base, deformation, motion, settings, observer))
         .collect::<Result<_, Error>>()?;
     let prestress = match motion {
-        Motion::AtRest => stress_of(&base),
+        Motion::AtRest => stress_of(base),
         Motion::Flowing => whole(std::array::from_fn(|k| {
             ends.iter().map(|end| end.after[k]).sum::<f64>() / ends.len() as f64
         })),
@@ -245,7 +272,7 @@ pub fn elastic_until(simulation: &Simulation, settings: &Settings, stop: Stop<'_
         response,
         prestress,
         motion,
-        speed,
+        speed: settled.speed(),
         restless: ends.iter().filter(|end| !end.came_to_rest).count(),
     })
 }

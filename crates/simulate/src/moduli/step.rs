@@ -1,7 +1,7 @@
 //! The stress after a step strain, in time.
 
 use super::deformation::{Deformation, Strain, parts};
-use super::{Moduli, Observer, Relaxation, Response, Stop, deformed, stress_of};
+use super::{Moduli, Motion, Observer, Relaxation, Response, Settled, Stop, deformed, stress_of};
 use crate::{Error, Simulation};
 use rayon::prelude::*;
 
@@ -20,8 +20,8 @@ pub fn after_a_step(
     stop: Stop<'_>,
 ) -> Result<Option<Vec<Moduli>>, Error> {
     let observer = Observer(stop);
-    let mut base = simulation.clone();
-    if relaxation.relax(&mut base, observer)? > relaxation.tolerance {
+    let settled = Settled::new(simulation, relaxation, stop)?;
+    if settled.motion() == Motion::Flowing {
         return Ok(None);
     }
     let jobs: Vec<_> =
@@ -30,7 +30,7 @@ pub fn after_a_step(
         .par_iter()
         .map(|&(own, amount)| {
             let deformation = Deformation::new(own, amount);
-            let mut tissue = deformed(&base, &deformation)?;
+            let mut tissue = deformed(settled.simulation(), &deformation)?;
             let mut made = 0;
             let at = |time: &f64| {
                 let steps = (time / relaxation.time_step).round() as usize;

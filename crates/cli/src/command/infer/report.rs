@@ -34,6 +34,7 @@ pub(super) fn report(
         prospects: foreseen.map(|foreseen| prospects::report(prepared, result, foreseen, &[], &units)),
         verdict,
         length_scale: Quantity { value: scale.length, unit: units.length.clone() },
+        time_scale: Quantity { value: scale.time, unit: units.time.clone() },
         cells: outcome::cell_counts(prepared, result),
         measurement: Measurement { tracks, ..outcome::measurement(stated, data, prepared) },
         flow: prepared.velocities.flow().map(described),

@@ -1,7 +1,8 @@
 //! The moduli as a report and as a summary.
 
 use super::Arguments;
-use super::measure::{Measured, Protocol};
+use super::measure::Measured;
+use super::protocol::Protocol;
 use crate::command::simulate::Start;
 use crate::command::spectrum::{mean_field, named};
 use crate::run::Run;
@@ -16,7 +17,8 @@ use voronudge_simulate::moduli::{Moduli, Motion};
 /// A nonlinearity above this share of the largest modulus means that contacts changed.
 const LINEAR: f64 = 0.02;
 
-const NAMES: [(&str, &str); 4] = [("bulk", "B"), ("odd_bulk", "A"), ("shear", "μ"), ("odd_shear", "Kᵒ")];
+pub(super) const NAMES: [(&str, &str); 4] =
+    [("bulk", "B"), ("odd_bulk", "A"), ("shear", "μ"), ("odd_shear", "Kᵒ")];
 
 pub(super) fn report(
     run: &Run,
@@ -46,6 +48,7 @@ pub(super) fn report(
     let viscosities = |of: fn(&voronudge_simulate::moduli::Viscosity) -> f64| {
         measured.iter().filter_map(|m| m.viscosity.as_ref().map(of)).collect::<Vec<_>>()
     };
+    let dynamic = super::dynamic::records(&measured.iter().map(|m| m.dynamic.as_slice()).collect::<Vec<_>>());
     let first = &starts[0].1;
     ModuliReport {
         run: run.record(None),
@@ -76,6 +79,8 @@ pub(super) fn report(
         } else {
             Vec::new()
         },
+        media: super::dynamic::media(&dynamic),
+        dynamic,
         replicas: (starts.iter().zip(measured))
             .map(|((seed, _), Measured { elastic, .. })| ReplicaRecord {
                 seed: *seed,
@@ -93,13 +98,18 @@ pub(super) fn report(
 }
 
 /// Mean and standard error over replicas; of a single one its own.
-fn record(name: &'static str, symbol: &'static str, values: Vec<f64>, errors: Vec<f64>) -> ModulusRecord {
+pub(super) fn over_replicas(values: &[f64], errors: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let value = values.iter().sum::<f64>() / count;
-    let error = match errors.as_slice() {
+    let error = match errors {
         [own] => *own,
         _ => (values.iter().map(|x| (x - value).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt(),
     };
+    (value, error)
+}
+
+fn record(name: &'static str, symbol: &'static str, values: Vec<f64>, errors: Vec<f64>) -> ModulusRecord {
+    let (value, error) = over_replicas(&values, &errors);
     let (affine, nonlinearity, mean_field) = (None, None, None);
     ModulusRecord {
         name,
@@ -206,6 +216,28 @@ pub(super) fn summary(report: &ModuliReport, out: &Path) -> String {
             significant(record.error, 1),
             number(record.mean_field),
             number(record.affine)
+        );
+    }
+    if !report.dynamic.is_empty() {
+        let _ = writeln!(text, "\n{:12}{:>12}{:>12}{:>12}{:>12}", "ω", "μ′", "μ″", "Kᵒ′", "Kᵒ″");
+    }
+    for own in &report.dynamic {
+        let shears = own.moduli.iter().filter(|modulus| modulus.name.ends_with("shear"));
+        let numbers = shears.flat_map(|modulus| [modulus.storage.value, modulus.loss.value]);
+        let cells = numbers.fold(String::new(), |mut row, value| {
+            let _ = write!(row, "{:>12}", significant(value, 4));
+            row
+        });
+        let _ = writeln!(text, "{:12}{cells}", significant(own.frequency, 4));
+    }
+    for own in &report.media {
+        let [[mu, odd], [eta, odd_eta]] =
+            [own.elasticity, own.viscosity].map(|pair| pair.map(|x| significant(x, 3)));
+        let _ = writeln!(
+            text,
+            "{:12} μ {mu}, Kᵒ {odd}, η {eta}, ηᵒ {odd_eta}; misses the moduli by {}",
+            own.arrangement.replace('_', "–"),
+            significant(own.missed, 2)
         );
     }
     let _ = writeln!(text, "\nfigures in {}", out.join("report.html").display());

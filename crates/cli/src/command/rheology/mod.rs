@@ -1,0 +1,126 @@
+//! `voronudge rheology`: the moduli of a fitted tissue, with what the fit does not know.
+
+mod measure;
+mod page;
+mod posterior;
+
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::command::moduli::protocol::ProtocolArguments;
+use crate::command::simulate::{Start, StartArguments};
+use crate::failure::Failure;
+use crate::memory::{OF_A_STRAINED_CELL, refuse_beyond};
+use crate::progress::Progress;
+use crate::run::Run;
+use clap::Args;
+use measure::Work;
+use posterior::Posterior;
+use std::path::PathBuf;
+use std::sync::Mutex;
+use voronudge_report::infer_report::InputFile;
+use voronudge_report::rheology_report::RheologyReport;
+use voronudge_simulate::seed_of_replica;
+
+/// Moduli B, A, μ, Kᵒ, viscosities, storage and loss moduli that fits of `infer` imply, with intervals that carry the errors of the parameters.
+///
+/// Writes report.json and report.html. Times and rates are in units of 1/K_P, frequencies in those of the data.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// Reports of infer, or folders that hold them; several in the order of time.
+    #[arg(required = true, value_name = "REPORT")]
+    reports: Vec<PathBuf>,
+    /// The time of each report [default: their mean frames].
+    #[arg(long, value_name = "TIME", num_args = 1.., allow_negative_numbers = true)]
+    times: Vec<f64>,
+    /// Tissues to simulate at each choice of parameters, at least two.
+    #[arg(long, default_value_t = 8, allow_negative_numbers = true)]
+    replicas: u64,
+    #[command(flatten)]
+    start: StartArguments,
+    #[command(flatten)]
+    protocol: ProtocolArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+/// Replicas that nobody means.
+const MOST_REPLICAS: u64 = 1000;
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("rheology", &arguments.common)?;
+    arguments.protocol.check()?;
+    if !(2..=MOST_REPLICAS).contains(&arguments.replicas) {
+        return Err(Failure::new(format!(
+            "--replicas is {}, but it must be from 2 to {MOST_REPLICAS}",
+            arguments.replicas
+        ))
+        .with_hint("8 is usual"));
+    }
+    if !arguments.start.is_random() {
+        return Err(Failure::new(format!(
+            "--start {}: tissues start at random here",
+            arguments.start.name()
+        ))
+        .with_hint("leave --start out; `voronudge moduli` takes others"));
+    }
+    if !(arguments.times.is_empty() || arguments.times.len() == arguments.reports.len()) {
+        return Err(Failure::new(format!(
+            "{} times for {} reports",
+            arguments.times.len(),
+            arguments.reports.len()
+        ))
+        .with_hint("give one of --times for each report, or none"));
+    }
+    if let Some(time) = arguments.times.iter().find(|time| !time.is_finite()) {
+        return Err(Failure::new(format!("--times holds {time}, but times must be finite"))
+            .with_hint("give one number for each report"));
+    }
+    let fits = arguments.reports.iter().map(|path| Posterior::read(path)).collect::<Result<Vec<_>, _>>()?;
+    let units = fits[0].units.clone();
+    if let Some(other) = fits.iter().find(|fit| fit.units != units) {
+        return Err(Failure::new(format!(
+            "in units of {} and {}, but the first report in {} and {}",
+            other.units.length, other.units.time, units.length, units.time
+        ))
+        .at(other.path.display())
+        .with_hint("fit all data in the same units"));
+    }
+    let mut out = arguments.common.output(fits.iter().map(|fit| fit.input.path.as_path()))?;
+    let seeds: Vec<u64> =
+        (0..arguments.replicas).map(|replica| seed_of_replica(arguments.common.seed, replica)).collect();
+    let starts: Vec<Start> =
+        seeds.iter().map(|&seed| Start::of(&arguments.start, seed, 1)).collect::<Result<_, _>>()?;
+    let cells = starts[0].positions.len();
+    refuse_beyond(format!("moduli of {cells} cells"), cells, OF_A_STRAINED_CELL)?;
+    let area = starts[0].cell_box.area() / cells as f64;
+    if (area - 1.0).abs() > 1e-9 {
+        return Err(Failure::new(format!("--box gives each cell the area {area}, but here it is 1"))
+            .with_hint("leave --box out: the fit tells the size of the cells"));
+    }
+    let progress = Mutex::new(Progress::new(arguments.common.verbosity()));
+    let work = Work { starts: &starts, arguments: &arguments.protocol, progress: &progress };
+    let mut fitted = Vec::new();
+    for (k, fit) in fits.iter().enumerate() {
+        let name = if fits.len() > 1 { format!("fit {} of {}", k + 1, fits.len()) } else { "fit".to_owned() };
+        let at = arguments.times.get(k).copied().unwrap_or(fit.frame);
+        fitted.push(work.fitted(fit, at, &name)?);
+    }
+    if let Ok(shown) = progress.lock() {
+        shown.finish();
+    }
+    if fitted.iter().any(|fit| fit.at_rest > 0 && fit.flowing > 0) {
+        run.warn("some tissues of one fit came to rest and others flow: it is close to the transition, and means over both say little");
+    }
+    let mut record = run.record(None);
+    record.inputs = (fits.iter())
+        .map(|fit| InputFile { path: fit.input.path.display().to_string(), sha256: fit.input.sha256.clone() })
+        .collect();
+    let against = if arguments.times.is_empty() { "frame" } else { "time" };
+    let report = RheologyReport { run: record, units, cells, seeds, against, fits: fitted };
+    let json = report.to_json()?;
+    out.write_text("report.json", &json)?;
+    out.write_text("report.html", &page::page(&report)?)?;
+    let summary = page::summary(&report, out.path());
+    run.finish(Some(out), &json, &summary)?;
+    Ok(Answer::Positive)
+}
