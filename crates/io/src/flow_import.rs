@@ -95,7 +95,7 @@ pub fn import_flow(files: &[PathBuf], options: &FlowOptions) -> Result<FlowImpor
     let side = options.grid_spacing.unwrap_or(pixel);
     validate::positive("grid_spacing", side).map_err(Error::Setting)?;
     let mut dataset = describe(
-        options.boundary,
+        options.boundary.unwrap_or(Boundary::Open),
         options.frame_interval,
         options.y_axis,
         options.length_unit.as_deref(),

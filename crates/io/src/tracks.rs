@@ -8,9 +8,12 @@ use ndarray::Array3;
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
 use crate::field_of_view::SeenArea;
+use crate::image_scale::ImageScale;
 use crate::input::read_input;
+use crate::napari;
+use crate::note::Note;
 use crate::table::{ColumnNames, Layout, SpotTable, read_spots};
-use crate::validate::{self, ArrayNames, check_seen};
+use crate::validate::{ArrayNames, check_seen};
 
 /// The most frames between the first and the last spot.
 const FRAME_LIMIT: usize = 100_000;
@@ -46,6 +49,18 @@ pub struct ImportOptions {
     pub image_size: Option<[f64; 2]>,
 }
 
+impl ImportOptions {
+    fn scale(&self) -> ImageScale {
+        ImageScale {
+            pixel_size: self.pixel_size,
+            length_unit: self.length_unit.clone(),
+            time_unit: self.time_unit.clone(),
+            frame_interval: self.frame_interval,
+            y_axis: self.y_axis,
+        }
+    }
+}
+
 /// An imported data set and what became of the rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Import {
@@ -55,6 +70,8 @@ pub struct Import {
     pub track_ids: Vec<i64>,
     /// The counts to report.
     pub summary: ImportSummary,
+    /// What was read, guessed and doubted.
+    pub notes: Vec<Note>,
 }
 
 /// What became of the rows of a table.
@@ -88,12 +105,13 @@ pub fn import_trackmate(path: &Path, options: &ImportOptions) -> Result<Import, 
     import(path, options, Layout::TrackMate)
 }
 
-/// Imports any table with one row per spot, CSV or gzip-compressed CSV, separated by commas,
-/// semicolons or tabs.
+/// Imports any table with one row per spot, separated by commas, semicolons, tabs or blanks, compressed with gzip or not, in UTF-8,
+/// UTF-16 or Latin-1; or a `.npy` array of rows track, frame, (z,) y, x, as napari keeps tracks.
 ///
 /// Unless named in the options, columns are recognised by usual names: `track_id`, `track`,
 /// `particle`, `cell`, `id` …; `frame`, `t`, `time_index` …; `x`, `position_x`, `pos_x` … The
 /// earlier name wins where several are there. A track is in one place in each frame: unlike TrackMate's, tracks do not split.
+/// z is left out.
 ///
 /// # Errors
 /// As [`import_trackmate`], and [`TableFault::SpotTwice`].
@@ -102,43 +120,51 @@ pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Err
 }
 
 fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
-    let scale = options.pixel_size.unwrap_or(1.0);
-    validate::positive("pixel_size", scale).map_err(Error::Setting)?;
+    let given = options.scale();
+    given.begin(Boundary::Open)?;
+    let (bytes, record) = read_input(path)?;
+    let table = read_any(path, &bytes, layout, &options.columns)?;
+    let mut notes = table.notes.clone();
+    let scale = table.stated.settle(&given, &mut notes);
+    let boundary = options.boundary.unwrap_or(Boundary::Open);
     let mut dataset = describe(
-        options.boundary,
-        options.frame_interval,
-        options.y_axis,
-        options.length_unit.as_deref(),
-        options.time_unit.as_deref(),
+        boundary,
+        scale.frame_interval,
+        scale.y_axis,
+        scale.length_unit.as_deref(),
+        scale.time_unit.as_deref(),
     );
     dataset.check_settings().map_err(Error::Setting)?;
-
-    let (bytes, record) = read_input(path)?;
     dataset.inputs.push(record);
-    let table = read_spots(path, &bytes, layout, &options.columns)?;
-    if let (None, None, Some(unit)) = (&options.length_unit, options.pixel_size, &table.length_unit) {
-        dataset.length_unit.clone_from(unit);
-    }
     let tracks = Tracks::arrange(&table, layout).map_err(|fault| Error::Table {
         path: path.to_path_buf(),
         line: None,
         fault,
     })?;
 
-    dataset.positions = tracks.positions * scale;
+    let pixel = scale.pixel_size.unwrap_or(1.0);
+    dataset.positions = tracks.positions * pixel;
     dataset.check_arrays(&ArrayNames::of_one(path))?;
     dataset.y_axis.turn(&mut dataset.positions);
     if let Some(size) = options.image_size {
-        dataset.field_of_view = Some(SeenArea::image(size.map(|length| length * scale), dataset.y_axis));
+        dataset.field_of_view = Some(SeenArea::image(size.map(|length| length * pixel), dataset.y_axis));
         dataset.check_settings().map_err(Error::Setting)?;
         check_seen(path, &dataset)?;
     }
-    Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary })
+    Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary, notes })
+}
+
+/// The spots of a table, or of an array of tracks.
+fn read_any(path: &Path, bytes: &[u8], layout: Layout, columns: &ColumnNames) -> Result<SpotTable, Error> {
+    match layout {
+        Layout::Tracks if bytes.starts_with(napari::SIGNATURE) => napari::read_tracks_layer(path, bytes),
+        _ => read_spots(path, bytes, layout, columns),
+    }
 }
 
 /// The data set as far as the options know it.
 pub(crate) fn describe(
-    boundary: Option<Boundary>,
+    boundary: Boundary,
     frame_interval: Option<f64>,
     y_axis: Option<YAxis>,
     length_unit: Option<&str>,
@@ -153,7 +179,7 @@ pub(crate) fn describe(
         length_unit: length_unit.unwrap_or("length").to_owned(),
         time_unit: time_unit.unwrap_or(default_time).to_owned(),
         y_axis: y_axis.unwrap_or(YAxis::Down),
-        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary.unwrap_or(Boundary::Open))
+        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary)
     }
 }
 

@@ -41,6 +41,15 @@ pub struct ShapeReport {
     pub sites: Option<SiteRecord>,
 }
 
+/// Something that was understood of a file that does not say everything about itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct NoteRecord {
+    /// `read`, `guessed` or `doubtful`.
+    pub kind: String,
+    /// What it is, for people.
+    pub text: String,
+}
+
 /// Sites whose Voronoi polygons follow outlines best.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize)]
 pub struct SiteRecord {

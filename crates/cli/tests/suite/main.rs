@@ -17,6 +17,7 @@ mod flow_imports;
 mod flow_inferences;
 mod forecasts;
 mod gradient_checks;
+mod import_formats;
 mod imports;
 mod inferences;
 #[cfg(unix)]

@@ -85,6 +85,18 @@ pub enum TableFault {
         /// What is needed, in words.
         expected: &'static str,
     },
+    /// A number of an array of tracks that is not what its column holds.
+    #[error("row {row}, column {column} (from zero) is {value}, {expected} is needed")]
+    ArrayRow {
+        /// Row, from zero.
+        row: usize,
+        /// Column, from zero.
+        column: usize,
+        /// The number.
+        value: f64,
+        /// What is needed, in words.
+        expected: &'static str,
+    },
     /// Frame numbers too far apart.
     #[error("frames run from {first} to {last}, more than {limit} frames are not taken")]
     TooManyFrames {
@@ -175,12 +187,15 @@ impl TableFault {
             Self::FieldCount { .. } => "the row was probably cut; export the table again",
             Self::NotANumber { text, .. } if text.contains(',') => "write decimal points, not decimal commas",
             Self::NotANumber { .. } => "correct or remove this row",
+            Self::ArrayRow { .. } => "columns are track, frame, (z,) y, x, as in a tracks layer of napari",
             Self::TooManyFrames { .. } => {
                 "is the frame column a time? name the column that counts images from zero"
             }
             Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
-            Self::AnotherKind { .. } => "export what it holds as comma-separated values",
-            Self::NotText => "export the vectors as text in UTF-8, or give displacements of pixels as .npy",
+            Self::AnotherKind { .. } => {
+                "export what it holds as text, for instance as comma-separated values"
+            }
+            Self::NotText => "export the table as text; displacements of pixels may be given as .npy",
             Self::NoHeader => "leave the names out if the columns are x, y, u, v, or add a line of names",
             Self::HalfMissing { .. } => "a missing vector is NaN in both components",
             Self::OffGrid { .. } => {

@@ -5,8 +5,8 @@ use std::path::Path;
 
 use csv::ByteRecord;
 
-use super::columns::{Column, plain};
-use super::{Located, csv_fault, decompress, line_number, offset_of};
+use super::columns::{Column, unbracketed, unit_in};
+use super::{Located, csv_fault, line_number, offset_of, tabbed, text_of};
 use crate::error::{Error, TableFault};
 
 /// Names of the columns, where they are not to be recognised automatically.
@@ -52,11 +52,7 @@ pub(crate) struct VectorTable {
 /// Reads a table, compressed or not; `path` only names the place.
 pub(crate) fn read_table(path: &Path, bytes: &[u8], names: &FlowColumnNames) -> Result<VectorTable, Error> {
     let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
-    let text = decompress(bytes).map_err(|fault| failure(None, fault))?;
-    // Text has no zero bytes; what PIVlab saves for MATLAB and images have.
-    if text.contains(&0) {
-        return Err(failure(None, TableFault::NotText));
-    }
+    let text = text_of(bytes).map_err(|fault| failure(None, fault))?.bytes;
     let (text, separator) = match separator(&text) {
         Some(separator) => (text, separator),
         None => (Cow::Owned(tabbed(&text)), b'\t'),
@@ -174,9 +170,7 @@ impl Columns {
 
     /// The unit of displacements that the header states in brackets.
     fn unit(&self) -> Option<String> {
-        let start = self.u.name.find(['[', '('])? + 1;
-        let unit = self.u.name[start..].trim_end_matches([']', ')']).trim();
-        (!unit.is_empty()).then(|| unit.to_owned())
+        unit_in(&self.u.name)
     }
 
     fn vector(&self, row: &ByteRecord, line: u64) -> Result<Vector, TableFault> {
@@ -249,34 +243,6 @@ fn separator(text: &[u8]) -> Option<u8> {
     [b';', b'\t', b','].into_iter().find(|separator| line.contains(separator))
 }
 
-/// Text with a tab wherever there are blanks between fields; lines stay as they are.
-fn tabbed(text: &[u8]) -> Vec<u8> {
-    let text = String::from_utf8_lossy(text);
-    let mut out = String::with_capacity(text.len());
-    for line in text.split('\n') {
-        let line = line.trim();
-        // The mark of a comment belongs to the first field.
-        let (mark, rest) = match line.strip_prefix('#') {
-            Some(rest) => ("#", rest),
-            None => ("", line),
-        };
-        out.push_str(mark);
-        let mut before: Option<&str> = None;
-        for word in rest.split_whitespace() {
-            // A unit belongs to the name before it, and PIVlab has a column "vector type".
-            let goes_on =
-                word.starts_with(['[', '(']) || (before == Some("vector") && word.starts_with("type"));
-            if before.is_some() {
-                out.push(if goes_on { ' ' } else { '\t' });
-            }
-            out.push_str(word);
-            before = Some(word);
-        }
-        out.push('\n');
-    }
-    out.into_bytes()
-}
-
 fn is_comment(row: &ByteRecord) -> bool {
     row.get(0).is_some_and(|field| field.trim_ascii_start().starts_with(b"#"))
 }
@@ -286,9 +252,4 @@ fn is_numbers(row: &ByteRecord) -> bool {
     let mut fields = row.iter().map(<[u8]>::trim_ascii).filter(|field| !field.is_empty());
     let is_number = |field: &[u8]| std::str::from_utf8(field).is_ok_and(|text| text.parse::<f64>().is_ok());
     row.len() >= 4 && fields.all(is_number)
-}
-
-/// A column name without its unit and without what people write differently.
-fn unbracketed(name: &str) -> String {
-    plain(name.split(['[', '(']).next().unwrap_or_default())
 }

@@ -8,6 +8,7 @@ mod flow_arrays;
 mod flow_tables;
 mod flows;
 mod folders;
+mod foreign_tables;
 mod frames;
 mod output;
 mod settings;

@@ -3,6 +3,7 @@
 mod field;
 mod flow;
 mod labels;
+mod notes;
 mod outlines;
 mod shapes;
 mod sites;
