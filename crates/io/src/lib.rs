@@ -6,7 +6,7 @@
 //! | to | use |
 //! |---|---|
 //! | read a data set (folder, single files, or both) | [`Source::load`] |
-//! | turn a spots or tracks table into a data set | [`import_trackmate`], [`import_tracks`] |
+//! | turn a table of spots or tracks, a file of TrackMate or tracks of napari into a data set | [`import_trackmate`], [`import_tracks`] |
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
 //! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_outlines`] |
 //! | turn maxima and minima of a field into a data set | [`import_field`] |
@@ -60,6 +60,7 @@ mod snapshot;
 mod source;
 mod stated;
 mod table;
+mod trackmate_xml;
 mod tracks;
 mod validate;
 mod velocity;

@@ -18,12 +18,13 @@ pub use columns::ColumnNames;
 use columns::Columns;
 pub(crate) use columns::{Layout, Spot};
 pub use profile::{FlowProfile, read_flow_profile};
+pub(crate) use text::{decompressed, text_in_utf8};
 use text::{delimiter, tabbed, text_of};
 pub use vectors::FlowColumnNames;
 pub(crate) use vectors::{Vector, VectorTable, read_table};
 
 /// The most rows of a table.
-const ROW_LIMIT: usize = 20_000_000;
+pub(crate) const ROW_LIMIT: usize = 20_000_000;
 
 /// Rows that TrackMate may put between the header and the first spot.
 const EXTRA_HEADER_ROWS: usize = 3;

@@ -12,7 +12,8 @@ use crate::image_scale::ImageScale;
 use crate::input::read_input;
 use crate::napari;
 use crate::note::Note;
-use crate::table::{ColumnNames, Layout, SpotTable, read_spots};
+use crate::table::{ColumnNames, Layout, SpotTable, decompressed, read_spots};
+use crate::trackmate_xml::{is_xml, read_trackmate};
 use crate::validate::{ArrayNames, check_seen};
 
 /// The most frames between the first and the last spot.
@@ -93,9 +94,9 @@ pub struct ImportSummary {
     pub left_out_duplicate: usize,
 }
 
-/// Imports the spots table that TrackMate exports, CSV or gzip-compressed CSV.
+/// Imports the spots table that TrackMate exports, CSV or gzip-compressed CSV, or its XML: the file that it saves, or its exported tracks.
 ///
-/// Needs the columns `TRACK_ID`, `FRAME` and `POSITION_X`, `POSITION_Y` (or `X`, `Y`) in any
+/// XML brings frame interval and units. Of a table, needs the columns `TRACK_ID`, `FRAME` and `POSITION_X`, `POSITION_Y` (or `X`, `Y`) in any
 /// case. Up to three rows of labels and units below the header are skipped.
 ///
 /// # Errors
@@ -123,7 +124,7 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     let given = options.scale();
     given.begin(Boundary::Open)?;
     let (bytes, record) = read_input(path)?;
-    let table = read_any(path, &bytes, layout, &options.columns)?;
+    let (table, layout) = read_any(path, &bytes, layout, &options.columns)?;
     let mut notes = table.notes.clone();
     let scale = table.stated.settle(&given, &mut notes);
     let boundary = options.boundary.unwrap_or(Boundary::Open);
@@ -136,11 +137,7 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     );
     dataset.check_settings().map_err(Error::Setting)?;
     dataset.inputs.push(record);
-    let tracks = Tracks::arrange(&table, layout).map_err(|fault| Error::Table {
-        path: path.to_path_buf(),
-        line: None,
-        fault,
-    })?;
+    let tracks = Tracks::arrange(&table, layout).map_err(|fault| table_error(path, fault))?;
 
     let pixel = scale.pixel_size.unwrap_or(1.0);
     dataset.positions = tracks.positions * pixel;
@@ -154,12 +151,28 @@ fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import
     Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary, notes })
 }
 
-/// The spots of a table, or of an array of tracks.
-fn read_any(path: &Path, bytes: &[u8], layout: Layout, columns: &ColumnNames) -> Result<SpotTable, Error> {
-    match layout {
-        Layout::Tracks if bytes.starts_with(napari::SIGNATURE) => napari::read_tracks_layer(path, bytes),
-        _ => read_spots(path, bytes, layout, columns),
+/// The spots of a table, of a file of TrackMate, or of an array of tracks, and whose tracks they are: whatever the file turns out to be.
+fn read_any(
+    path: &Path,
+    bytes: &[u8],
+    layout: Layout,
+    columns: &ColumnNames,
+) -> Result<(SpotTable, Layout), Error> {
+    let unfolded = decompressed(bytes).map_err(|fault| table_error(path, fault))?;
+    if is_xml(&unfolded) {
+        return Ok((read_trackmate(path, &unfolded)?, Layout::TrackMate));
     }
+    let table = match layout {
+        Layout::Tracks if unfolded.starts_with(napari::SIGNATURE) => {
+            napari::read_tracks_layer(path, &unfolded)?
+        }
+        _ => read_spots(path, &unfolded, layout, columns)?,
+    };
+    Ok((table, layout))
+}
+
+fn table_error(path: &Path, fault: TableFault) -> Error {
+    Error::Table { path: path.to_path_buf(), line: None, fault }
 }
 
 /// The data set as far as the options know it.

@@ -115,3 +115,28 @@ fn arrays_that_are_no_tracks_are_refused() {
         );
     }
 }
+
+#[test]
+fn files_of_trackmate_bring_their_units() {
+    for kind in ["trackmate", "tracks"] {
+        for name in ["trackmate-model.xml", "trackmate-tracks.xml"] {
+            let (data, said) = assert_imported(kind, name, "", 0.5, 6e-4);
+            assert_said(
+                &said,
+                &["read: ", "lengths in micron (TrackMate); 10 min between frames (TrackMate)"],
+            );
+            let settings = std::fs::read_to_string(data.file("dataset.toml")).unwrap();
+            for line in ["frame_interval = 10", "length_unit = \"micron\"", "time_unit = \"min\""] {
+                assert!(settings.contains(line), "{settings}");
+            }
+        }
+    }
+    let (data, said) = assert_imported("trackmate", "trackmate-model.xml", "--image-size 36 30", 0.5, 6e-4);
+    assert_said(
+        &said,
+        &["3 without a track left out", "1 tracks that its filters hide", "the image is 36 × 30 micron"],
+    );
+    assert!(std::fs::read_to_string(data.file("dataset.toml")).unwrap().contains("field_of_view"));
+    let (_, said) = assert_imported("trackmate", "trackmate-tracks.xml", "--frame-interval 5", 0.5, 6e-4);
+    assert_said(&said, &["warning: --frame-interval 5 is taken, but the file says 10 min (TrackMate)"]);
+}

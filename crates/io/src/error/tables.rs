@@ -169,6 +169,21 @@ pub enum TableFault {
         /// Frame as in the table.
         frame: i64,
     },
+    /// XML that is cut or damaged.
+    #[error("cannot be read as XML: {0}")]
+    Xml(String),
+    /// XML of another program.
+    #[error("is XML of another kind ({root})")]
+    OtherXml {
+        /// Its outermost element.
+        root: String,
+    },
+    /// An element that is not there.
+    #[error("has no {element}")]
+    NoElement {
+        /// Its name.
+        element: &'static str,
+    },
     /// The table cannot be split into fields.
     #[error("cannot be read as a table: {0}")]
     Unreadable(String),
@@ -207,6 +222,11 @@ impl TableFault {
             }
             Self::SpotTwice { .. } => {
                 "each cell needs a track of its own: a track is in one place in each frame"
+            }
+            Self::Xml(_) => "the file was probably cut while it was written or copied; save or copy it again",
+            Self::OtherXml { .. } => "TrackMate saves <TrackMate> files, and exports tracks as <Tracks>",
+            Self::NoElement { .. } => {
+                "save the whole model in TrackMate after tracking, or export its tracks to XML"
             }
             Self::Unreadable(_) => {
                 "open the table in a text editor: it should have one line for each cell and frame"

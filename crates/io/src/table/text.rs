@@ -53,6 +53,16 @@ pub(super) fn text_of(bytes: &[u8]) -> Result<Text<'_>, TableFault> {
     if let Some((_, kind)) = OTHER_KINDS.iter().find(|(first, _)| begin.starts_with(first)) {
         return Err(TableFault::AnotherKind { kind });
     }
+    decoded(bytes)
+}
+
+/// The text of a file that is no table, in UTF-8.
+pub(crate) fn text_in_utf8(bytes: &[u8]) -> Result<String, TableFault> {
+    let text = decoded(Cow::Borrowed(bytes))?.bytes.into_owned();
+    String::from_utf8(text).map_err(|_| TableFault::NotText)
+}
+
+fn decoded(bytes: Cow<'_, [u8]>) -> Result<Text<'_>, TableFault> {
     let (mark, wide) = match *bytes {
         [0xff, 0xfe, ..] => (2, Some((UTF_16LE, "UTF-16"))),
         [0xfe, 0xff, ..] => (2, Some((UTF_16BE, "UTF-16"))),
@@ -82,7 +92,8 @@ pub(super) fn text_of(bytes: &[u8]) -> Result<Text<'_>, TableFault> {
     Ok(Text { bytes, encoding: None })
 }
 
-fn decompressed(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TableFault> {
+/// What a file holds, compressed with gzip or not.
+pub(crate) fn decompressed(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TableFault> {
     if !bytes.starts_with(&[0x1f, 0x8b]) {
         return Ok(Cow::Borrowed(bytes));
     }

@@ -12,6 +12,7 @@ mod foreign_tables;
 mod frames;
 mod output;
 mod settings;
+mod trackmate_files;
 mod tracks;
 mod velocities;
 

@@ -23,9 +23,9 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// TrackMate's spots table (.csv or .csv.gz).
+    /// What TrackMate saves (.xml), its exported tracks (.xml), or its table of spots (.csv or .csv.gz).
     Trackmate(tracks::Arguments),
-    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y.
+    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y; or a tracks layer of napari (.npy).
     Tracks(tracks::Arguments),
     /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
     Flow(flow::Arguments),
