@@ -1,6 +1,6 @@
 //! Importing a field: cells are its maxima or minima.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 use voronudge_geometry::{
@@ -11,7 +11,8 @@ use crate::dataset::{Boundary, DataSet};
 use crate::error::{Error, ImageFault, SettingFault};
 use crate::image::{image_error, parse_field_images};
 use crate::image_scale::ImageScale;
-use crate::input::read_input;
+use crate::note::Note;
+use crate::series::{Wanted, read_images};
 use crate::shapes::check_size;
 use crate::validate::{self, ArrayNames};
 
@@ -83,6 +84,8 @@ pub struct FieldImport {
     pub first: Array2<f64>,
     /// Length of a pixel.
     pub pixel_size: f64,
+    /// What was read, guessed and doubted.
+    pub notes: Vec<Note>,
 }
 
 /// An extremum on its way into a data set.
@@ -103,6 +106,14 @@ struct Found {
 /// [`Error::File`]; [`Error::Format`], [`Error::Shape`] and [`Error::Image`] for a file that is no field, or frames with fewer than three
 /// extrema; [`Error::Setting`] for options out of range.
 pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, Error> {
+    import_field_series(&[path.to_path_buf()], options)
+}
+
+/// The same of several files, or of a folder: frames in the natural order of the numbers in their names.
+///
+/// # Errors
+/// As [`import_field`].
+pub fn import_field_series(paths: &[PathBuf], options: &FieldOptions) -> Result<FieldImport, Error> {
     for (key, value) in [("smoothing", options.smoothing), ("distance", options.distance)] {
         if value != 0.0 {
             validate::positive(key, value).map_err(Error::Setting)?;
@@ -114,10 +125,12 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
     if let FieldLinking::Nearest { limit: Some(limit) } = options.linking {
         validate::positive("link_limit", limit).map_err(Error::Setting)?;
     }
-    let (pixel, mut dataset) = options.scale.begin(Boundary::Open)?;
-    let (bytes, record) = read_input(path)?;
-    dataset.inputs.push(record);
-    let field = parse_field_images(path, &bytes)?;
+    options.scale.begin(Boundary::Open)?;
+    let stack = read_images(paths, Wanted::Field, parse_field_images)?;
+    let mut notes = stack.notes.clone();
+    let (pixel, mut dataset) = stack.stated.settle(&options.scale, &mut notes).begin(Boundary::Open)?;
+    dataset.inputs.extend(stack.inputs.iter().cloned());
+    let (path, field) = (stack.name(), &stack.pixels);
     let (_, rows, columns) = field.dim();
     let lengths = [columns as f64 * pixel, rows as f64 * pixel];
     if options.smoothing > lengths[0].max(lengths[1]) {
@@ -139,7 +152,8 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
     for (index, frame) in field.axis_iter(Axis(0)).enumerate() {
         let mut found = find(frame, pixel, options);
         if found.len() < FEWEST_CELLS {
-            let fault = ImageFault::TooFewCells { frame: index, found: found.len(), needed: FEWEST_CELLS };
+            let (path, frame) = stack.place(index);
+            let fault = ImageFault::TooFewCells { frame, found: found.len(), needed: FEWEST_CELLS };
             return Err(image_error(path, fault));
         }
         let spacing = (lengths[0] * lengths[1] / found.len() as f64).sqrt();
@@ -155,6 +169,7 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
         linked,
         first: field.index_axis(Axis(0), 0).to_owned(),
         pixel_size: pixel,
+        notes,
         dataset,
     };
     let mut positions = Array3::from_elem((frames.len(), given, 2), f64::NAN);

@@ -8,8 +8,8 @@
 //! | read a data set (folder, single files, or both) | [`Source::load`] |
 //! | turn a table of spots or tracks, a file of TrackMate or tracks of napari into a data set | [`import_trackmate`], [`import_tracks`] |
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
-//! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_outlines`] |
-//! | turn maxima and minima of a field into a data set | [`import_field`] |
+//! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_label_series`], [`import_outlines`] |
+//! | turn maxima and minima of a field into a data set | [`import_field`], [`import_field_series`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
 //! | get the cells of a frame, and the boundary and the field of view as the geometry knows them | [`Snapshot`], [`DataSet::domain`], [`DataSet::view`] |
 //! | read which frames the user wants | [`FrameSelection`] |
@@ -54,6 +54,7 @@ mod outline_import;
 mod output;
 mod recording;
 mod save;
+mod series;
 mod settings;
 mod shapes;
 mod snapshot;
@@ -71,7 +72,9 @@ pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,
 };
-pub use field_import::{FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field};
+pub use field_import::{
+    FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field, import_field_series,
+};
 pub use field_of_view::SeenArea;
 pub use flow::FlowField;
 pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
@@ -79,7 +82,7 @@ pub use frames::FrameSelection;
 pub use image_scale::ImageScale;
 pub use input::InputFile;
 pub use journal::Journal;
-pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_labels};
+pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_label_series, import_labels};
 pub use measurement::{DeclaredWindow, PositionsAre, WindowKind};
 pub use memory::machine_memory;
 pub use noise::Noise;

@@ -18,6 +18,8 @@ pub(crate) struct Stated {
     pub(crate) by: &'static str,
     /// Whether lengths of the file are in `length_unit` as they stand.
     pub(crate) is_scaled: bool,
+    /// Whether there is one frame only, so that times do not matter.
+    pub(crate) is_still: bool,
 }
 
 impl Stated {
@@ -117,6 +119,7 @@ impl Stated {
                     _ => {}
                 }
             }
+            (None, None) if self.is_still => {}
             (None, None) => notes.push(Note::guessed("frames follow each other at a time of 1")),
             (Some(_), None) => {}
         }

@@ -55,7 +55,7 @@ fn of_tracks<'a, 'input>(root: Node<'a, 'input>) -> Result<SpotTable, Located<'a
             time_unit: unit(root, "timeUnits"),
             by: "TrackMate",
             is_scaled: true,
-            pixel_size: None,
+            ..Stated::default()
         },
         notes: vec![Note::read("the tracks that TrackMate exports; they are numbered in their order")],
     };
@@ -108,7 +108,7 @@ fn of_model<'a, 'input>(root: Node<'a, 'input>) -> Result<SpotTable, Located<'a,
             time_unit: unit(model, "timeunits"),
             by: "TrackMate",
             is_scaled: true,
-            pixel_size: None,
+            ..Stated::default()
         },
         notes,
     };

@@ -39,6 +39,8 @@ pub struct ShapeReport {
     pub of_centroids: AgreementRecord,
     /// How the positions were found; `null` where they are centroids.
     pub sites: Option<SiteRecord>,
+    /// What was read, guessed and doubted of the files.
+    pub notes: Vec<NoteRecord>,
 }
 
 /// Something that was understood of a file that does not say everything about itself.
@@ -149,4 +151,6 @@ pub struct FieldReport {
     pub pixel_size: f64,
     /// The least prominence of an extremum taken.
     pub smallest_prominence: f64,
+    /// What was read, guessed and doubted of the files.
+    pub notes: Vec<NoteRecord>,
 }

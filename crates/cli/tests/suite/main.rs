@@ -18,6 +18,7 @@ mod flow_inferences;
 mod forecasts;
 mod gradient_checks;
 mod import_formats;
+mod import_images;
 mod imports;
 mod inferences;
 #[cfg(unix)]

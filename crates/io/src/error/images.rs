@@ -46,6 +46,46 @@ pub enum ImageFault {
         /// The kind of pixels.
         colour: String,
     },
+    /// Frames of a movie that were written as the planes of a colour image.
+    #[error("has its {frames} frames as the planes of a colour image")]
+    FramesAsPlanes {
+        /// How many.
+        frames: usize,
+    },
+    /// A header that cannot be understood.
+    #[error("has a header of {by} that cannot be read: {detail}")]
+    Description {
+        /// Whose.
+        by: &'static str,
+        /// What is wrong.
+        detail: String,
+    },
+    /// More than one layer, one channel, or one image.
+    #[error("holds {detail} ({by}), but one image for each frame is needed")]
+    Axes {
+        /// What it holds.
+        detail: String,
+        /// Who says so.
+        by: &'static str,
+    },
+    /// Another number of pages than the header says.
+    #[error("has {pages} pages, but its header speaks of {stated} images ({by})")]
+    OtherPages {
+        /// Pages found.
+        pages: usize,
+        /// Images stated.
+        stated: u64,
+        /// Who says so.
+        by: &'static str,
+    },
+    /// Pixels that are longer than wide.
+    #[error("has pixels of {} × {} ({by}), but square ones are needed", size[0], size[1])]
+    NotSquare {
+        /// Along x and along y.
+        size: [f64; 2],
+        /// Who says so.
+        by: &'static str,
+    },
     /// Pages of different size.
     #[error("page {page} has {} × {} pixels, but the first has {} × {}", found[0], found[1], expected[0], expected[1])]
     OtherSize {
@@ -161,6 +201,20 @@ impl ImageFault {
                  --save_png and --save_tif do, or numpy.save(\"labels.npy\", masks)"
             }
             Self::Colour { .. } => "save one channel as a grey image of 8, 16 or 32 bits",
+            Self::FramesAsPlanes { .. } => {
+                "tifffile takes three or four frames for colours: write them with photometric=\"minisblack\""
+            }
+            Self::Description { .. } => "save the image again, from the program that wrote it or from Fiji",
+            Self::Axes { .. } => {
+                "in Fiji, Image › Duplicate takes one channel, and Image › Stacks › Z Project… one layer; then save as TIFF"
+            }
+            Self::OtherPages { .. } => {
+                "the rest is in other files, or behind the first page as Fiji writes stacks beyond 4 GB; save the frames as one file \
+                 each, or fewer of them"
+            }
+            Self::NotSquare { .. } => {
+                "resample the labels to square pixels, with the nearest label and not an average"
+            }
             Self::OtherSize { .. } => "all frames must be of one size; import them one by one otherwise",
             Self::TooLarge { .. } => "cut the image or import fewer frames at a time",
             Self::RealLabels { .. } => {

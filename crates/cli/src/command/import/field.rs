@@ -1,6 +1,7 @@
 //! `import field`: extrema of a stream function or of an intensity.
 
 use super::ImageArguments;
+use super::notes::{records, told};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::boundary::domain;
@@ -10,7 +11,7 @@ use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Edge, Tessellation};
-use voronudge_io::{FieldImport, FieldLinking, FieldOptions, Snapshot, WantedExtrema, import_field};
+use voronudge_io::{FieldImport, FieldLinking, FieldOptions, Snapshot, WantedExtrema, import_field_series};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
@@ -29,8 +30,10 @@ const GUIDE: &[[&str; 2]] = &[
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The field (ny, nx) or (frames, ny, nx), .npy, a grey .tif of one page or several, or a grey .png.
-    file: PathBuf,
+    /// The field (ny, nx) or (frames, ny, nx), .npy, a grey .tif of one page or several, or a grey .png; several files, or those of a
+    /// folder, are frames in the order of the numbers in their names.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
     #[command(flatten)]
     image: ImageArguments,
     /// Which extrema are cells.
@@ -78,7 +81,7 @@ enum Link {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = arguments.common.output([&arguments.file])?;
+    let mut out = arguments.common.output(&arguments.files)?;
     let options = FieldOptions {
         scale: arguments.image.scale(),
         extrema: match arguments.extrema {
@@ -95,7 +98,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             Link::Nearest => FieldLinking::Nearest { limit: arguments.link_limit },
         },
     };
-    let import = import_field(&arguments.file, &options)?;
+    let import = import_field_series(&arguments.files, &options)?;
     let data = &import.dataset;
     let expected: usize = import.counts.iter().skip(1).sum();
     if arguments.link == Link::Nearest && import.linked < expected {
@@ -104,6 +107,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             expected - import.linked
         ));
     }
+    let understood = told(&mut run, &import.notes);
     data.save(&mut out)?;
     out.write_array("heights.npy", import.heights.view())?;
     out.write_array("prominences.npy", import.prominences.view())?;
@@ -122,13 +126,14 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .copied()
             .filter(|x| x.is_finite())
             .fold(f64::INFINITY, f64::min),
+        notes: records(&import.notes),
     };
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page(&arguments.file, &import, &report)?)?;
+    out.write_text("report.html", &page(&arguments.files[0], &import, &report)?)?;
     let extrema: usize = report.frames.iter().sum();
     let text = format!(
-        "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\nwritten to {}\n",
+        "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
         report.frames.len(),
         report.tracks,
         report.linked,

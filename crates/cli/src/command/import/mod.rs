@@ -50,16 +50,16 @@ struct ScaleArguments {
 /// What images do not say about themselves.
 #[derive(Debug, Args)]
 struct ImageArguments {
-    /// Length of a pixel: coordinates and displacements are multiplied by it [default: 1].
+    /// Length of a pixel: coordinates and displacements are multiplied by it [default: that of a TIFF, else 1].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pixel_size: Option<f64>,
-    /// Time between frames.
+    /// Time between frames [default: that of the file, else 1].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     frame_interval: Option<f64>,
-    /// Unit of length after scaling.
+    /// Unit of length after scaling [default: that of the file].
     #[arg(long, value_name = "UNIT")]
     length_unit: Option<String>,
-    /// Unit of time.
+    /// Unit of time [default: that of the file].
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
     /// Direction in which rows are counted, or y grows [default: down, as in images].
