@@ -11,9 +11,11 @@ use ndarray::{Array3, ArrayD, Axis, Ix3};
 pub(crate) use self::description::Described;
 use self::png::{Indices, parse_png};
 use self::tiff::{integers, parse_tiff, reals};
-use crate::array::{parse_integers, parse_reals};
+use crate::array::{parse_integers, parse_reals, pickled};
+use crate::cellpose::read_masks;
 use crate::error::{Error, FormatFault, ImageFault, ShapeFault};
 use crate::memory::machine_memory;
+use crate::note::Note;
 use crate::tracks::SIZE_LIMIT;
 
 /// Memory that an image takes while it is read and searched, in 8 bytes for each pixel.
@@ -34,7 +36,10 @@ impl<T> From<Array3<T>> for Images<T> {
 /// Labels (frames, rows, columns), 0 for background; one image is one frame.
 pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Images<i64>, Error> {
     let labels = match kind(path, bytes)? {
-        Kind::Array => stack(path, parse_integers(path, bytes).map_err(as_image_fault)?)?.into(),
+        Kind::Array => match pickled(bytes) {
+            Some(body) => of_cellpose(stack(path, read_masks(path, body)?)?),
+            None => stack(path, parse_integers(path, bytes).map_err(as_image_fault)?)?.into(),
+        },
         Kind::Tiff => parse_tiff(path, bytes, integers).map_err(as_picture)?,
         Kind::Png => parse_png(path, bytes, Indices::Numbers).map_err(as_picture)?.mapv(i64::from).into(),
     };
@@ -45,6 +50,15 @@ pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Images<i64>, Err
         }
         None => Ok(labels),
     }
+}
+
+/// Masks of Cellpose, which works on images and on volumes.
+fn of_cellpose(pixels: Array3<i64>) -> Images<i64> {
+    let mut notes = vec![Note::read("the masks of Cellpose")];
+    if pixels.dim().0 > 1 {
+        notes.push(Note::doubtful("masks of several planes (Cellpose) are taken for frames in time"));
+    }
+    Images { pixels, described: Described { notes, ..Described::default() } }
 }
 
 /// A field (frames, rows, columns), finite everywhere; one image is one frame.
@@ -92,7 +106,10 @@ fn as_image_fault(error: Error) -> Error {
         return error;
     };
     match found.trim_start_matches(['<', '>', '|', '=']).chars().next() {
-        Some('O') => Error::Image { path, fault: ImageFault::Pickled },
+        Some('O') => {
+            let detail = "only labels are looked for in one".into();
+            Error::Image { path, fault: ImageFault::Pickled { detail } }
+        }
         Some('f') => Error::Image { path, fault: ImageFault::RealLabels { found } },
         _ => Error::Format { path, fault: FormatFault::UnsupportedType { found, needed } },
     }

@@ -32,6 +32,7 @@
 //! [`Error::hint`] adds what to do about it.
 
 mod array;
+mod cellpose;
 mod dataset;
 mod digest;
 mod error;
@@ -52,6 +53,7 @@ mod noise;
 mod note;
 mod outline_import;
 mod output;
+mod pickle;
 mod recording;
 mod save;
 mod series;

@@ -163,3 +163,35 @@ fn series_that_cannot_be_meant_are_refused() {
     folder.write("a3.png", "");
     refused(&["images of several kinds: 2 of *.npy, 1 of *.png"]);
 }
+
+#[test]
+fn masks_that_cellpose_saved_are_read() {
+    let (data, said) = import(&[&sample("masks_seg.npy")], "--pixel-size 0.5 --length-unit um");
+    assert_said(&said, &["12 outlines in 1 frames, 12 cells", "read: the masks of Cellpose"]);
+    let numbers: Array2<i64> = read(&data.file("cell_numbers.npy"));
+    assert_eq!(numbers.iter().copied().collect::<Vec<_>>(), (1..=12).collect::<Vec<_>>());
+    // The masks are 13 rows of 36 pixels, in cells about 6 pixels wide.
+    let areas: Array2<f64> = read(&data.file("true_areas.npy"));
+    assert_eq!(areas.sum(), 0.25 * 13.0 * 36.0);
+    let settings = fs::read_to_string(data.file("dataset.toml")).unwrap();
+    assert_said(&settings, &["field_of_view = [0.0, 0.0, 18.0, 6.5]"]);
+    let model = Folder::new();
+    succeed("evaluate --quiet", &[("", data.path()), ("--out", model.path())]);
+}
+
+#[test]
+fn other_objects_than_those_of_cellpose_are_refused() {
+    let whole = fs::read(sample("masks_seg.npy")).unwrap();
+    let at = whole.windows(5).position(|part| part == b"masks").unwrap();
+    let mut renamed = whole.clone();
+    renamed[at..at + 5].copy_from_slice(b"skams");
+    let folder = Folder::new();
+    for (content, facts) in [
+        (&renamed[..], ["x_seg.npy", "without masks: its entries are outlines, skams, chan_choose"]),
+        (&whole[..whole.len() / 2], ["x_seg.npy", "no masks can be found: it ends too early"]),
+    ] {
+        folder.write("x_seg.npy", content);
+        let file = folder.file("x_seg.npy");
+        assert_arguments_refused(["import".as_ref(), "labels".as_ref(), file.as_os_str()], &facts);
+    }
+}

@@ -7,9 +7,18 @@ pub enum ImageFault {
     /// Neither `.npy` nor TIFF nor PNG.
     #[error("is neither a .npy array nor a TIFF or PNG image")]
     UnknownFormat,
-    /// A pickled Python object, such as Cellpose's `_seg.npy`.
-    #[error("holds a pickled Python object, not an array of numbers")]
-    Pickled,
+    /// A pickled Python object that is not Cellpose's `_seg.npy`, or not all of it.
+    #[error("holds a pickled Python object in which no masks can be found: {detail}")]
+    Pickled {
+        /// Why not.
+        detail: String,
+    },
+    /// A pickled dictionary of something else.
+    #[error("holds a pickled dictionary without masks: its entries are {found}")]
+    NoMasks {
+        /// Names of its entries.
+        found: String,
+    },
     /// A TIFF file that cannot be decoded.
     #[error("is not a whole TIFF image: page {page}: {detail}")]
     Tiff {
@@ -184,8 +193,8 @@ impl ImageFault {
     pub(super) fn hint(&self) -> Option<String> {
         let text = match self {
             Self::UnknownFormat => "save it as TIFF or PNG, or with numpy.save",
-            Self::Pickled => {
-                "take the masks out of a _seg.npy of Cellpose: \
+            Self::Pickled { .. } | Self::NoMasks { .. } => {
+                "only masks that Cellpose saved are taken out of an object; save the array by itself: \
                  np.save(\"masks.npy\", np.load(\"x_seg.npy\", allow_pickle=True).item()[\"masks\"])"
             }
             Self::Tiff { .. } => {

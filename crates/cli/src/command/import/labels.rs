@@ -13,7 +13,7 @@ use voronudge_io::{BorderCells, LabelLinking, LabelOptions, import_label_series}
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, a grey .tif of one page or several, or a .png; several files, or
+    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, a _seg.npy of Cellpose, a grey .tif of one page or several, or a .png; several files, or
     /// those of a folder, are frames in the order of the numbers in their names.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
