@@ -7,6 +7,7 @@
 //! |---|---|
 //! | read a data set (folder, single files, or both) | [`Source::load`] |
 //! | turn a table of spots or tracks, a file of TrackMate or tracks of napari into a data set | [`import_trackmate`], [`import_tracks`] |
+//! | turn points that nobody followed into a data set | [`import_points`] |
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
 //! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_label_series`], [`import_outlines`] |
 //! | turn maxima and minima of a field into a data set | [`import_field`], [`import_field_series`] |
@@ -46,6 +47,7 @@ mod image_scale;
 mod input;
 mod journal;
 mod label_import;
+mod linking;
 mod measurement;
 mod memory;
 mod napari;
@@ -54,6 +56,7 @@ mod note;
 mod outline_import;
 mod output;
 mod pickle;
+mod points;
 mod recording;
 mod save;
 mod series;
@@ -74,9 +77,7 @@ pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,
 };
-pub use field_import::{
-    FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field, import_field_series,
-};
+pub use field_import::{FieldImport, FieldOptions, WantedExtrema, import_field, import_field_series};
 pub use field_of_view::SeenArea;
 pub use flow::FlowField;
 pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
@@ -85,12 +86,14 @@ pub use image_scale::ImageScale;
 pub use input::InputFile;
 pub use journal::Journal;
 pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_label_series, import_labels};
+pub use linking::PlaceLinking;
 pub use measurement::{DeclaredWindow, PositionsAre, WindowKind};
 pub use memory::machine_memory;
 pub use noise::Noise;
 pub use note::{Note, NoteKind};
 pub use outline_import::{OutlineOptions, import_outlines};
 pub use output::{OutputDirectory, OutputFolder};
+pub use points::{PointImport, import_points};
 pub use recording::Recording;
 pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
 pub use snapshot::Snapshot;

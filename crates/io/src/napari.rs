@@ -46,19 +46,26 @@ pub(crate) fn read_tracks_layer(path: &Path, bytes: &[u8]) -> Result<SpotTable, 
 }
 
 fn spot(index: usize, row: ArrayView1<'_, f64>) -> Result<Spot, TableFault> {
-    let fault = |column, expected| {
-        let value = row[column];
-        TableFault::ArrayRow { row: index, column, value, expected }
-    };
-    let whole = |column: usize| {
-        let value = row[column];
-        let is_whole = value.fract() == 0.0 && value.abs() < EXACT;
-        if is_whole { Ok(value as i64) } else { Err(fault(column, "a whole number")) }
-    };
-    let finite = |column: usize| {
-        let value = row[column];
-        if value.is_finite() { Ok(value) } else { Err(fault(column, "a finite number")) }
-    };
     let last = row.len() - 1;
-    Ok(Spot { track: whole(0)?, frame: whole(1)?, x: finite(last)?, y: finite(last - 1)? })
+    Ok(Spot {
+        track: whole(index, row, 0)?,
+        frame: whole(index, row, 1)?,
+        x: finite(index, row, last)?,
+        y: finite(index, row, last - 1)?,
+    })
+}
+
+/// A number of a row that counts something.
+pub(crate) fn whole(index: usize, row: ArrayView1<'_, f64>, column: usize) -> Result<i64, TableFault> {
+    let value = row[column];
+    let is_whole = value.fract() == 0.0 && value.abs() < EXACT;
+    let fault = TableFault::ArrayRow { row: index, column, value, expected: "a whole number" };
+    is_whole.then_some(value as i64).ok_or(fault)
+}
+
+/// A coordinate of a row.
+pub(crate) fn finite(index: usize, row: ArrayView1<'_, f64>, column: usize) -> Result<f64, TableFault> {
+    let value = row[column];
+    let fault = TableFault::ArrayRow { row: index, column, value, expected: "a finite number" };
+    value.is_finite().then_some(value).ok_or(fault)
 }

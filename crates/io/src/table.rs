@@ -87,7 +87,7 @@ fn parse(text: &[u8], separator: u8, layout: Layout, names: &ColumnNames) -> Res
     let mut depths = Depths::default();
     let mut extra_rows = match layout {
         Layout::TrackMate => EXTRA_HEADER_ROWS,
-        Layout::Tracks | Layout::Outlines => 0,
+        Layout::Tracks | Layout::Outlines | Layout::Points => 0,
     };
     for row in rows {
         let row = row.map_err(csv_fault)?;
@@ -98,6 +98,9 @@ fn parse(text: &[u8], separator: u8, layout: Layout, names: &ColumnNames) -> Res
             continue;
         }
         extra_rows = 0;
+        if table.spots.is_empty() {
+            columns.check_label(&row, names).map_err(|fault| (offset_of(&row), fault))?;
+        }
         match columns.spot(&row) {
             Ok(Some(_)) if table.spots.len() == ROW_LIMIT => {
                 return Err((offset_of(&row), TableFault::TooManyRows { limit: ROW_LIMIT }));

@@ -9,7 +9,7 @@ use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
 use crate::field_of_view::SeenArea;
 use crate::image_scale::ImageScale;
-use crate::input::read_input;
+use crate::input::{InputFile, read_input};
 use crate::napari;
 use crate::note::Note;
 use crate::table::{ColumnNames, Layout, SpotTable, decompressed, read_spots};
@@ -51,7 +51,7 @@ pub struct ImportOptions {
 }
 
 impl ImportOptions {
-    fn scale(&self) -> ImageScale {
+    pub(crate) fn scale(&self) -> ImageScale {
         ImageScale {
             pixel_size: self.pixel_size,
             length_unit: self.length_unit.clone(),
@@ -121,12 +121,21 @@ pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Err
 }
 
 fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
-    let given = options.scale();
-    given.begin(Boundary::Open)?;
+    options.scale().begin(Boundary::Open)?;
     let (bytes, record) = read_input(path)?;
-    let (table, layout) = read_any(path, &bytes, layout, &options.columns)?;
+    let read = read_any(path, &bytes, layout, &options.columns)?;
+    finish(path, options, record, read)
+}
+
+/// The data set of the spots of a file.
+pub(crate) fn finish(
+    path: &Path,
+    options: &ImportOptions,
+    record: InputFile,
+    (table, layout): (SpotTable, Layout),
+) -> Result<Import, Error> {
     let mut notes = table.notes.clone();
-    let scale = table.stated.settle(&given, &mut notes);
+    let scale = table.stated.settle(&options.scale(), &mut notes);
     let boundary = options.boundary.unwrap_or(Boundary::Open);
     let mut dataset = describe(
         boundary,
@@ -171,7 +180,7 @@ fn read_any(
     Ok((table, layout))
 }
 
-fn table_error(path: &Path, fault: TableFault) -> Error {
+pub(crate) fn table_error(path: &Path, fault: TableFault) -> Error {
     Error::Table { path: path.to_path_buf(), line: None, fault }
 }
 

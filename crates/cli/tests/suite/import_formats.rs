@@ -140,3 +140,68 @@ fn files_of_trackmate_bring_their_units() {
     let (_, said) = assert_imported("trackmate", "trackmate-tracks.xml", "--frame-interval 5", 0.5, 6e-4);
     assert_said(&said, &["warning: --frame-interval 5 is taken, but the file says 10 min (TrackMate)"]);
 }
+
+#[test]
+fn points_without_tracks_are_followed() {
+    let (data, said) = assert_imported("points", "napari-points.csv", "", 1.0, 0.0);
+    assert_said(
+        &said,
+        &[
+            "120 points in 4 frames, 30 cells (90 followed from the frame before)",
+            "frame is \"axis-0\", x is \"axis-2\", y is \"axis-1\"",
+            "cells move by no more than 5.",
+        ],
+    );
+    assert_eq!(report(data.path())["linked"], 90);
+    let (_, said) = assert_imported("points", "imagej-results.csv", "--length-unit um", 0.5, 6e-4);
+    assert_said(&said, &["frame is \"Slice\", x is \"X\", y is \"Y\""]);
+    assert_imported("points", "regionprops.csv", "--link-limit 3", 1.0, 0.0);
+    assert_imported("points", "cellprofiler.csv", "", 1.0, 6e-4);
+    // Nearer than cells move: they begin anew.
+    let data = Folder::new();
+    let paths = [("", &*sample("napari-points.csv")), ("--out", data.path())];
+    let said = succeed("import points --link-limit 0.001", &paths).stderr;
+    assert_said(&said, &["points after the first frame continue none of the frame before"]);
+}
+
+#[test]
+fn arrays_of_points_are_those_of_napari() {
+    let tracks: Array2<f64> = read(&sample("napari-tracks.npy"));
+    let folder = Folder::new();
+    let still: Vec<_> =
+        tracks.rows().into_iter().filter(|row| row[1] == 0.0).flat_map(|row| [row[2], row[3]]).collect();
+    folder.write_array("still.npy", &Array2::from_shape_vec((CELLS, 2), still).unwrap());
+    folder.write_array("film.npy", &tracks.select(ndarray::Axis(1), &[1, 2, 3]));
+    for (name, frames, order) in [("still.npy", 1, "y, x"), ("film.npy", FRAMES, "frame, y, x")] {
+        let data = Folder::new();
+        let said = succeed("import points", &[("", &folder.file(name)), ("--out", data.path())]).stdout;
+        assert_said(&said, &[&format!("columns of the array are {order}, as in a points layer of napari")]);
+        let positions: Array3<f64> = read(&data.file("positions.npy"));
+        assert_eq!(positions.dim(), (frames, CELLS, 2));
+        assert_eq!(positions[[0, 7, 0]], truth()[[0, 7, 0]]);
+        assert_eq!(said.contains("at a time of 1"), frames > 1);
+    }
+}
+
+#[test]
+fn tables_without_tracks_are_shown_the_way() {
+    let table = sample("imagej-results.csv");
+    let hint = assert_arguments_refused(
+        ["import".as_ref(), "tracks".as_ref(), table.as_os_str()],
+        &["line 2: column \"Label\" holds \"cells.tif:1/4\", which is no number of a track"],
+    );
+    assert!(hint.contains("import points"), "{hint}");
+    let table = sample("napari-points.csv");
+    let hint = assert_arguments_refused(
+        ["import".as_ref(), "tracks".as_ref(), table.as_os_str()],
+        &["no column for the track"],
+    );
+    assert!(hint.contains("import points"), "{hint}");
+    let folder = Folder::new();
+    folder.write("points.csv", "x,y\n1,2\n1,2\n3,4\n");
+    let table = folder.file("points.csv");
+    assert_arguments_refused(
+        ["import".as_ref(), "points".as_ref(), table.as_os_str()],
+        &["points.csv", "both at (1, 2)"],
+    );
+}

@@ -97,6 +97,14 @@ pub enum TableFault {
         /// What is needed, in words.
         expected: &'static str,
     },
+    /// A column that was taken for the track and holds names.
+    #[error("column \"{}\" holds \"{}\", which is no number of a track", shown(column), shown(text))]
+    Untracked {
+        /// The column.
+        column: String,
+        /// What it holds.
+        text: String,
+    },
     /// Frame numbers too far apart.
     #[error("frames run from {first} to {last}, more than {limit} frames are not taken")]
     TooManyFrames {
@@ -202,7 +210,12 @@ impl TableFault {
             Self::FieldCount { .. } => "the row was probably cut; export the table again",
             Self::NotANumber { text, .. } if text.contains(',') => "write decimal points, not decimal commas",
             Self::NotANumber { .. } => "correct or remove this row",
-            Self::ArrayRow { .. } => "columns are track, frame, (z,) y, x, as in a tracks layer of napari",
+            Self::ArrayRow { .. } => {
+                "columns are track, frame, (z,) y, x as in a tracks layer of napari, or frame, (z,) y, x as in a points layer"
+            }
+            Self::Untracked { .. } => {
+                "import points follows cells that have no tracks; or name the column of the track with --track-column"
+            }
             Self::TooManyFrames { .. } => {
                 "is the frame column a time? name the column that counts images from zero"
             }

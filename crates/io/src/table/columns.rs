@@ -30,6 +30,8 @@ pub(crate) enum Layout {
     Tracks,
     /// Corners of outlines, row after row; without a column of frames all are in one.
     Outlines,
+    /// Points without tracks; without a column of frames all are in one.
+    Points,
 }
 
 /// A spot that belongs to a track.
@@ -49,7 +51,8 @@ pub(super) struct Column {
 
 /// The columns of a table that matter.
 pub(super) struct Columns {
-    track: Column,
+    /// Absent for points, which are numbered in the order of their rows.
+    track: Option<Column>,
     frame: Option<Column>,
     x: Column,
     y: Column,
@@ -70,16 +73,24 @@ impl Columns {
             Layout::TrackMate => {
                 "--track-column id --frame-column t; for another table format use import tracks"
             }
-            Layout::Tracks | Layout::Outlines => "--track-column id --frame-column t",
+            Layout::Tracks => {
+                "--track-column id --frame-column t; import points follows cells that have no tracks"
+            }
+            Layout::Outlines => "--cell-column id --frame-column t",
+            Layout::Points => "--x-column cx --y-column cy --frame-column t",
         };
         let find = |role, given: &Option<String>, known: &[&str]| {
             Column::find(&found, role, given, known, plain, example)
                 .or_else(|fault| Column::find(&found, role, given, known, bare, example).map_err(|_| fault))
         };
+        let may_be_still = matches!(layout, Layout::Outlines | Layout::Points);
         Ok(Self {
-            track: find("track", &names.track, known.track)?,
+            track: match layout {
+                Layout::Points => None,
+                _ => Some(find("track", &names.track, known.track)?),
+            },
             frame: match find("frame", &names.frame, known.frame) {
-                Err(_) if layout == Layout::Outlines && names.frame.is_none() => None,
+                Err(_) if may_be_still && names.frame.is_none() => None,
                 found => Some(found?),
             },
             x: find("x coordinate", &names.x, known.x)?,
@@ -91,7 +102,7 @@ impl Columns {
     /// What is to be said of how columns were found.
     pub(super) fn notes(&self, names: &ColumnNames) -> Vec<Note> {
         let roles = [
-            ("track", Some(&self.track), &names.track),
+            ("track", self.track.as_ref(), &names.track),
             ("frame", self.frame.as_ref(), &names.frame),
             ("x", Some(&self.x), &names.x),
             ("y", Some(&self.y), &names.y),
@@ -103,14 +114,29 @@ impl Columns {
         if !found.is_empty() {
             notes.push(Note::guessed(format!("of the columns {}", found.join(", "))));
         }
-        if names.track.is_none() && plain(&self.track.name) == LABEL {
+        if let Some(track) = self.guessed_label(names) {
             notes.push(Note::doubtful(format!(
                 "\"{}\" is taken for the track: the same number is the same cell in all frames; import points follows cells whose \
                  numbers are those of each image",
-                excerpt(&self.track.name)
+                excerpt(&track.name)
             )));
         }
         notes
+    }
+
+    /// The column of the track, if it is one of numbers of regions that nobody named.
+    fn guessed_label(&self, names: &ColumnNames) -> Option<&Column> {
+        self.track.as_ref().filter(|track| names.track.is_none() && plain(&track.name) == LABEL)
+    }
+
+    /// That a guessed column of tracks holds names, as ImageJ's `Label` does.
+    pub(super) fn check_label(&self, row: &ByteRecord, names: &ColumnNames) -> Result<(), TableFault> {
+        match self.guessed_label(names) {
+            Some(track) if !track.text(row).is_empty() && track.finite(row).is_err() => {
+                Err(TableFault::Untracked { column: track.name.clone(), text: excerpt(&track.text(row)) })
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The unit of length that the header states in brackets.
@@ -135,18 +161,18 @@ impl Columns {
 
     /// The name of the column of the track.
     pub(super) fn track_name(self) -> String {
-        self.track.name
+        self.track.map_or_else(String::new, |track| track.name)
     }
 
     /// The spot of a row; `None` where it belongs to no track.
     pub(super) fn spot(&self, row: &ByteRecord) -> Result<Option<Spot>, TableFault> {
         const UNTRACKED: [&str; 6] = ["", "-", "none", "nan", "na", "null"];
-        let track = self.track.text(row).to_lowercase();
-        if UNTRACKED.contains(&track.as_str()) {
+        let text = self.track.as_ref().map(|track| track.text(row).to_lowercase());
+        if text.is_some_and(|text| UNTRACKED.contains(&text.as_str())) {
             return Ok(None);
         }
         Ok(Some(Spot {
-            track: self.track.whole(row)?,
+            track: self.track.as_ref().map_or(Ok(0), |track| track.whole(row))?,
             frame: self.frame.as_ref().map_or(Ok(0), |frame| frame.whole(row))?,
             x: self.x.finite(row)?,
             y: self.y.finite(row)?,

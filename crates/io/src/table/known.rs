@@ -73,6 +73,9 @@ const BY_NUMBER: [[&str; 3]; 3] = [
     ["weighted_centroid_0", "weighted_centroid_1", "weighted_centroid_2"],
 ];
 
+/// Axes of points as napari numbers them, the last being x.
+const AXES: [&[&str]; 4] = [&["axis_0"], &["axis_1"], &["axis_2"], &["axis_3"]];
+
 impl Known {
     /// The names to look for in a table with these columns.
     pub(super) fn of(layout: Layout, columns: &[String]) -> Self {
@@ -84,6 +87,16 @@ impl Known {
         let known = Self { track: TRACK, frame: FRAME, x: X, y: Y, z: Z };
         if X.iter().any(|name| has(name)) {
             return known;
+        }
+        if layout == Layout::Points && has("axis_0") && has("axis_1") {
+            let none: &[&str] = &[];
+            let [a, b, c, d] = AXES;
+            let (frame, z, y, x) = match (has("axis_2"), has("axis_3")) {
+                (_, true) => (a, b, c, d),
+                (true, false) => (a, none, b, c),
+                (false, false) => (none, none, a, b),
+            };
+            return Self { frame, z, y, x, ..known };
         }
         match BY_NUMBER.iter().find(|[first, second, _]| has(first) && has(second)) {
             Some([z, y, x]) if has(x) => Self { x: one(x), y: one(y), z: one(z), ..known },

@@ -1,6 +1,7 @@
 //! `import field`: extrema of a stream function or of an intensity.
 
 use super::ImageArguments;
+use super::linking::{Link, warn_of_breaks};
 use super::notes::{records, told};
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -11,7 +12,7 @@ use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Edge, Tessellation};
-use voronudge_io::{FieldImport, FieldLinking, FieldOptions, Snapshot, WantedExtrema, import_field_series};
+use voronudge_io::{FieldImport, FieldOptions, Snapshot, WantedExtrema, import_field_series};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
@@ -71,14 +72,6 @@ enum Kind {
     Both,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Link {
-    /// None: each frame has cells of its own.
-    None,
-    /// The nearest of the same kind in the next frame.
-    Nearest,
-}
-
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
     let mut out = arguments.common.output(&arguments.files)?;
@@ -93,20 +86,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         prominence: arguments.prominence,
         distance: arguments.distance,
         edge: if arguments.periodic { Edge::Periodic } else { Edge::Open },
-        linking: match arguments.link {
-            Link::None => FieldLinking::Separate,
-            Link::Nearest => FieldLinking::Nearest { limit: arguments.link_limit },
-        },
+        linking: arguments.link.linking(arguments.link_limit),
     };
     let import = import_field_series(&arguments.files, &options)?;
     let data = &import.dataset;
-    let expected: usize = import.counts.iter().skip(1).sum();
-    if arguments.link == Link::Nearest && import.linked < expected {
-        run.warn(format!(
-            "{} of {expected} extrema after the first frame continue none of the frame before; each begins a cell of its own",
-            expected - import.linked
-        ));
-    }
+    warn_of_breaks(&mut run, arguments.link, &import.counts, import.linked, "extrema");
     let understood = told(&mut run, &import.notes);
     data.save(&mut out)?;
     out.write_array("heights.npy", import.heights.view())?;

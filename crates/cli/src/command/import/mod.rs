@@ -3,8 +3,10 @@
 mod field;
 mod flow;
 mod labels;
+mod linking;
 mod notes;
 mod outlines;
+mod points;
 mod shapes;
 mod sites;
 mod tracks;
@@ -12,9 +14,9 @@ mod tracks;
 use crate::Answer;
 use crate::failure::Failure;
 use clap::{Args, Subcommand};
-use voronudge_io::{Boundary, ImageScale, YAxis};
+use voronudge_io::{Boundary, ColumnNames, ImageScale, ImportOptions, YAxis};
 
-/// Turns tracks, flow fields, label images, outlines or fields of other programs into a data set.
+/// Turns tracks, points, flow fields, label images, outlines or fields of other programs into a data set.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -27,6 +29,8 @@ enum What {
     Trackmate(tracks::Arguments),
     /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y; or a tracks layer of napari (.npy).
     Tracks(tracks::Arguments),
+    /// Points that nobody has followed (.csv, .csv.gz or .npy): x, y and perhaps a frame; cells are followed from frame to frame.
+    Points(points::Arguments),
     /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
     Flow(flow::Arguments),
     /// Label images, as segmentations make them (.npy, .tif or .png): every pixel carries the number of its cell, or 0.
@@ -80,6 +84,23 @@ impl ImageArguments {
 }
 
 impl ScaleArguments {
+    /// All that a table of cells does not say about itself.
+    fn options(&self, columns: ColumnNames, image_size: Option<&[f64]>) -> ImportOptions {
+        let ImageScale { pixel_size, length_unit, time_unit, frame_interval, y_axis } = self.image.scale();
+        let image_size = image_size.map(|size| [size[0], size[1]]);
+        let boundary = self.boundary();
+        ImportOptions {
+            columns,
+            pixel_size,
+            length_unit,
+            time_unit,
+            frame_interval,
+            y_axis,
+            boundary,
+            image_size,
+        }
+    }
+
     fn boundary(&self) -> Option<Boundary> {
         self.box_lengths.as_ref().map(|l| Boundary::Periodic { lengths: [l[0], l[1]] })
     }
@@ -89,6 +110,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     match arguments.what {
         What::Trackmate(arguments) => tracks::run(arguments, voronudge_io::import_trackmate),
         What::Tracks(arguments) => tracks::run(arguments, voronudge_io::import_tracks),
+        What::Points(arguments) => points::run(arguments),
         What::Flow(arguments) => flow::run(arguments),
         What::Labels(arguments) => labels::run(arguments),
         What::Outlines(arguments) => outlines::run(arguments),

@@ -59,22 +59,13 @@ type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
 pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &table.common)?;
     let mut out = table.common.output([&table.file])?;
-    let scale = table.scale;
-    let options = ImportOptions {
-        columns: ColumnNames {
-            track: table.track_column,
-            frame: table.frame_column,
-            x: table.x_column,
-            y: table.y_column,
-        },
-        boundary: scale.boundary(),
-        image_size: table.image_size.as_ref().map(|size| [size[0], size[1]]),
-        pixel_size: scale.image.pixel_size,
-        length_unit: scale.image.length_unit,
-        time_unit: scale.image.time_unit,
-        frame_interval: scale.image.frame_interval,
-        y_axis: scale.image.y_axis,
+    let columns = ColumnNames {
+        track: table.track_column,
+        frame: table.frame_column,
+        x: table.x_column,
+        y: table.y_column,
     };
+    let options = table.scale.options(columns, table.image_size.as_deref());
     let Import { dataset, track_ids, summary, notes } = read(&table.file, &options)?;
     if summary.left_out_duplicate > 0 {
         run.warn(format!(
