@@ -81,6 +81,11 @@ pub(crate) fn image_error(path: &Path, fault: ImageFault) -> Error {
     Error::Image { path: path.to_path_buf(), fault }
 }
 
+/// Whether a file begins like a TIFF or a PNG image.
+pub(crate) fn is_image(bytes: &[u8]) -> bool {
+    matches!(kind(Path::new(""), bytes), Ok(Kind::Tiff | Kind::Png))
+}
+
 enum Kind {
     Array,
     Tiff,

@@ -11,6 +11,7 @@
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
 //! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_label_series`], [`import_outlines`] |
 //! | turn maxima and minima of a field into a data set | [`import_field`], [`import_field_series`] |
+//! | say what is in a file or a folder | [`inspect`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
 //! | get the cells of a frame, and the boundary and the field of view as the geometry knows them | [`Snapshot`], [`DataSet::domain`], [`DataSet::view`] |
 //! | read which frames the user wants | [`FrameSelection`] |
@@ -45,6 +46,7 @@ mod frames;
 mod image;
 mod image_scale;
 mod input;
+mod inspect;
 mod journal;
 mod label_import;
 mod linking;
@@ -84,6 +86,7 @@ pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
 pub use frames::FrameSelection;
 pub use image_scale::ImageScale;
 pub use input::InputFile;
+pub use inspect::{InputKind, Inspection, inspect};
 pub use journal::Journal;
 pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_label_series, import_labels};
 pub use linking::PlaceLinking;

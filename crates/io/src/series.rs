@@ -18,6 +18,9 @@ const KINDS: [&str; 4] = ["tif", "tiff", "png", "npy"];
 /// How the names of masks end that stand beside images: those of Cellpose.
 const MASKS: [&str; 2] = ["_cp_masks", "_seg"];
 
+/// Files by which a Zarr store is known, as OME-Zarr and GEFF are.
+const ZARR: [&str; 3] = ["zarr.json", ".zgroup", ".zarray"];
+
 /// What is looked for in a folder that holds both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Wanted {
@@ -122,6 +125,9 @@ fn files_of(paths: &[PathBuf], wanted: Wanted, notes: &mut Vec<Note>) -> Result<
 /// The images of a folder, of one kind.
 fn images_in(folder: &Path, wanted: Wanted, notes: &mut Vec<Note>) -> Result<Vec<PathBuf>, Error> {
     let failure = |fault| Error::File { path: folder.to_path_buf(), fault };
+    if ZARR.iter().any(|name| folder.join(name).exists()) {
+        return Err(failure(FileFault::Zarr));
+    }
     let mut found: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     let (mut masks, mut others) = (0, 0);
     for entry in fs::read_dir(folder).map_err(|source| failure(file_fault(source)))? {

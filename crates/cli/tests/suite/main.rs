@@ -21,6 +21,7 @@ mod import_formats;
 mod import_images;
 mod imports;
 mod inferences;
+mod information;
 #[cfg(unix)]
 mod interruption;
 mod layouts;

@@ -18,6 +18,9 @@ pub enum FileFault {
     /// A folder without images.
     #[error("is a folder without .tif, .png or .npy files")]
     NoImages,
+    /// A store of chunks, as OME-Zarr and GEFF are.
+    #[error("is a Zarr store (OME-Zarr or GEFF), which is not read")]
+    Zarr,
     /// A folder with images of several kinds.
     #[error("holds images of several kinds: {kinds}")]
     Mixed {
@@ -52,6 +55,11 @@ impl FileFault {
             Self::NoImages => {
                 Some("name the folder that the images are in; folders inside it are not searched".into())
             }
+            Self::Zarr => Some(
+                "write its labels as TIFF, in Python: tifffile.imwrite(\"labels.tif\", \
+                 numpy.squeeze(zarr.open(\"x.zarr\")[\"0\"][:]), photometric=\"minisblack\")"
+                    .into(),
+            ),
             Self::Mixed { .. } => Some("name the files, for instance as FOLDER/*.tif".into()),
             Self::NotAFolder => {
                 Some("to give a single array, use --positions FILE with --box or --open".into())

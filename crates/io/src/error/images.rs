@@ -27,6 +27,14 @@ pub enum ImageFault {
         /// What the decoder says.
         detail: String,
     },
+    /// A TIFF file that is compressed in a way that is not read.
+    #[error("is compressed by a method that is not read ({method}, page {page})")]
+    Compression {
+        /// Page, from zero.
+        page: usize,
+        /// The method.
+        method: String,
+    },
     /// A PNG file that cannot be decoded.
     #[error("is not a whole PNG image: {detail}")]
     Png {
@@ -200,6 +208,10 @@ impl ImageFault {
             Self::Tiff { .. } => {
                 "the file was probably cut while it was written or copied, or is compressed in a way that is not read; \
                  write it again without compression"
+            }
+            Self::Compression { .. } => {
+                "write it without compression, or with zlib or LZW: in Python, \
+                 tifffile.imwrite(\"labels.tif\", tifffile.imread(\"x.tif\"), photometric=\"minisblack\", compression=\"zlib\")"
             }
             Self::Png { .. } => {
                 "the file was probably cut or damaged while it was written or copied; write or copy it again"

@@ -7,7 +7,7 @@ use ndarray::Array3;
 use tiff::decoder::ifd::Value;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
 use tiff::tags::Tag;
-use tiff::{ColorType, TiffError};
+use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 use super::description::{Tags, describe, has_frames_as_planes};
 use super::{Images, check_size, image_error};
@@ -23,7 +23,17 @@ pub(super) fn parse_tiff<T: Clone>(
     let failure = |fault| image_error(path, fault);
     let mut page = 0;
     let broken = |page: usize| {
-        move |error: TiffError| image_error(path, ImageFault::Tiff { page, detail: error.to_string() })
+        move |error: TiffError| {
+            image_error(
+                path,
+                match error {
+                    TiffError::UnsupportedError(TiffUnsupportedError::UnsupportedCompressionMethod(
+                        method,
+                    )) => ImageFault::Compression { page, method: format!("{method:?}") },
+                    other => ImageFault::Tiff { page, detail: other.to_string() },
+                },
+            )
+        }
     };
     // The size of pages is checked below; what is read on the way to their pixels is never more than the file.
     let mut limits = Limits::default();

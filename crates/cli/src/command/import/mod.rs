@@ -11,6 +11,8 @@ mod shapes;
 mod sites;
 mod tracks;
 
+pub(crate) use notes::records;
+
 use crate::Answer;
 use crate::failure::Failure;
 use clap::{Args, Subcommand};

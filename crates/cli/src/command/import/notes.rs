@@ -21,6 +21,6 @@ pub(super) fn told(run: &mut Run, notes: &[Note]) -> String {
 }
 
 /// All of them, for the report.
-pub(super) fn records(notes: &[Note]) -> Vec<NoteRecord> {
+pub(crate) fn records(notes: &[Note]) -> Vec<NoteRecord> {
     notes.iter().map(|note| NoteRecord { kind: note.kind.to_string(), text: note.text.clone() }).collect()
 }
