@@ -145,6 +145,11 @@ pub(crate) fn is_pixel(unit: &str) -> bool {
     unit == "px" || unit.starts_with("pix")
 }
 
+/// Whether two names are those of one unit.
+pub(crate) fn same_unit(a: &str, b: &str) -> bool {
+    canonical(a) == canonical(b)
+}
+
 /// One name for the names of one unit.
 fn canonical(unit: &str) -> String {
     let plain = unit.trim().to_lowercase();

@@ -7,7 +7,7 @@ use csv::ByteRecord;
 
 use super::columns::{Column, unbracketed, unit_in};
 use super::{Located, csv_fault, line_number, offset_of, tabbed, text_of};
-use crate::error::{Error, TableFault};
+use crate::error::{Error, TableFault, excerpt};
 
 /// Names of the columns, where they are not to be recognised automatically.
 ///
@@ -47,6 +47,10 @@ pub(crate) struct VectorTable {
     pub(crate) vectors: Vec<Vector>,
     /// The unit of displacements that the header states in brackets.
     pub(crate) unit: Option<String>,
+    /// The unit of places, likewise.
+    pub(crate) place_unit: Option<String>,
+    /// Which columns were taken for what, in words.
+    pub(crate) columns: String,
 }
 
 /// Reads a table, compressed or not; `path` only names the place.
@@ -70,7 +74,7 @@ fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTa
     // The last line of text that is no header, and why it is none.
     let mut preface: Option<(ByteRecord, TableFault)> = None;
     let mut lines = Lines { text, at: 0, line: 1 };
-    let mut table = VectorTable { vectors: Vec::new(), unit: None };
+    let mut table = VectorTable { vectors: Vec::new(), unit: None, place_unit: None, columns: String::new() };
     for row in reader.byte_records() {
         let row = row.map_err(csv_fault)?;
         if row.iter().all(|field| field.trim_ascii().is_empty()) {
@@ -101,7 +105,9 @@ fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTa
     match (columns, preface) {
         (Some(_), _) if table.vectors.is_empty() => Err((None, TableFault::NoRows)),
         (Some(columns), _) => {
-            table.unit = columns.unit();
+            table.unit = unit_in(&columns.u.name);
+            table.place_unit = unit_in(&columns.x.name);
+            table.columns = columns.described();
             Ok(table)
         }
         (None, Some((header, fault))) => Err((offset_of(&header), fault)),
@@ -168,9 +174,15 @@ impl Columns {
         })
     }
 
-    /// The unit of displacements that the header states in brackets.
-    fn unit(&self) -> Option<String> {
-        unit_in(&self.u.name)
+    /// Which columns are what.
+    fn described(&self) -> String {
+        let roles = [("x", Some(&self.x)), ("y", Some(&self.y)), ("u", Some(&self.u)), ("v", Some(&self.v))];
+        let more = [("frame", self.frame.as_ref()), ("mask", self.mask.as_ref())];
+        let found = roles.into_iter().chain(more).filter_map(|(role, column)| Some((role, column?)));
+        found
+            .map(|(role, column)| format!("{role} is \"{}\"", excerpt(&column.name)))
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     fn vector(&self, row: &ByteRecord, line: u64) -> Result<Vector, TableFault> {
