@@ -9,7 +9,7 @@ use ndarray::{Array3, Axis, concatenate};
 
 use crate::error::{Error, FileFault, ImageFault, ShapeFault};
 use crate::image::{Described, Images, check_total, image_error};
-use crate::input::{InputFile, file_fault, read_input};
+use crate::input::{InputFile, file_fault, is_zarr, read_input};
 use crate::note::Note;
 use crate::stated::Stated;
 
@@ -17,9 +17,6 @@ use crate::stated::Stated;
 const KINDS: [&str; 4] = ["tif", "tiff", "png", "npy"];
 /// How the names of masks end that stand beside images: those of Cellpose.
 const MASKS: [&str; 2] = ["_cp_masks", "_seg"];
-
-/// Files by which a Zarr store is known, as OME-Zarr and GEFF are.
-const ZARR: [&str; 3] = ["zarr.json", ".zgroup", ".zarray"];
 
 /// What is looked for in a folder that holds both.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -125,7 +122,7 @@ fn files_of(paths: &[PathBuf], wanted: Wanted, notes: &mut Vec<Note>) -> Result<
 /// The images of a folder, of one kind.
 fn images_in(folder: &Path, wanted: Wanted, notes: &mut Vec<Note>) -> Result<Vec<PathBuf>, Error> {
     let failure = |fault| Error::File { path: folder.to_path_buf(), fault };
-    if ZARR.iter().any(|name| folder.join(name).exists()) {
+    if is_zarr(folder) {
         return Err(failure(FileFault::Zarr));
     }
     let mut found: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();

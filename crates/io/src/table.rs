@@ -75,7 +75,12 @@ fn parse(text: &[u8], separator: u8, layout: Layout, names: &ColumnNames) -> Res
     if header.iter().all(|field| field.trim_ascii().is_empty()) {
         return Err((None, TableFault::Empty));
     }
-    let columns = Columns::find(&header, layout, names).map_err(|fault| (offset_of(&header), fault))?;
+    let columns = Columns::find(&header, layout, names).map_err(|fault| {
+        let is_number =
+            |field: &[u8]| std::str::from_utf8(field).is_ok_and(|text| text.trim().parse::<f64>().is_ok());
+        let fault = if header.iter().all(is_number) { TableFault::NoNames } else { fault };
+        (offset_of(&header), fault)
+    })?;
 
     let by = "header of the table";
     let mut table = SpotTable {

@@ -1,7 +1,7 @@
 //! `info`: what is in a data set or a file of another program.
 
 use crate::program::{fixture, succeed};
-use crate::refusal::assert_told;
+use crate::refusal::{assert_arguments_refused, assert_told};
 use crate::scratch::Folder;
 use ndarray::{Array2, Array3, Array4};
 use serde_json::{Value, json};
@@ -127,4 +127,11 @@ fn what_is_not_read_is_answered_with_a_hint() {
     refused("x.zarr", "is a folder without .tif, .png or .npy files", "name the folder");
     folder.write("x.zarr/.zgroup", "{}");
     refused("x.zarr", "is a Zarr store (OME-Zarr or GEFF)", "tifffile.imwrite");
+    for kind in ["tracks", "labels", "field", "points"] {
+        let store = folder.file("x.zarr");
+        assert_arguments_refused(
+            [OsStr::new("import"), kind.as_ref(), store.as_os_str()],
+            &["is a Zarr store"],
+        );
+    }
 }

@@ -56,8 +56,8 @@ impl FileFault {
                 Some("name the folder that the images are in; folders inside it are not searched".into())
             }
             Self::Zarr => Some(
-                "write its labels as TIFF, in Python: tifffile.imwrite(\"labels.tif\", \
-                 numpy.squeeze(zarr.open(\"x.zarr\")[\"0\"][:]), photometric=\"minisblack\")"
+                "write labels as TIFF, in Python: tifffile.imwrite(\"labels.tif\", \
+                 numpy.squeeze(zarr.open(\"x.zarr\")[\"0\"][:]), photometric=\"minisblack\"); write tracks as a table of track, frame, x, y"
                     .into(),
             ),
             Self::Mixed { .. } => Some("name the files, for instance as FOLDER/*.tif".into()),

@@ -139,6 +139,9 @@ pub enum TableFault {
     /// Columns were named, but there is no line of names.
     #[error("begins with numbers, so it has no header in which to look for columns by name")]
     NoHeader,
+    /// A table of cells without a line of names.
+    #[error("begins with numbers, so nothing says which column is what")]
+    NoNames,
     /// One component of a displacement present, the other not.
     #[error("half of the displacement is missing (\"{}\", \"{}\")", shown(u), shown(v))]
     HalfMissing {
@@ -225,6 +228,9 @@ impl TableFault {
             }
             Self::NotText => "export the table as text; displacements of pixels may be given as .npy",
             Self::NoHeader => "leave the names out if the columns are x, y, u, v, or add a line of names",
+            Self::NoNames => {
+                "add a first line of names, such as track,frame,x,y; rows of a tracks layer of napari are track,frame,y,x, and its .npy needs none"
+            }
             Self::HalfMissing { .. } => "a missing vector is NaN in both components",
             Self::OffGrid { .. } => {
                 "vectors must lie on a rectangular grid; export the table before any interpolation or rotation"

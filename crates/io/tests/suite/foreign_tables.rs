@@ -78,6 +78,14 @@ fn names_of_other_programs_are_known() {
 }
 
 #[test]
+fn tables_without_names_are_not_guessed() {
+    // x and y exchanged would turn the sign of the chirality.
+    for text in ["3,0,1,2\n3,1,1.5,2.5\n", "3 0 1 2\n3 1 1.5 2.5\n"] {
+        assert_told(tracks(text), &["tracks.csv, line 1: begins with numbers"], "track,frame,y,x");
+    }
+}
+
+#[test]
 fn what_is_no_text_is_told() {
     assert_told(tracks(b"track,frame,x,y\n\0\0\0\0"), &["tracks.csv: is not text"], "as text");
     assert_told(tracks(b"MATLAB 5.0 MAT-file"), &["is a MATLAB file"], "as text");
