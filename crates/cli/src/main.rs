@@ -38,6 +38,7 @@ enum Command {
     EstimateChirality(command::estimate_chirality::Arguments),
     CheckGradients(command::check_gradients::Arguments),
     Import(Box<command::import::Arguments>),
+    Info(command::info::Arguments),
     PhaseDiffusion(command::phase_diffusion::Arguments),
     Rheology(Box<command::rheology::Arguments>),
 }
@@ -87,6 +88,7 @@ fn run() -> Result<Answer, Failure> {
         Command::EstimateChirality(arguments) => command::estimate_chirality::run(arguments),
         Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
         Command::Import(arguments) => command::import::run(*arguments),
+        Command::Info(arguments) => command::info::run(&arguments),
         Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
         Command::Rheology(arguments) => command::rheology::run(*arguments),
     }

@@ -65,6 +65,22 @@ pub(crate) fn parse_integers(path: &Path, bytes: &[u8]) -> Result<ArrayD<i64>, E
     parse().map_err(|fault| format_error(path, fault))
 }
 
+/// Whether an array holds Python objects, and then the bytes of their pickle.
+pub(crate) fn pickled(bytes: &[u8]) -> Option<&[u8]> {
+    header::pickled(bytes)
+}
+
+/// Integers of a type such as `<u2` from their bytes, in the shape that they should have.
+pub(crate) fn integers_of(
+    item: &str,
+    shape: Vec<usize>,
+    fortran_order: bool,
+    body: &[u8],
+) -> Result<ArrayD<i64>, FormatFault> {
+    let header = Header::of(item, shape, fortran_order, body)?;
+    assemble(&header, header.item.integers(body)?)
+}
+
 /// [`read_vectors`] from bytes already read; `path` only names the place.
 pub(crate) fn parse_vectors(path: &Path, bytes: &[u8]) -> Result<Array3<f64>, Error> {
     const EXPECTED: &str = "(cells, 2) or (frames, cells, 2)";

@@ -1,24 +1,22 @@
 //! Importing a field: cells are its maxima or minima.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndarray::{Array2, Array3, ArrayView2, Axis};
-use voronudge_geometry::{
-    Domain, Edge, ExtremumKind, ExtremumSearch, PeriodicBox, Vector, extrema, link_nearest, smooth,
-};
+use voronudge_geometry::{Domain, Edge, ExtremumKind, ExtremumSearch, PeriodicBox, Vector, extrema, smooth};
 
 use crate::dataset::{Boundary, DataSet};
 use crate::error::{Error, ImageFault, SettingFault};
 use crate::image::{image_error, parse_field_images};
 use crate::image_scale::ImageScale;
-use crate::input::read_input;
+use crate::linking::{Follower, Place, PlaceLinking};
+use crate::note::Note;
+use crate::series::{Wanted, read_images};
 use crate::shapes::check_size;
 use crate::validate::{self, ArrayNames};
 
 /// Prominence asked for by default, as a share of the range of the smoothed field.
 const PROMINENCE: f64 = 0.1;
-/// How far a cell may move from frame to frame by default, as a share of the mean distance of cells.
-const LINK_LIMIT: f64 = 0.5;
 /// The fewest cells with a tessellation.
 const FEWEST_CELLS: usize = 3;
 
@@ -32,19 +30,6 @@ pub enum WantedExtrema {
     Minima,
     /// Both; maxima get the label 0, minima the label 1.
     Both,
-}
-
-/// How cells of different frames are taken for one.
-#[derive(Debug, Clone, Copy, PartialEq, Default)]
-pub enum FieldLinking {
-    /// Not at all: each frame has cells of its own.
-    #[default]
-    Separate,
-    /// The nearest of the same kind, if it is within a limit in units of length; default half the mean distance of cells.
-    Nearest {
-        /// The farthest that a cell moves between frames.
-        limit: Option<f64>,
-    },
 }
 
 /// What is taken for a cell, and what a field does not say about itself. The default leaves everything open.
@@ -63,7 +48,7 @@ pub struct FieldOptions {
     /// Whether the field repeats.
     pub edge: Edge,
     /// Which cells of different frames are one.
-    pub linking: FieldLinking,
+    pub linking: PlaceLinking,
 }
 
 /// An imported data set, with the height and prominence of each extremum.
@@ -83,6 +68,8 @@ pub struct FieldImport {
     pub first: Array2<f64>,
     /// Length of a pixel.
     pub pixel_size: f64,
+    /// What was read, guessed and doubted.
+    pub notes: Vec<Note>,
 }
 
 /// An extremum on its way into a data set.
@@ -96,13 +83,21 @@ struct Found {
 
 /// Imports extrema of a field, `.npy` or TIFF of one frame or several, or grey PNG.
 ///
-/// Pixel (row, column) has its centre at (column + ½, row + ½) pixels. See [`extrema`] for what counts and [`link_nearest`] for how cells
+/// Pixel (row, column) has its centre at (column + ½, row + ½) pixels. See [`extrema`] for what counts and [`voronudge_geometry::link_nearest`] for how cells
 /// are followed.
 ///
 /// # Errors
 /// [`Error::File`]; [`Error::Format`], [`Error::Shape`] and [`Error::Image`] for a file that is no field, or frames with fewer than three
 /// extrema; [`Error::Setting`] for options out of range.
 pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, Error> {
+    import_field_series(&[path.to_path_buf()], options)
+}
+
+/// The same of several files, or of a folder: frames in the natural order of the numbers in their names.
+///
+/// # Errors
+/// As [`import_field`].
+pub fn import_field_series(paths: &[PathBuf], options: &FieldOptions) -> Result<FieldImport, Error> {
     for (key, value) in [("smoothing", options.smoothing), ("distance", options.distance)] {
         if value != 0.0 {
             validate::positive(key, value).map_err(Error::Setting)?;
@@ -111,13 +106,15 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
     if let Some(prominence) = options.prominence {
         validate::positive("prominence", prominence).map_err(Error::Setting)?;
     }
-    if let FieldLinking::Nearest { limit: Some(limit) } = options.linking {
+    if let PlaceLinking::Nearest { limit: Some(limit) } = options.linking {
         validate::positive("link_limit", limit).map_err(Error::Setting)?;
     }
-    let (pixel, mut dataset) = options.scale.begin(Boundary::Open)?;
-    let (bytes, record) = read_input(path)?;
-    dataset.inputs.push(record);
-    let field = parse_field_images(path, &bytes)?;
+    options.scale.begin(Boundary::Open)?;
+    let stack = read_images(paths, Wanted::Field, parse_field_images)?;
+    let mut notes = stack.notes.clone();
+    let (pixel, mut dataset) = stack.stated.settle(&options.scale, &mut notes).begin(Boundary::Open)?;
+    dataset.inputs.extend(stack.inputs.iter().cloned());
+    let (path, field) = (stack.name(), &stack.pixels);
     let (_, rows, columns) = field.dim();
     let lengths = [columns as f64 * pixel, rows as f64 * pixel];
     if options.smoothing > lengths[0].max(lengths[1]) {
@@ -135,18 +132,23 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
         }
     };
     let mut frames: Vec<Vec<Found>> = Vec::new();
-    let (mut given, mut linked) = (0, 0);
+    let mut follower = Follower::new(options.linking, domain);
     for (index, frame) in field.axis_iter(Axis(0)).enumerate() {
         let mut found = find(frame, pixel, options);
         if found.len() < FEWEST_CELLS {
-            let fault = ImageFault::TooFewCells { frame: index, found: found.len(), needed: FEWEST_CELLS };
+            let (path, frame) = stack.place(index);
+            let fault = ImageFault::TooFewCells { frame, found: found.len(), needed: FEWEST_CELLS };
             return Err(image_error(path, fault));
         }
         let spacing = (lengths[0] * lengths[1] / found.len() as f64).sqrt();
-        let before = frames.last().map(Vec::as_slice).unwrap_or_default();
-        linked += follow(before, &mut found, (options.linking, spacing), domain, &mut given);
+        let places: Vec<Place> =
+            found.iter().map(|one| Place { position: one.position, kind: one.label }).collect();
+        for (one, track) in found.iter_mut().zip(follower.follow(&places, spacing)) {
+            one.track = track;
+        }
         frames.push(found);
     }
+    let Follower { given, linked, .. } = follower;
     check_size(path, frames.len(), given)?;
     let mut import = FieldImport {
         heights: Array2::from_elem((frames.len(), given), f64::NAN),
@@ -155,6 +157,7 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
         linked,
         first: field.index_axis(Axis(0), 0).to_owned(),
         pixel_size: pixel,
+        notes,
         dataset,
     };
     let mut positions = Array3::from_elem((frames.len(), given, 2), f64::NAN);
@@ -216,40 +219,4 @@ fn find(frame: ArrayView2<'_, f64>, pixel: f64, options: &FieldOptions) -> Vec<F
     let key = |one: &Found| ((one.position.y / pixel) as i64, one.position.x);
     found.sort_by(|a, b| key(a).0.cmp(&key(b).0).then(key(a).1.total_cmp(&key(b).1)));
     found
-}
-
-/// Gives each cell its number along the axis of cells; returns how many are known from the frame before.
-fn follow(
-    before: &[Found],
-    found: &mut [Found],
-    (linking, spacing): (FieldLinking, f64),
-    domain: Domain,
-    given: &mut usize,
-) -> usize {
-    let mut known = vec![None; found.len()];
-    if let FieldLinking::Nearest { limit } = linking {
-        let limit = limit.unwrap_or(LINK_LIMIT * spacing);
-        for label in [0, 1] {
-            let of = |cells: &[Found]| -> Vec<usize> {
-                (0..cells.len()).filter(|&k| cells[k].label == label).collect()
-            };
-            let (from, to) = (of(before), of(found));
-            let places = |cells: &[Found], which: &[usize]| -> Vec<Vector<f64>> {
-                which.iter().map(|&k| cells[k].position).collect()
-            };
-            let links = link_nearest(&places(before, &from), &places(found, &to), limit, domain);
-            for (&i, j) in from.iter().zip(links) {
-                if let Some(j) = j {
-                    known[to[j]] = Some(before[i].track);
-                }
-            }
-        }
-    }
-    for (one, known) in found.iter_mut().zip(&known) {
-        one.track = known.unwrap_or_else(|| {
-            *given += 1;
-            *given - 1
-        });
-    }
-    known.iter().flatten().count()
 }

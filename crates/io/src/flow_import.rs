@@ -2,6 +2,7 @@
 
 mod nodes;
 mod pixels;
+mod units;
 
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
@@ -13,6 +14,7 @@ use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, GridFault, SettingFault};
 use crate::flow::{FlowField, FlowNames, check_values, grid_error};
 use crate::input::read_input;
+use crate::note::Note;
 use crate::output::OutputDirectory;
 use crate::save::write_flow;
 use crate::settings::render;
@@ -22,6 +24,7 @@ use crate::tracks::describe;
 use crate::validate::{self, ArrayNames};
 use nodes::arrange;
 use pixels::{Squares, average};
+use units::take_units;
 
 /// What the files of a flow do not say about themselves. The default leaves everything open.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -33,9 +36,9 @@ pub struct FlowOptions {
     /// Side of the squares that displacements of pixels are averaged over, in the unit of length;
     /// default: one pixel, that is, no averaging.
     pub grid_spacing: Option<f64>,
-    /// Name of the unit of length after scaling; default `length`.
+    /// Name of the unit of length after scaling; default that of a table that is not scaled, else `length`.
     pub length_unit: Option<String>,
-    /// Name of the unit of time; default `frame` where no interval is given, else `time`.
+    /// Name of the unit of time; default that of a table that is not scaled, else `frame` where no interval is given, else `time`.
     pub time_unit: Option<String>,
     /// Time between frames, by which displacements are divided; default 1.
     pub frame_interval: Option<f64>,
@@ -56,6 +59,8 @@ pub struct FlowImport {
     pub dataset: DataSet,
     /// The counts to report.
     pub summary: FlowSummary,
+    /// What was read, guessed and doubted.
+    pub notes: Vec<Note>,
 }
 
 /// What the flow field is like.
@@ -95,7 +100,7 @@ pub fn import_flow(files: &[PathBuf], options: &FlowOptions) -> Result<FlowImpor
     let side = options.grid_spacing.unwrap_or(pixel);
     validate::positive("grid_spacing", side).map_err(Error::Setting)?;
     let mut dataset = describe(
-        options.boundary,
+        options.boundary.unwrap_or(Boundary::Open),
         options.frame_interval,
         options.y_axis,
         options.length_unit.as_deref(),
@@ -147,7 +152,8 @@ pub fn import_flow(files: &[PathBuf], options: &FlowOptions) -> Result<FlowImpor
     if let Some(flow) = &mut dataset.flow {
         flow.turn(dataset.y_axis);
     }
-    Ok(FlowImport { dataset, summary })
+    let notes = tables.first().map(|(_, table)| take_units(table, options, &mut dataset)).unwrap_or_default();
+    Ok(FlowImport { dataset, summary, notes })
 }
 
 impl FlowImport {

@@ -1,5 +1,6 @@
 //! Images with one number for each pixel: `.npy` arrays, TIFF and PNG.
 
+mod description;
 mod png;
 mod tiff;
 
@@ -7,24 +8,42 @@ use std::path::Path;
 
 use ndarray::{Array3, ArrayD, Axis, Ix3};
 
+pub(crate) use self::description::Described;
 use self::png::{Indices, parse_png};
 use self::tiff::{integers, parse_tiff, reals};
-use crate::array::{parse_integers, parse_reals};
+use crate::array::{parse_integers, parse_reals, pickled};
+use crate::cellpose::read_masks;
 use crate::error::{Error, FormatFault, ImageFault, ShapeFault};
 use crate::memory::machine_memory;
+use crate::note::Note;
 use crate::tracks::SIZE_LIMIT;
 
 /// Memory that an image takes while it is read and searched, in 8 bytes for each pixel.
 const COPIES: u64 = 6;
 
+/// The frames of a file (frames, rows, columns), and what it says of them.
+pub(crate) struct Images<T> {
+    pub(crate) pixels: Array3<T>,
+    pub(crate) described: Described,
+}
+
+impl<T> From<Array3<T>> for Images<T> {
+    fn from(pixels: Array3<T>) -> Self {
+        Self { pixels, described: Described::default() }
+    }
+}
+
 /// Labels (frames, rows, columns), 0 for background; one image is one frame.
-pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Array3<i64>, Error> {
+pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Images<i64>, Error> {
     let labels = match kind(path, bytes)? {
-        Kind::Array => stack(path, parse_integers(path, bytes).map_err(as_image_fault)?)?,
+        Kind::Array => match pickled(bytes) {
+            Some(body) => of_cellpose(stack(path, read_masks(path, body)?)?),
+            None => stack(path, parse_integers(path, bytes).map_err(as_image_fault)?)?.into(),
+        },
         Kind::Tiff => parse_tiff(path, bytes, integers).map_err(as_picture)?,
-        Kind::Png => parse_png(path, bytes, Indices::Numbers).map_err(as_picture)?.mapv(i64::from),
+        Kind::Png => parse_png(path, bytes, Indices::Numbers).map_err(as_picture)?.mapv(i64::from).into(),
     };
-    let negative = labels.indexed_iter().find(|&(_, &label)| label < 0);
+    let negative = labels.pixels.indexed_iter().find(|&(_, &label)| label < 0);
     match negative {
         Some(((frame, row, column), &label)) => {
             Err(image_error(path, ImageFault::NegativeLabel { frame, row, column, label }))
@@ -33,14 +52,23 @@ pub(crate) fn parse_labels(path: &Path, bytes: &[u8]) -> Result<Array3<i64>, Err
     }
 }
 
+/// Masks of Cellpose, which works on images and on volumes.
+fn of_cellpose(pixels: Array3<i64>) -> Images<i64> {
+    let mut notes = vec![Note::read("the masks of Cellpose")];
+    if pixels.dim().0 > 1 {
+        notes.push(Note::doubtful("masks of several planes (Cellpose) are taken for frames in time"));
+    }
+    Images { pixels, described: Described { notes, ..Described::default() } }
+}
+
 /// A field (frames, rows, columns), finite everywhere; one image is one frame.
-pub(crate) fn parse_field_images(path: &Path, bytes: &[u8]) -> Result<Array3<f64>, Error> {
+pub(crate) fn parse_field_images(path: &Path, bytes: &[u8]) -> Result<Images<f64>, Error> {
     let field = match kind(path, bytes)? {
-        Kind::Array => stack(path, parse_reals(path, bytes).map_err(as_image_fault)?)?,
+        Kind::Array => stack(path, parse_reals(path, bytes).map_err(as_image_fault)?)?.into(),
         Kind::Tiff => parse_tiff(path, bytes, reals)?,
-        Kind::Png => parse_png(path, bytes, Indices::Colours)?.mapv(f64::from),
+        Kind::Png => parse_png(path, bytes, Indices::Colours)?.mapv(f64::from).into(),
     };
-    let missing = field.indexed_iter().find(|(_, value)| !value.is_finite());
+    let missing = field.pixels.indexed_iter().find(|(_, value)| !value.is_finite());
     match missing {
         Some(((frame, row, column), &value)) => {
             Err(image_error(path, ImageFault::NotFinite { frame, row, column, value }))
@@ -51,6 +79,11 @@ pub(crate) fn parse_field_images(path: &Path, bytes: &[u8]) -> Result<Array3<f64
 
 pub(crate) fn image_error(path: &Path, fault: ImageFault) -> Error {
     Error::Image { path: path.to_path_buf(), fault }
+}
+
+/// Whether a file begins like a TIFF or a PNG image.
+pub(crate) fn is_image(bytes: &[u8]) -> bool {
+    matches!(kind(Path::new(""), bytes), Ok(Kind::Tiff | Kind::Png))
 }
 
 enum Kind {
@@ -78,7 +111,10 @@ fn as_image_fault(error: Error) -> Error {
         return error;
     };
     match found.trim_start_matches(['<', '>', '|', '=']).chars().next() {
-        Some('O') => Error::Image { path, fault: ImageFault::Pickled },
+        Some('O') => {
+            let detail = "only labels are looked for in one".into();
+            Error::Image { path, fault: ImageFault::Pickled { detail } }
+        }
         Some('f') => Error::Image { path, fault: ImageFault::RealLabels { found } },
         _ => Error::Format { path, fault: FormatFault::UnsupportedType { found, needed } },
     }
@@ -96,13 +132,16 @@ fn as_picture(error: Error) -> Error {
 
 /// Refuses pages that do not fit in memory, before anything is allocated for their pixels.
 fn check_size(path: &Path, page: usize, size: [u32; 2]) -> Result<(), Error> {
-    let [columns, rows] = size;
-    let pixels = (page as u64 + 1).saturating_mul(u64::from(columns) * u64::from(rows));
-    let needed = pixels.saturating_mul(8);
+    check_total(path, page + 1, size.map(|length| length as usize))
+}
+
+/// The same of all pages so far.
+pub(crate) fn check_total(path: &Path, pages: usize, size: [usize; 2]) -> Result<(), Error> {
+    let [columns, rows] = size.map(|length| length as u64);
+    let needed = (pages as u64).saturating_mul(columns.saturating_mul(rows)).saturating_mul(8);
     let limit = machine_memory().map_or(SIZE_LIMIT, |memory| SIZE_LIMIT.min(memory / COPIES));
     if needed > limit {
-        let size = [columns as usize, rows as usize];
-        let fault = ImageFault::TooLarge { page, size, bytes: needed, limit };
+        let fault = ImageFault::TooLarge { page: pages.saturating_sub(1), size, bytes: needed, limit };
         return Err(image_error(path, fault));
     }
     Ok(())

@@ -26,8 +26,7 @@ impl ImageScale {
         let pixel = self.pixel_size.unwrap_or(1.0);
         validate::positive("pixel_size", pixel).map_err(Error::Setting)?;
         let unit = self.length_unit.as_deref().or(self.pixel_size.is_none().then_some("px"));
-        let dataset =
-            describe(Some(boundary), self.frame_interval, self.y_axis, unit, self.time_unit.as_deref());
+        let dataset = describe(boundary, self.frame_interval, self.y_axis, unit, self.time_unit.as_deref());
         dataset.check_settings().map_err(Error::Setting)?;
         Ok((pixel, dataset))
     }

@@ -47,7 +47,7 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
     let failure = |fault| Error::File { path: path.to_path_buf(), fault };
     let metadata = fs::metadata(path).map_err(|source| failure(file_fault(source)))?;
     if metadata.is_dir() {
-        return Err(failure(FileFault::IsFolder));
+        return Err(failure(if is_zarr(path) { FileFault::Zarr } else { FileFault::IsFolder }));
     }
     if !metadata.is_file() {
         return Err(failure(FileFault::NotRegular));
@@ -58,6 +58,11 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
         return Err(failure(FileFault::BeyondMemory { bytes, limit }));
     }
     fs::read(path).map_err(|source| failure(file_fault(source)))
+}
+
+/// Whether a folder is a Zarr store, as OME-Zarr and GEFF are.
+pub(crate) fn is_zarr(folder: &Path) -> bool {
+    ["zarr.json", ".zgroup", ".zarray"].iter().any(|name| folder.join(name).exists())
 }
 
 /// Sorts out the one case of an operating system's refusal that has a name of its own.

@@ -1,7 +1,7 @@
 //! Importing label images: every pixel carries the number of its cell, or zero.
 
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use ndarray::Axis;
 use voronudge_geometry::{Mask, Vector, link_overlapping};
@@ -10,7 +10,7 @@ use crate::dataset::Boundary;
 use crate::error::{Error, ImageFault, ShapeFault};
 use crate::image::{image_error, parse_labels};
 use crate::image_scale::ImageScale;
-use crate::input::read_input;
+use crate::series::{Wanted, read_images};
 use crate::shapes::{SeenCell, SeenFrame, ShapeImport, ShapeSummary, assemble};
 
 /// How cells of different frames are taken for one.
@@ -48,32 +48,44 @@ pub struct LabelOptions {
     pub border: BorderCells,
 }
 
-/// Imports label images, `.npy` or TIFF of one frame or several, or PNG: centroids, areas, perimeters and contacts.
+/// Imports label images of one file, or of a folder: [`import_label_series`].
 ///
+/// # Errors
+/// As [`import_label_series`].
+pub fn import_labels(path: &Path, options: &LabelOptions) -> Result<ShapeImport, Error> {
+    import_label_series(&[path.to_path_buf()], options)
+}
+
+/// Imports label images, `.npy` or TIFF of one frame or several, or PNG: centroids, areas, perimeters and contacts. Several files, and those
+/// of a folder, are frames in the natural order of the numbers in their names.
+///
+/// Pixel size, frame interval and units are those of ImageJ's header or of OME-TIFF where the options do not say otherwise.
 /// Pixel (row, column) takes up the square from (column, row) to (column + 1, row + 1) pixels. Areas count pixels; the perimeter is
 /// that of [`Mask::cells`]. Cells are numbered along the axis of cells in the order of their labels, frame by frame.
 ///
 /// # Errors
 /// [`Error::File`]; [`Error::Format`], [`Error::Shape`] and [`Error::Image`] for a file that is no label image, for frames with fewer
 /// than three cells, and for sizes that do not fit in memory; [`Error::Setting`] for options out of range.
-pub fn import_labels(path: &Path, options: &LabelOptions) -> Result<ShapeImport, Error> {
-    let (scale, mut dataset) = options.scale.begin(Boundary::Open)?;
-    let (bytes, record) = read_input(path)?;
-    dataset.inputs.push(record);
-    let labels = parse_labels(path, &bytes)?;
-    let (frames, rows, columns) = labels.dim();
+pub fn import_label_series(paths: &[PathBuf], options: &LabelOptions) -> Result<ShapeImport, Error> {
+    options.scale.begin(Boundary::Open)?;
+    let stack = read_images(paths, Wanted::Labels, parse_labels)?;
+    let mut notes = stack.notes.clone();
+    let (scale, mut dataset) = stack.stated.settle(&options.scale, &mut notes).begin(Boundary::Open)?;
+    dataset.inputs.extend(stack.inputs.iter().cloned());
+    let (frames, rows, columns) = stack.pixels.dim();
     let mut summary = ShapeSummary::default();
     let mut seen: Vec<SeenFrame> = Vec::with_capacity(frames);
     let mut before: Option<Vec<i64>> = None;
     let mut tracks = Tracks::default();
-    for (index, frame) in labels.axis_iter(Axis(0)).enumerate() {
+    for (index, frame) in stack.pixels.axis_iter(Axis(0)).enumerate() {
+        let (path, page) = stack.place(index);
         let pixels: Vec<i64> = frame.iter().copied().collect();
         let mask = Mask::new(&pixels, [columns, rows]).map_err(|_| {
             let found = vec![frames, rows, columns];
             Error::Shape { path: path.to_path_buf(), fault: ShapeFault::Nothing { found, axis: "pixels" } }
         })?;
         if pixels.iter().all(|&label| label == 0) {
-            return Err(image_error(path, ImageFault::NoCells { frame: index }));
+            return Err(image_error(path, ImageFault::NoCells { frame: page }));
         }
         let mut one = look(&mask, options, &mut summary);
         let links = match (&before, options.linking) {
@@ -85,7 +97,8 @@ pub fn import_labels(path: &Path, options: &LabelOptions) -> Result<ShapeImport,
         seen.push(one);
         before = Some(pixels);
     }
-    let mut import = assemble(path, dataset, scale, seen, summary)?;
+    let mut import = assemble(stack.name(), dataset, scale, seen, summary)?;
+    import.notes = notes;
     if options.border == BorderCells::Kept {
         import.dataset.see_within_image([columns, rows].map(|pixels| pixels as f64 * scale));
     }

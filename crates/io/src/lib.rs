@@ -6,10 +6,12 @@
 //! | to | use |
 //! |---|---|
 //! | read a data set (folder, single files, or both) | [`Source::load`] |
-//! | turn a spots or tracks table into a data set | [`import_trackmate`], [`import_tracks`] |
+//! | turn a table of spots or tracks, a file of TrackMate or tracks of napari into a data set | [`import_trackmate`], [`import_tracks`] |
+//! | turn points that nobody followed into a data set | [`import_points`] |
 //! | turn an optical flow or a table of vectors into a flow field | [`import_flow`] |
-//! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_outlines`] |
-//! | turn maxima and minima of a field into a data set | [`import_field`] |
+//! | turn label images or outlines of cells into a data set | [`import_labels`], [`import_label_series`], [`import_outlines`] |
+//! | turn maxima and minima of a field into a data set | [`import_field`], [`import_field_series`] |
+//! | say what is in a file or a folder | [`inspect`] |
 //! | get velocities from tracked positions | [`derive_velocities`] |
 //! | get the cells of a frame, and the boundary and the field of view as the geometry knows them | [`Snapshot`], [`DataSet::domain`], [`DataSet::view`] |
 //! | read which frames the user wants | [`FrameSelection`] |
@@ -32,6 +34,7 @@
 //! [`Error::hint`] adds what to do about it.
 
 mod array;
+mod cellpose;
 mod dataset;
 mod digest;
 mod error;
@@ -43,20 +46,29 @@ mod frames;
 mod image;
 mod image_scale;
 mod input;
+mod inspect;
 mod journal;
 mod label_import;
+mod linking;
 mod measurement;
 mod memory;
+mod napari;
 mod noise;
+mod note;
 mod outline_import;
 mod output;
+mod pickle;
+mod points;
 mod recording;
 mod save;
+mod series;
 mod settings;
 mod shapes;
 mod snapshot;
 mod source;
+mod stated;
 mod table;
+mod trackmate_xml;
 mod tracks;
 mod validate;
 mod velocity;
@@ -67,20 +79,24 @@ pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,
 };
-pub use field_import::{FieldImport, FieldLinking, FieldOptions, WantedExtrema, import_field};
+pub use field_import::{FieldImport, FieldOptions, WantedExtrema, import_field, import_field_series};
 pub use field_of_view::SeenArea;
 pub use flow::FlowField;
 pub use flow_import::{FlowImport, FlowOptions, FlowSummary, import_flow};
 pub use frames::FrameSelection;
 pub use image_scale::ImageScale;
 pub use input::{InputFile, read_text};
+pub use inspect::{InputKind, Inspection, inspect};
 pub use journal::Journal;
-pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_labels};
+pub use label_import::{BorderCells, LabelLinking, LabelOptions, import_label_series, import_labels};
+pub use linking::PlaceLinking;
 pub use measurement::{DeclaredWindow, PositionsAre, WindowKind};
 pub use memory::machine_memory;
 pub use noise::Noise;
+pub use note::{Note, NoteKind};
 pub use outline_import::{OutlineOptions, import_outlines};
 pub use output::{OutputDirectory, OutputFolder};
+pub use points::{PointImport, import_points};
 pub use recording::Recording;
 pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
 pub use snapshot::Snapshot;

@@ -33,10 +33,12 @@ pub struct OutlineOptions {
 /// [`Error::File`] and [`Error::Table`], the latter with the line; [`Error::Image`] for a cell without an area or a frame with fewer than
 /// three cells; [`Error::Setting`] for options out of range.
 pub fn import_outlines(path: &Path, options: &OutlineOptions) -> Result<ShapeImport, Error> {
-    let (scale, mut dataset) = options.scale.begin(Boundary::Open)?;
+    options.scale.begin(Boundary::Open)?;
     let (bytes, record) = read_input(path)?;
-    dataset.inputs.push(record);
     let table = read_spots(path, &bytes, Layout::Outlines, &options.columns)?;
+    let mut notes = table.notes.clone();
+    let (scale, mut dataset) = table.stated.settle(&options.scale, &mut notes).begin(Boundary::Open)?;
+    dataset.inputs.push(record);
     let failure = |fault| Error::Table { path: path.to_path_buf(), line: None, fault };
     let (first, frames) = frame_span(table.spots.iter().map(|spot| spot.frame)).map_err(failure)?;
     let numbers: BTreeSet<i64> = table.spots.iter().map(|spot| spot.track).collect();
@@ -55,7 +57,9 @@ pub fn import_outlines(path: &Path, options: &OutlineOptions) -> Result<ShapeImp
         summary.outlines += cells.len();
         seen.push(look(path, first + index as i64, cells, &tracks)?);
     }
-    assemble(path, dataset, scale, seen, summary)
+    let mut import = assemble(path, dataset, scale, seen, summary)?;
+    import.notes = notes;
+    Ok(import)
 }
 
 fn look(

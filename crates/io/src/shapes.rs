@@ -10,6 +10,7 @@ use voronudge_geometry::{Interface, Vector};
 use crate::dataset::DataSet;
 use crate::error::{Error, ImageFault};
 use crate::image::image_error;
+use crate::note::Note;
 use crate::output::OutputDirectory;
 use crate::tracks::SIZE_LIMIT;
 use crate::validate::ArrayNames;
@@ -32,6 +33,8 @@ pub struct ShapeImport {
     pub frames: Vec<ShapeFrame>,
     /// The counts to report.
     pub summary: ShapeSummary,
+    /// What was read, guessed and doubted.
+    pub notes: Vec<Note>,
 }
 
 /// True contacts and outlines of one frame.
@@ -105,6 +108,7 @@ pub(crate) fn assemble(
         perimeters: Array2::from_elem((frames, cells), f64::NAN),
         frames: Vec::with_capacity(frames),
         summary,
+        notes: Vec::new(),
         dataset: DataSet { positions: Array3::from_elem((frames, cells, 2), f64::NAN), ..dataset.clone() },
     };
     dataset = import.dataset;

@@ -1,29 +1,30 @@
 //! Reading the spots or the vectors of a table, compressed or not.
 
 mod columns;
+mod known;
 mod profile;
+mod text;
 mod vectors;
 
 use std::borrow::Cow;
-use std::io::Read;
 use std::path::Path;
 
 use csv::ByteRecord;
-use flate2::read::MultiGzDecoder;
 
 use crate::error::{Error, TableFault};
+use crate::note::Note;
+use crate::stated::Stated;
 pub use columns::ColumnNames;
 use columns::Columns;
 pub(crate) use columns::{Layout, Spot};
 pub use profile::{FlowProfile, read_flow_profile};
+pub(crate) use text::{decompressed, text_in_utf8};
+use text::{delimiter, tabbed, text_of};
 pub use vectors::FlowColumnNames;
 pub(crate) use vectors::{Vector, VectorTable, read_table};
 
-/// The most that a compressed table may grow to: far above any real one, far below what would
-/// exhaust a machine.
-const DECOMPRESSED_LIMIT: u64 = 1 << 30;
 /// The most rows of a table.
-const ROW_LIMIT: usize = 20_000_000;
+pub(crate) const ROW_LIMIT: usize = 20_000_000;
 
 /// Rows that TrackMate may put between the header and the first spot.
 const EXTRA_HEADER_ROWS: usize = 3;
@@ -34,8 +35,10 @@ pub(crate) struct SpotTable {
     pub(crate) spots: Vec<Spot>,
     /// Spots without a track.
     pub(crate) untracked: usize,
-    /// The unit of length that TrackMate's extra header rows name.
-    pub(crate) length_unit: Option<String>,
+    /// Units that the file names.
+    pub(crate) stated: Stated,
+    /// What was understood of its columns.
+    pub(crate) notes: Vec<Note>,
 }
 
 /// Reads a table; `path` only names the place.
@@ -46,19 +49,24 @@ pub(crate) fn read_spots(
     names: &ColumnNames,
 ) -> Result<SpotTable, Error> {
     let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
-    let text = decompress(bytes).map_err(|fault| failure(None, fault))?;
-    parse(&text, layout, names).map_err(|(offset, fault)| {
-        let line = offset.map(|offset| line_number(&text, offset));
+    let text = text_of(bytes).map_err(|fault| failure(None, fault))?;
+    let (separated, separator) = match delimiter(&text.bytes) {
+        Some(separator) => (Cow::Borrowed(&*text.bytes), separator),
+        None => (Cow::Owned(tabbed(&text.bytes)), b'\t'),
+    };
+    let mut table = parse(&separated, separator, layout, names).map_err(|(offset, fault)| {
+        let line = offset.map(|offset| line_number(&separated, offset));
         failure(line, fault)
-    })
+    })?;
+    table.notes.extend(text.note());
+    Ok(table)
 }
 
 /// A fault and the byte offset of the row it is in.
 type Located = (Option<u64>, TableFault);
 
-fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, Located> {
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).delimiter(delimiter(text)).from_reader(text);
+fn parse(text: &[u8], separator: u8, layout: Layout, names: &ColumnNames) -> Result<SpotTable, Located> {
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(text);
     let mut rows = reader.byte_records();
     let header = match rows.next() {
         Some(row) => row.map_err(csv_fault)?,
@@ -67,30 +75,50 @@ fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, 
     if header.iter().all(|field| field.trim_ascii().is_empty()) {
         return Err((None, TableFault::Empty));
     }
-    let columns = Columns::find(&header, layout, names).map_err(|fault| (offset_of(&header), fault))?;
+    let columns = Columns::find(&header, layout, names).map_err(|fault| {
+        let is_number =
+            |field: &[u8]| std::str::from_utf8(field).is_ok_and(|text| text.trim().parse::<f64>().is_ok());
+        let fault = if header.iter().all(is_number) { TableFault::NoNames } else { fault };
+        (offset_of(&header), fault)
+    })?;
 
-    let mut table = SpotTable { spots: Vec::new(), untracked: 0, length_unit: None };
+    let by = "header of the table";
+    let mut table = SpotTable {
+        spots: Vec::new(),
+        untracked: 0,
+        stated: Stated { length_unit: columns.length_unit(), is_scaled: true, by, ..Stated::default() },
+        notes: columns.notes(names),
+    };
+    let mut depths = Depths::default();
     let mut extra_rows = match layout {
         Layout::TrackMate => EXTRA_HEADER_ROWS,
-        Layout::Tracks | Layout::Outlines => 0,
+        Layout::Tracks | Layout::Outlines | Layout::Points => 0,
     };
     for row in rows {
         let row = row.map_err(csv_fault)?;
         if extra_rows > 0 && columns.all_texts(&row) {
             extra_rows -= 1;
-            table.length_unit = bracketed(&columns.length_unit_text(&row)).or(table.length_unit);
+            let unit = bracketed(&columns.length_unit_text(&row));
+            table.stated.length_unit = unit.or(table.stated.length_unit);
             continue;
         }
         extra_rows = 0;
+        if table.spots.is_empty() {
+            columns.check_label(&row, names).map_err(|fault| (offset_of(&row), fault))?;
+        }
         match columns.spot(&row) {
             Ok(Some(_)) if table.spots.len() == ROW_LIMIT => {
                 return Err((offset_of(&row), TableFault::TooManyRows { limit: ROW_LIMIT }));
             }
-            Ok(Some(spot)) => table.spots.push(spot),
+            Ok(Some(spot)) => {
+                depths.include(columns.depth(&row));
+                table.spots.push(spot);
+            }
             Ok(None) => table.untracked += 1,
             Err(fault) => return Err((offset_of(&row), fault)),
         }
     }
+    table.notes.extend(depths.note());
     match (table.spots.len(), table.untracked) {
         (0, 0) => Err((None, TableFault::NoRows)),
         (0, spots) => {
@@ -101,58 +129,25 @@ fn parse(text: &[u8], layout: Layout, names: &ColumnNames) -> Result<SpotTable, 
     }
 }
 
-/// How files of other kinds begin.
-const OTHER_KINDS: [(&[u8], &str); 11] = [
-    (b"PAR1", "a Parquet file"),
-    (b"{", "JSON"),
-    (b"[{", "JSON"),
-    (b"[[", "JSON"),
-    (b"<", "XML or HTML"),
-    (b"PK\x03\x04", "a zip archive or a spreadsheet"),
-    (b"\x89HDF", "an HDF5 file"),
-    (b"\x93NUMPY", "a .npy array"),
-    (b"II*\0", "a TIFF image"),
-    (b"MM\0*", "a TIFF image"),
-    (b"\x89PNG", "a PNG image"),
-];
+/// The smallest and the largest z of spots, which the model does not know.
+#[derive(Debug, Default)]
+pub(crate) struct Depths(Option<[f64; 2]>);
 
-/// The text of a table, decompressed if it begins like gzip, whatever its name.
-fn decompress(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TableFault> {
-    let text = decompressed(bytes)?;
-    let begin = text.trim_ascii_start();
-    match OTHER_KINDS.iter().find(|(first, _)| begin.starts_with(first)) {
-        Some((_, kind)) => Err(TableFault::AnotherKind { kind }),
-        None => Ok(text),
+impl Depths {
+    pub(crate) fn include(&mut self, depth: Option<f64>) {
+        if let Some(z) = depth.filter(|z| z.is_finite()) {
+            let [low, high] = self.0.unwrap_or([z, z]);
+            self.0 = Some([low.min(z), high.max(z)]);
+        }
     }
-}
 
-fn decompressed(bytes: &[u8]) -> Result<Cow<'_, [u8]>, TableFault> {
-    if !bytes.starts_with(&[0x1f, 0x8b]) {
-        return Ok(Cow::Borrowed(bytes));
+    /// That z is left out, if it is more than one and the same number.
+    pub(crate) fn note(&self) -> Option<Note> {
+        let [low, high] = self.0.filter(|[low, high]| low < high)?;
+        Some(Note::doubtful(format!(
+            "z runs from {low} to {high} and is left out: cells are taken for one layer"
+        )))
     }
-    let mut text = Vec::new();
-    MultiGzDecoder::new(bytes)
-        .take(DECOMPRESSED_LIMIT + 1)
-        .read_to_end(&mut text)
-        .map_err(|source| TableFault::Gzip(source.to_string()))?;
-    if text.len() as u64 > DECOMPRESSED_LIMIT {
-        let limit = DECOMPRESSED_LIMIT;
-        return Err(TableFault::TooLong { limit });
-    }
-    Ok(Cow::Owned(text))
-}
-
-/// The commonest of comma, semicolon and tab in the first line that is not blank.
-fn delimiter(text: &[u8]) -> u8 {
-    let mut lines = text.split(|byte| matches!(byte, b'\n' | b'\r'));
-    let first = lines.find(|line| !line.trim_ascii().is_empty());
-    let count = |delimiter| {
-        let line = first.unwrap_or_default().iter();
-        line.filter(|&&byte| byte == delimiter).count()
-    };
-    // Of equals max_by_key takes the last: the comma.
-    let candidates = [b'\t', b';', b','];
-    candidates.into_iter().max_by_key(|&candidate| count(candidate)).unwrap_or(b',')
 }
 
 fn csv_fault(error: csv::Error) -> Located {

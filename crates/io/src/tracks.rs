@@ -8,9 +8,13 @@ use ndarray::Array3;
 use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
 use crate::field_of_view::SeenArea;
-use crate::input::read_input;
-use crate::table::{ColumnNames, Layout, SpotTable, read_spots};
-use crate::validate::{self, ArrayNames, check_seen};
+use crate::image_scale::ImageScale;
+use crate::input::{InputFile, read_input};
+use crate::napari;
+use crate::note::Note;
+use crate::table::{ColumnNames, Layout, SpotTable, decompressed, read_spots};
+use crate::trackmate_xml::{is_xml, read_trackmate};
+use crate::validate::{ArrayNames, check_seen};
 
 /// The most frames between the first and the last spot.
 const FRAME_LIMIT: usize = 100_000;
@@ -46,6 +50,18 @@ pub struct ImportOptions {
     pub image_size: Option<[f64; 2]>,
 }
 
+impl ImportOptions {
+    pub(crate) fn scale(&self) -> ImageScale {
+        ImageScale {
+            pixel_size: self.pixel_size,
+            length_unit: self.length_unit.clone(),
+            time_unit: self.time_unit.clone(),
+            frame_interval: self.frame_interval,
+            y_axis: self.y_axis,
+        }
+    }
+}
+
 /// An imported data set and what became of the rows.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Import {
@@ -55,6 +71,8 @@ pub struct Import {
     pub track_ids: Vec<i64>,
     /// The counts to report.
     pub summary: ImportSummary,
+    /// What was read, guessed and doubted.
+    pub notes: Vec<Note>,
 }
 
 /// What became of the rows of a table.
@@ -76,9 +94,9 @@ pub struct ImportSummary {
     pub left_out_duplicate: usize,
 }
 
-/// Imports the spots table that TrackMate exports, CSV or gzip-compressed CSV.
+/// Imports the spots table that TrackMate exports, CSV or gzip-compressed CSV, or its XML: the file that it saves, or its exported tracks.
 ///
-/// Needs the columns `TRACK_ID`, `FRAME` and `POSITION_X`, `POSITION_Y` (or `X`, `Y`) in any
+/// XML brings frame interval and units. Of a table, needs the columns `TRACK_ID`, `FRAME` and `POSITION_X`, `POSITION_Y` (or `X`, `Y`) in any
 /// case. Up to three rows of labels and units below the header are skipped.
 ///
 /// # Errors
@@ -88,12 +106,13 @@ pub fn import_trackmate(path: &Path, options: &ImportOptions) -> Result<Import, 
     import(path, options, Layout::TrackMate)
 }
 
-/// Imports any table with one row per spot, CSV or gzip-compressed CSV, separated by commas,
-/// semicolons or tabs.
+/// Imports any table with one row per spot, separated by commas, semicolons, tabs or blanks, compressed with gzip or not, in UTF-8,
+/// UTF-16 or Latin-1; or a `.npy` array of rows track, frame, (z,) y, x, as napari keeps tracks.
 ///
 /// Unless named in the options, columns are recognised by usual names: `track_id`, `track`,
 /// `particle`, `cell`, `id` …; `frame`, `t`, `time_index` …; `x`, `position_x`, `pos_x` … The
 /// earlier name wins where several are there. A track is in one place in each frame: unlike TrackMate's, tracks do not split.
+/// z is left out.
 ///
 /// # Errors
 /// As [`import_trackmate`], and [`TableFault::SpotTwice`].
@@ -102,43 +121,72 @@ pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Err
 }
 
 fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
-    let scale = options.pixel_size.unwrap_or(1.0);
-    validate::positive("pixel_size", scale).map_err(Error::Setting)?;
+    options.scale().begin(Boundary::Open)?;
+    let (bytes, record) = read_input(path)?;
+    let read = read_any(path, &bytes, layout, &options.columns)?;
+    finish(path, options, record, read)
+}
+
+/// The data set of the spots of a file.
+pub(crate) fn finish(
+    path: &Path,
+    options: &ImportOptions,
+    record: InputFile,
+    (table, layout): (SpotTable, Layout),
+) -> Result<Import, Error> {
+    let mut notes = table.notes.clone();
+    let scale = table.stated.settle(&options.scale(), &mut notes);
+    let boundary = options.boundary.unwrap_or(Boundary::Open);
     let mut dataset = describe(
-        options.boundary,
-        options.frame_interval,
-        options.y_axis,
-        options.length_unit.as_deref(),
-        options.time_unit.as_deref(),
+        boundary,
+        scale.frame_interval,
+        scale.y_axis,
+        scale.length_unit.as_deref(),
+        scale.time_unit.as_deref(),
     );
     dataset.check_settings().map_err(Error::Setting)?;
-
-    let (bytes, record) = read_input(path)?;
     dataset.inputs.push(record);
-    let table = read_spots(path, &bytes, layout, &options.columns)?;
-    if let (None, None, Some(unit)) = (&options.length_unit, options.pixel_size, &table.length_unit) {
-        dataset.length_unit.clone_from(unit);
-    }
-    let tracks = Tracks::arrange(&table, layout).map_err(|fault| Error::Table {
-        path: path.to_path_buf(),
-        line: None,
-        fault,
-    })?;
+    let tracks = Tracks::arrange(&table, layout).map_err(|fault| table_error(path, fault))?;
 
-    dataset.positions = tracks.positions * scale;
+    let pixel = scale.pixel_size.unwrap_or(1.0);
+    dataset.positions = tracks.positions * pixel;
     dataset.check_arrays(&ArrayNames::of_one(path))?;
     dataset.y_axis.turn(&mut dataset.positions);
     if let Some(size) = options.image_size {
-        dataset.field_of_view = Some(SeenArea::image(size.map(|length| length * scale), dataset.y_axis));
+        dataset.field_of_view = Some(SeenArea::image(size.map(|length| length * pixel), dataset.y_axis));
         dataset.check_settings().map_err(Error::Setting)?;
         check_seen(path, &dataset)?;
     }
-    Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary })
+    Ok(Import { dataset, track_ids: tracks.ids, summary: tracks.summary, notes })
+}
+
+/// The spots of a table, of a file of TrackMate, or of an array of tracks, and whose tracks they are: whatever the file turns out to be.
+fn read_any(
+    path: &Path,
+    bytes: &[u8],
+    layout: Layout,
+    columns: &ColumnNames,
+) -> Result<(SpotTable, Layout), Error> {
+    let unfolded = decompressed(bytes).map_err(|fault| table_error(path, fault))?;
+    if is_xml(&unfolded) {
+        return Ok((read_trackmate(path, &unfolded)?, Layout::TrackMate));
+    }
+    let table = match layout {
+        Layout::Tracks if unfolded.starts_with(napari::SIGNATURE) => {
+            napari::read_tracks_layer(path, &unfolded)?
+        }
+        _ => read_spots(path, &unfolded, layout, columns)?,
+    };
+    Ok((table, layout))
+}
+
+pub(crate) fn table_error(path: &Path, fault: TableFault) -> Error {
+    Error::Table { path: path.to_path_buf(), line: None, fault }
 }
 
 /// The data set as far as the options know it.
 pub(crate) fn describe(
-    boundary: Option<Boundary>,
+    boundary: Boundary,
     frame_interval: Option<f64>,
     y_axis: Option<YAxis>,
     length_unit: Option<&str>,
@@ -153,7 +201,7 @@ pub(crate) fn describe(
         length_unit: length_unit.unwrap_or("length").to_owned(),
         time_unit: time_unit.unwrap_or(default_time).to_owned(),
         y_axis: y_axis.unwrap_or(YAxis::Down),
-        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary.unwrap_or(Boundary::Open))
+        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary)
     }
 }
 

@@ -39,6 +39,17 @@ pub struct ShapeReport {
     pub of_centroids: AgreementRecord,
     /// How the positions were found; `null` where they are centroids.
     pub sites: Option<SiteRecord>,
+    /// What was read, guessed and doubted of the files.
+    pub notes: Vec<NoteRecord>,
+}
+
+/// Something that was understood of a file that does not say everything about itself.
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+pub struct NoteRecord {
+    /// `read`, `guessed` or `doubtful`.
+    pub kind: String,
+    /// What it is, for people.
+    pub text: String,
 }
 
 /// Sites whose Voronoi polygons follow outlines best.
@@ -140,4 +151,6 @@ pub struct FieldReport {
     pub pixel_size: f64,
     /// The least prominence of an extremum taken.
     pub smallest_prominence: f64,
+    /// What was read, guessed and doubted of the files.
+    pub notes: Vec<NoteRecord>,
 }

@@ -1,4 +1,4 @@
-//! Images of labels and of fields: PNG, TIFF, `.npy`, by their first byte.
+//! Images of labels and of fields: PNG, TIFF, `.npy`, also with pickled masks, by their first byte.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;

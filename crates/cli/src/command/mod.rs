@@ -9,6 +9,7 @@ pub(crate) mod evaluate;
 mod fit;
 pub(crate) mod import;
 pub(crate) mod infer;
+pub(crate) mod info;
 pub(crate) mod merge;
 pub(crate) mod moduli;
 pub(crate) mod observe;

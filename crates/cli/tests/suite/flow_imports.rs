@@ -203,6 +203,36 @@ fn what_should_be_known_is_warned_of() {
     }
 }
 
+#[test]
+fn units_of_pivlab_are_taken_and_told() {
+    let (source, data) = (Folder::new(), Folder::new());
+    let preface = "PIVlab by W.Th. & E.J.S., ASCII chart output - 26-Nov-2026 12:00:00\n\
+                   FRAME: 1, filenames: A & B, conversion factor xy (px -> m): 0.001, conversion factor uv (px/frame -> m/s): 0.01\n";
+    let rows = vectors(|_, [x, y, u, v]| format!("{x},{y},{u},{v},1"));
+    for (header, length, time, told) in [
+        ("x [m],y [m],u [m/s],v [m/s],Vector type [-]", "m", "s", "read: lengths in m, velocities in m/s"),
+        ("x [px],y [px],u [px/frame],v [px/frame],Vector type [-]", "px", "frame", "u is \"u [px/frame]\""),
+        (
+            "x [mm],y [mm],u [m/s],v [m/s],Vector type [-]",
+            "mm",
+            "s",
+            "warning: places are in mm, but displacements in m",
+        ),
+    ] {
+        let table = source.write("piv.txt", format!("{preface}{header}\n{rows}"));
+        let outcome = succeed("import flow", &[("", &table), ("--out", data.path())]);
+        let said = outcome.stdout + &outcome.stderr;
+        assert!(said.contains(told), "{told}: {said}");
+        let settings = std::fs::read_to_string(data.file("dataset.toml")).unwrap();
+        for line in [format!("length_unit = \"{length}\""), format!("time_unit = \"{time}\"")] {
+            assert!(settings.contains(&line), "{line}: {settings}");
+        }
+    }
+    let table = source.file("piv.txt");
+    succeed(&format!("import flow {SCALE}"), &[("", &table), ("--out", data.path())]);
+    assert!(std::fs::read_to_string(data.file("dataset.toml")).unwrap().contains("length_unit = \"um\""));
+}
+
 #[track_caller]
 fn assert_flow_refused(paths: &[(&str, &Path)], flags: &[&str], facts: &[&str]) {
     let paths = paths.iter().flat_map(|(name, path)| [OsStr::new(name), path.as_os_str()]);

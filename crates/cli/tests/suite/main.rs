@@ -17,8 +17,11 @@ mod flow_imports;
 mod flow_inferences;
 mod forecasts;
 mod gradient_checks;
+mod import_formats;
+mod import_images;
 mod imports;
 mod inferences;
+mod information;
 #[cfg(unix)]
 mod interruption;
 mod layouts;

@@ -22,6 +22,18 @@ impl Header {
         Ok((header, body))
     }
 
+    /// What is known of an array that has no header, checked against its bytes.
+    pub(super) fn of(
+        item: &str,
+        shape: Vec<usize>,
+        fortran_order: bool,
+        body: &[u8],
+    ) -> Result<Self, FormatFault> {
+        let header = Self { item: Item::parse(item)?, fortran_order, shape };
+        header.check_length(body.len() as u64)?;
+        Ok(header)
+    }
+
     /// Reads the Python dictionary, e.g. `{'descr': '<f8', 'fortran_order': False, 'shape': (3, 2), }`.
     fn parse_dictionary(text: &str) -> Result<Self, FormatFault> {
         let inner = text
@@ -72,6 +84,13 @@ impl Header {
         }
         self.shape.iter().try_fold(self.item.size as u64, |bytes, &length| bytes.checked_mul(length as u64))
     }
+}
+
+/// What follows the header of an array of Python objects.
+pub(super) fn pickled(file: &[u8]) -> Option<&[u8]> {
+    let (dictionary, body) = split(file).ok()?;
+    let plain: String = dictionary.chars().filter(|letter| !letter.is_whitespace()).collect();
+    plain.contains("'descr':'|O'").then_some(body)
 }
 
 /// Checks signature and version; returns the dictionary text and what follows the header.

@@ -15,6 +15,18 @@ pub enum FileFault {
     /// A file was found where a data set folder is needed.
     #[error("is a file, a data set folder is needed")]
     NotAFolder,
+    /// A folder without images.
+    #[error("is a folder without .tif, .png or .npy files")]
+    NoImages,
+    /// A store of chunks, as OME-Zarr and GEFF are.
+    #[error("is a Zarr store (OME-Zarr or GEFF), which is not read")]
+    Zarr,
+    /// A folder with images of several kinds.
+    #[error("holds images of several kinds: {kinds}")]
+    Mixed {
+        /// Which, and how many.
+        kinds: String,
+    },
     /// A pipe or a device, whose length cannot be known beforehand.
     #[error("is not a regular file")]
     NotRegular,
@@ -40,6 +52,15 @@ impl FileFault {
                     .into(),
             ),
             Self::IsFolder => Some("name the file inside the folder".into()),
+            Self::NoImages => {
+                Some("name the folder that the images are in; folders inside it are not searched".into())
+            }
+            Self::Zarr => Some(
+                "write labels as TIFF, in Python: tifffile.imwrite(\"labels.tif\", \
+                 numpy.squeeze(zarr.open(\"x.zarr\")[\"0\"][:]), photometric=\"minisblack\"); write tracks as a table of track, frame, x, y"
+                    .into(),
+            ),
+            Self::Mixed { .. } => Some("name the files, for instance as FOLDER/*.tif".into()),
             Self::NotAFolder => {
                 Some("to give a single array, use --positions FILE with --box or --open".into())
             }

@@ -7,9 +7,18 @@ pub enum ImageFault {
     /// Neither `.npy` nor TIFF nor PNG.
     #[error("is neither a .npy array nor a TIFF or PNG image")]
     UnknownFormat,
-    /// A pickled Python object, such as Cellpose's `_seg.npy`.
-    #[error("holds a pickled Python object, not an array of numbers")]
-    Pickled,
+    /// A pickled Python object that is not Cellpose's `_seg.npy`, or not all of it.
+    #[error("holds a pickled Python object in which no masks can be found: {detail}")]
+    Pickled {
+        /// Why not.
+        detail: String,
+    },
+    /// A pickled dictionary of something else.
+    #[error("holds a pickled dictionary without masks: its entries are {found}")]
+    NoMasks {
+        /// Names of its entries.
+        found: String,
+    },
     /// A TIFF file that cannot be decoded.
     #[error("is not a whole TIFF image: page {page}: {detail}")]
     Tiff {
@@ -17,6 +26,14 @@ pub enum ImageFault {
         page: usize,
         /// What the decoder says.
         detail: String,
+    },
+    /// A TIFF file that is compressed in a way that is not read.
+    #[error("is compressed by a method that is not read ({method}, page {page})")]
+    Compression {
+        /// Page, from zero.
+        page: usize,
+        /// The method.
+        method: String,
     },
     /// A PNG file that cannot be decoded.
     #[error("is not a whole PNG image: {detail}")]
@@ -45,6 +62,46 @@ pub enum ImageFault {
         page: usize,
         /// The kind of pixels.
         colour: String,
+    },
+    /// Frames of a movie that were written as the planes of a colour image.
+    #[error("has its {frames} frames as the planes of a colour image")]
+    FramesAsPlanes {
+        /// How many.
+        frames: usize,
+    },
+    /// A header that cannot be understood.
+    #[error("has a header of {by} that cannot be read: {detail}")]
+    Description {
+        /// Whose.
+        by: &'static str,
+        /// What is wrong.
+        detail: String,
+    },
+    /// More than one layer, one channel, or one image.
+    #[error("holds {detail} ({by}), but one image for each frame is needed")]
+    Axes {
+        /// What it holds.
+        detail: String,
+        /// Who says so.
+        by: &'static str,
+    },
+    /// Another number of pages than the header says.
+    #[error("has {pages} pages, but its header speaks of {stated} images ({by})")]
+    OtherPages {
+        /// Pages found.
+        pages: usize,
+        /// Images stated.
+        stated: u64,
+        /// Who says so.
+        by: &'static str,
+    },
+    /// Pixels that are longer than wide.
+    #[error("has pixels of {} × {} ({by}), but square ones are needed", size[0], size[1])]
+    NotSquare {
+        /// Along x and along y.
+        size: [f64; 2],
+        /// Who says so.
+        by: &'static str,
     },
     /// Pages of different size.
     #[error("page {page} has {} × {} pixels, but the first has {} × {}", found[0], found[1], expected[0], expected[1])]
@@ -144,13 +201,17 @@ impl ImageFault {
     pub(super) fn hint(&self) -> Option<String> {
         let text = match self {
             Self::UnknownFormat => "save it as TIFF or PNG, or with numpy.save",
-            Self::Pickled => {
-                "take the masks out of a _seg.npy of Cellpose: \
+            Self::Pickled { .. } | Self::NoMasks { .. } => {
+                "only masks that Cellpose saved are taken out of an object; save the array by itself: \
                  np.save(\"masks.npy\", np.load(\"x_seg.npy\", allow_pickle=True).item()[\"masks\"])"
             }
             Self::Tiff { .. } => {
                 "the file was probably cut while it was written or copied, or is compressed in a way that is not read; \
                  write it again without compression"
+            }
+            Self::Compression { .. } => {
+                "write it without compression, or with zlib or LZW: in Python, \
+                 tifffile.imwrite(\"labels.tif\", tifffile.imread(\"x.tif\"), photometric=\"minisblack\", compression=\"zlib\")"
             }
             Self::Png { .. } => {
                 "the file was probably cut or damaged while it was written or copied; write or copy it again"
@@ -161,6 +222,20 @@ impl ImageFault {
                  --save_png and --save_tif do, or numpy.save(\"labels.npy\", masks)"
             }
             Self::Colour { .. } => "save one channel as a grey image of 8, 16 or 32 bits",
+            Self::FramesAsPlanes { .. } => {
+                "tifffile takes three or four frames for colours: write them with photometric=\"minisblack\""
+            }
+            Self::Description { .. } => "save the image again, from the program that wrote it or from Fiji",
+            Self::Axes { .. } => {
+                "in Fiji, Image › Duplicate takes one channel, and Image › Stacks › Z Project… one layer; then save as TIFF"
+            }
+            Self::OtherPages { .. } => {
+                "the rest is in other files, or behind the first page as Fiji writes stacks beyond 4 GB; save the frames as one file \
+                 each, or fewer of them"
+            }
+            Self::NotSquare { .. } => {
+                "resample the labels to square pixels, with the nearest label and not an average"
+            }
             Self::OtherSize { .. } => "all frames must be of one size; import them one by one otherwise",
             Self::TooLarge { .. } => "cut the image or import fewer frames at a time",
             Self::RealLabels { .. } => {

@@ -85,6 +85,26 @@ pub enum TableFault {
         /// What is needed, in words.
         expected: &'static str,
     },
+    /// A number of an array of tracks that is not what its column holds.
+    #[error("row {row}, column {column} (from zero) is {value}, {expected} is needed")]
+    ArrayRow {
+        /// Row, from zero.
+        row: usize,
+        /// Column, from zero.
+        column: usize,
+        /// The number.
+        value: f64,
+        /// What is needed, in words.
+        expected: &'static str,
+    },
+    /// A column that was taken for the track and holds names.
+    #[error("column \"{}\" holds \"{}\", which is no number of a track", shown(column), shown(text))]
+    Untracked {
+        /// The column.
+        column: String,
+        /// What it holds.
+        text: String,
+    },
     /// Frame numbers too far apart.
     #[error("frames run from {first} to {last}, more than {limit} frames are not taken")]
     TooManyFrames {
@@ -119,6 +139,9 @@ pub enum TableFault {
     /// Columns were named, but there is no line of names.
     #[error("begins with numbers, so it has no header in which to look for columns by name")]
     NoHeader,
+    /// A table of cells without a line of names.
+    #[error("begins with numbers, so nothing says which column is what")]
+    NoNames,
     /// One component of a displacement present, the other not.
     #[error("half of the displacement is missing (\"{}\", \"{}\")", shown(u), shown(v))]
     HalfMissing {
@@ -157,6 +180,21 @@ pub enum TableFault {
         /// Frame as in the table.
         frame: i64,
     },
+    /// XML that is cut or damaged.
+    #[error("cannot be read as XML: {0}")]
+    Xml(String),
+    /// XML of another program.
+    #[error("is XML of another kind ({root})")]
+    OtherXml {
+        /// Its outermost element.
+        root: String,
+    },
+    /// An element that is not there.
+    #[error("has no {element}")]
+    NoElement {
+        /// Its name.
+        element: &'static str,
+    },
     /// The table cannot be split into fields.
     #[error("cannot be read as a table: {0}")]
     Unreadable(String),
@@ -175,13 +213,24 @@ impl TableFault {
             Self::FieldCount { .. } => "the row was probably cut; export the table again",
             Self::NotANumber { text, .. } if text.contains(',') => "write decimal points, not decimal commas",
             Self::NotANumber { .. } => "correct or remove this row",
+            Self::ArrayRow { .. } => {
+                "columns are track, frame, (z,) y, x as in a tracks layer of napari, or frame, (z,) y, x as in a points layer"
+            }
+            Self::Untracked { .. } => {
+                "import points follows cells that have no tracks; or name the column of the track with --track-column"
+            }
             Self::TooManyFrames { .. } => {
                 "is the frame column a time? name the column that counts images from zero"
             }
             Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
-            Self::AnotherKind { .. } => "export what it holds as comma-separated values",
-            Self::NotText => "export the vectors as text in UTF-8, or give displacements of pixels as .npy",
+            Self::AnotherKind { .. } => {
+                "export what it holds as text, for instance as comma-separated values"
+            }
+            Self::NotText => "export the table as text; displacements of pixels may be given as .npy",
             Self::NoHeader => "leave the names out if the columns are x, y, u, v, or add a line of names",
+            Self::NoNames => {
+                "add a first line of names, such as track,frame,x,y; rows of a tracks layer of napari are track,frame,y,x, and its .npy needs none"
+            }
             Self::HalfMissing { .. } => "a missing vector is NaN in both components",
             Self::OffGrid { .. } => {
                 "vectors must lie on a rectangular grid; export the table before any interpolation or rotation"
@@ -192,6 +241,11 @@ impl TableFault {
             }
             Self::SpotTwice { .. } => {
                 "each cell needs a track of its own: a track is in one place in each frame"
+            }
+            Self::Xml(_) => "the file was probably cut while it was written or copied; save or copy it again",
+            Self::OtherXml { .. } => "TrackMate saves <TrackMate> files, and exports tracks as <Tracks>",
+            Self::NoElement { .. } => {
+                "save the whole model in TrackMate after tracking, or export its tracks to XML"
             }
             Self::Unreadable(_) => {
                 "open the table in a text editor: it should have one line for each cell and frame"

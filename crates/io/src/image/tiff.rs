@@ -4,10 +4,13 @@ use std::io::Cursor;
 use std::path::Path;
 
 use ndarray::Array3;
+use tiff::decoder::ifd::Value;
 use tiff::decoder::{Decoder, DecodingResult, Limits};
-use tiff::{ColorType, TiffError};
+use tiff::tags::Tag;
+use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
-use super::{check_size, image_error};
+use super::description::{Tags, describe, has_frames_as_planes};
+use super::{Images, check_size, image_error};
 use crate::error::{Error, ImageFault};
 use crate::tracks::SIZE_LIMIT;
 
@@ -16,17 +19,29 @@ pub(super) fn parse_tiff<T: Clone>(
     path: &Path,
     bytes: &[u8],
     numbers: fn(DecodingResult) -> Result<Vec<T>, ImageFault>,
-) -> Result<Array3<T>, Error> {
+) -> Result<Images<T>, Error> {
     let failure = |fault| image_error(path, fault);
     let mut page = 0;
     let broken = |page: usize| {
-        move |error: TiffError| image_error(path, ImageFault::Tiff { page, detail: error.to_string() })
+        move |error: TiffError| {
+            image_error(
+                path,
+                match error {
+                    TiffError::UnsupportedError(TiffUnsupportedError::UnsupportedCompressionMethod(
+                        method,
+                    )) => ImageFault::Compression { page, method: format!("{method:?}") },
+                    other => ImageFault::Tiff { page, detail: other.to_string() },
+                },
+            )
+        }
     };
     // The size of pages is checked below; what is read on the way to their pixels is never more than the file.
     let mut limits = Limits::default();
     limits.decoding_buffer_size = usize::try_from(SIZE_LIMIT).unwrap_or(usize::MAX);
     limits.intermediate_buffer_size = limits.intermediate_buffer_size.max(bytes.len());
+    limits.ifd_value_size = limits.ifd_value_size.max(bytes.len());
     let mut decoder = Decoder::new(Cursor::new(bytes)).map_err(broken(0))?.with_limits(limits);
+    let tags = tags_of(&mut decoder);
     let (mut pixels, mut first): (Vec<T>, Option<[usize; 2]>) = (Vec::new(), None);
     loop {
         let (columns, rows) = decoder.dimensions().map_err(broken(page))?;
@@ -38,6 +53,12 @@ pub(super) fn parse_tiff<T: Clone>(
         check_size(path, page, [columns, rows])?;
         match decoder.colortype().map_err(broken(page))? {
             ColorType::Gray(_) => {}
+            ColorType::RGB(_) if has_frames_as_planes(&tags, 3) => {
+                return Err(failure(ImageFault::FramesAsPlanes { frames: 3 }));
+            }
+            ColorType::RGBA(_) if has_frames_as_planes(&tags, 4) => {
+                return Err(failure(ImageFault::FramesAsPlanes { frames: 4 }));
+            }
             colour => return Err(failure(ImageFault::Colour { page, colour: format!("{colour:?}") })),
         }
         pixels.extend(numbers(decoder.read_image().map_err(broken(page))?).map_err(failure)?);
@@ -48,10 +69,30 @@ pub(super) fn parse_tiff<T: Clone>(
         decoder.next_image().map_err(broken(page))?;
     }
     let [columns, rows] = first.unwrap_or_default();
+    let described = describe(&tags, page).map_err(failure)?;
     let found = pixels.len();
-    Array3::from_shape_vec((page, rows, columns), pixels).map_err(|_| {
+    let pixels = Array3::from_shape_vec((page, rows, columns), pixels).map_err(|_| {
         failure(ImageFault::Tiff { page: 0, detail: format!("{found} pixels do not fill {page} pages") })
-    })
+    })?;
+    Ok(Images { pixels, described })
+}
+
+/// What the first page says; tags that cannot be read say nothing.
+fn tags_of(decoder: &mut Decoder<Cursor<&[u8]>>) -> Tags {
+    let mut real = |tag| {
+        let value = decoder.find_tag(tag).ok().flatten()?;
+        let number = match value {
+            Value::Rational(over, under) => f64::from(over) / f64::from(under),
+            other => other.into_f64().ok()?,
+        };
+        (number.is_finite() && number > 0.0).then_some(number)
+    };
+    let resolution = real(Tag::XResolution).zip(real(Tag::YResolution)).map(|(x, y)| [x, y]);
+    Tags {
+        description: decoder.get_tag_ascii_string(Tag::ImageDescription).unwrap_or_default(),
+        resolution,
+        unit: decoder.find_tag_unsigned(Tag::ResolutionUnit).ok().flatten(),
+    }
 }
 
 pub(super) fn integers(pixels: DecodingResult) -> Result<Vec<i64>, ImageFault> {

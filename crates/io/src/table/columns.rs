@@ -4,11 +4,13 @@ use std::borrow::Cow;
 
 use csv::ByteRecord;
 
+use super::known::{Known, LABEL};
 use crate::error::{TableFault, excerpt};
+use crate::note::Note;
 
 /// Names of the columns, where they are not to be recognised automatically.
 ///
-/// A name is looked up as written, then ignoring case, blanks, hyphens and underscores.
+/// A name is looked up as written, then ignoring case, blanks, hyphens and underscores, then also units in brackets.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct ColumnNames {
     /// The column that says which track a spot belongs to.
@@ -28,6 +30,8 @@ pub(crate) enum Layout {
     Tracks,
     /// Corners of outlines, row after row; without a column of frames all are in one.
     Outlines,
+    /// Points without tracks; without a column of frames all are in one.
+    Points,
 }
 
 /// A spot that belongs to a track.
@@ -45,52 +49,104 @@ pub(super) struct Column {
     pub(super) name: String,
 }
 
-/// The four columns of a table that matter.
+/// The columns of a table that matter.
 pub(super) struct Columns {
-    track: Column,
+    /// Absent for points, which are numbered in the order of their rows.
+    track: Option<Column>,
     frame: Option<Column>,
     x: Column,
     y: Column,
+    z: Option<Column>,
 }
 
 impl Columns {
     pub(super) fn find(header: &ByteRecord, layout: Layout, names: &ColumnNames) -> Result<Self, TableFault> {
-        const X: &[&str] = &["x", "position_x", "pos_x", "x_position", "centroid_x"];
-        const Y: &[&str] = &["y", "position_y", "pos_y", "y_position", "centroid_y"];
-        let (track, frame, x, y): (&[&str], &[&str], &[&str], &[&str]) = match layout {
-            Layout::TrackMate => (&["track_id"], &["frame"], &["position_x", "x"], &["position_y", "y"]),
-            Layout::Tracks | Layout::Outlines => (
-                &["track_id", "track", "particle", "particle_id", "cell_id", "cell", "id"],
-                &["frame", "t", "time_index", "time_point"],
-                X,
-                Y,
-            ),
-        };
         let found: Vec<String> = header
             .iter()
             .map(|field| {
                 let text = String::from_utf8_lossy(field);
-                text.trim_start_matches('\u{feff}').trim().to_owned()
+                text.trim_start_matches(['\u{feff}', '#', ' ']).trim().to_owned()
             })
             .collect();
-        let find = |role, given: &Option<String>, known: &[&str]| {
-            let example = match layout {
-                Layout::TrackMate => {
-                    "--track-column id --frame-column t; for another table format use import tracks"
-                }
-                Layout::Tracks | Layout::Outlines => "--track-column id --frame-column t",
-            };
-            Column::find(&found, role, given, known, plain, example)
+        let known = Known::of(layout, &found);
+        let example = match layout {
+            Layout::TrackMate => {
+                "--track-column id --frame-column t; for another table format use import tracks"
+            }
+            Layout::Tracks => {
+                "--track-column id --frame-column t; import points follows cells that have no tracks"
+            }
+            Layout::Outlines => "--cell-column id --frame-column t",
+            Layout::Points => "--x-column cx --y-column cy --frame-column t",
         };
+        let find = |role, given: &Option<String>, known: &[&str]| {
+            Column::find(&found, role, given, known, plain, example)
+                .or_else(|fault| Column::find(&found, role, given, known, bare, example).map_err(|_| fault))
+        };
+        let may_be_still = matches!(layout, Layout::Outlines | Layout::Points);
         Ok(Self {
-            track: find("track", &names.track, track)?,
-            frame: match find("frame", &names.frame, frame) {
-                Err(_) if layout == Layout::Outlines && names.frame.is_none() => None,
+            track: match layout {
+                Layout::Points => None,
+                _ => Some(find("track", &names.track, known.track)?),
+            },
+            frame: match find("frame", &names.frame, known.frame) {
+                Err(_) if may_be_still && names.frame.is_none() => None,
                 found => Some(found?),
             },
-            x: find("x coordinate", &names.x, x)?,
-            y: find("y coordinate", &names.y, y)?,
+            x: find("x coordinate", &names.x, known.x)?,
+            y: find("y coordinate", &names.y, known.y)?,
+            z: find("z coordinate", &None, known.z).ok(),
         })
+    }
+
+    /// What is to be said of how columns were found.
+    pub(super) fn notes(&self, names: &ColumnNames) -> Vec<Note> {
+        let roles = [
+            ("track", self.track.as_ref(), &names.track),
+            ("frame", self.frame.as_ref(), &names.frame),
+            ("x", Some(&self.x), &names.x),
+            ("y", Some(&self.y), &names.y),
+        ];
+        let found = roles.into_iter().filter(|(.., given)| given.is_none());
+        let found = found.filter_map(|(role, column, _)| Some((role, excerpt(&column?.name))));
+        let found: Vec<String> = found.map(|(role, name)| format!("{role} is \"{name}\"")).collect();
+        let mut notes = Vec::new();
+        if !found.is_empty() {
+            notes.push(Note::guessed(format!("of the columns {}", found.join(", "))));
+        }
+        if let Some(track) = self.guessed_label(names) {
+            notes.push(Note::doubtful(format!(
+                "\"{}\" is taken for the track: the same number is the same cell in all frames; import points follows cells whose \
+                 numbers are those of each image",
+                excerpt(&track.name)
+            )));
+        }
+        notes
+    }
+
+    /// The column of the track, if it is one of numbers of regions that nobody named.
+    fn guessed_label(&self, names: &ColumnNames) -> Option<&Column> {
+        self.track.as_ref().filter(|track| names.track.is_none() && plain(&track.name) == LABEL)
+    }
+
+    /// That a guessed column of tracks holds names, as ImageJ's `Label` does.
+    pub(super) fn check_label(&self, row: &ByteRecord, names: &ColumnNames) -> Result<(), TableFault> {
+        match self.guessed_label(names) {
+            Some(track) if !track.text(row).is_empty() && track.finite(row).is_err() => {
+                Err(TableFault::Untracked { column: track.name.clone(), text: excerpt(&track.text(row)) })
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// The unit of length that the header states in brackets.
+    pub(super) fn length_unit(&self) -> Option<String> {
+        unit_in(&self.x.name)
+    }
+
+    /// What a row has under z.
+    pub(super) fn depth(&self, row: &ByteRecord) -> Option<f64> {
+        self.z.as_ref()?.finite(row).ok()
     }
 
     /// Whether a row repeats names or units rather than giving a spot.
@@ -105,18 +161,18 @@ impl Columns {
 
     /// The name of the column of the track.
     pub(super) fn track_name(self) -> String {
-        self.track.name
+        self.track.map_or_else(String::new, |track| track.name)
     }
 
     /// The spot of a row; `None` where it belongs to no track.
     pub(super) fn spot(&self, row: &ByteRecord) -> Result<Option<Spot>, TableFault> {
         const UNTRACKED: [&str; 6] = ["", "-", "none", "nan", "na", "null"];
-        let track = self.track.text(row).to_lowercase();
-        if UNTRACKED.contains(&track.as_str()) {
+        let text = self.track.as_ref().map(|track| track.text(row).to_lowercase());
+        if text.is_some_and(|text| UNTRACKED.contains(&text.as_str())) {
             return Ok(None);
         }
         Ok(Some(Spot {
-            track: self.track.whole(row)?,
+            track: self.track.as_ref().map_or(Ok(0), |track| track.whole(row))?,
             frame: self.frame.as_ref().map_or(Ok(0), |frame| frame.whole(row))?,
             x: self.x.finite(row)?,
             y: self.y.finite(row)?,
@@ -186,4 +242,26 @@ impl Column {
 /// A column name without what people write differently.
 pub(super) fn plain(name: &str) -> String {
     name.chars().filter(|letter| !matches!(letter, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
+}
+
+/// A column name without its unit and without what people write differently.
+pub(super) fn unbracketed(name: &str) -> String {
+    plain(name.split(['[', '(']).next().unwrap_or_default())
+}
+
+/// The same, and without the distance that CellProfiler adds to the name of its tracks.
+fn bare(name: &str) -> String {
+    let name = unbracketed(name);
+    let tracks = name.strip_prefix("trackobjectslabel");
+    match tracks.is_some_and(|rest| rest.bytes().all(|byte| byte.is_ascii_digit())) {
+        true => "trackobjectslabel".into(),
+        false => name,
+    }
+}
+
+/// The unit in brackets at the end of a name.
+pub(super) fn unit_in(name: &str) -> Option<String> {
+    let start = name.find(['[', '('])? + 1;
+    let unit = name[start..].trim_end_matches([']', ')']).trim();
+    (!unit.is_empty()).then(|| unit.to_owned())
 }

@@ -5,7 +5,7 @@ use std::path::Path;
 use csv::ByteRecord;
 
 use super::columns::{Column, plain};
-use super::{csv_fault, decompress, delimiter, line_number, offset_of};
+use super::{csv_fault, delimiter, line_number, offset_of, text_of};
 use crate::error::{Error, TableFault};
 use crate::input::{InputFile, read_input};
 
@@ -31,7 +31,7 @@ pub struct FlowProfile {
 pub fn read_flow_profile(path: &Path) -> Result<FlowProfile, Error> {
     let (bytes, input) = read_input(path)?;
     let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
-    let text = decompress(&bytes).map_err(|fault| failure(None, fault))?;
+    let text = text_of(&bytes).map_err(|fault| failure(None, fault))?.bytes;
     parse(&text).map(|(x, velocity, errors)| FlowProfile { x, velocity, errors, input }).map_err(
         |(offset, fault)| {
             let line = offset.map(|offset: u64| line_number(&text, offset));
@@ -43,8 +43,8 @@ pub fn read_flow_profile(path: &Path) -> Result<FlowProfile, Error> {
 type Columns = (Vec<f64>, [Vec<f64>; 2], Option<[Vec<f64>; 2]>);
 
 fn parse(text: &[u8]) -> Result<Columns, super::Located> {
-    let mut reader =
-        csv::ReaderBuilder::new().has_headers(false).delimiter(delimiter(text)).from_reader(text);
+    let separator = delimiter(text).unwrap_or(b',');
+    let mut reader = csv::ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(text);
     let mut rows = reader.byte_records();
     let header = match rows.next() {
         Some(row) => row.map_err(csv_fault)?,

@@ -5,9 +5,9 @@ use std::path::Path;
 
 use csv::ByteRecord;
 
-use super::columns::{Column, plain};
-use super::{Located, csv_fault, decompress, line_number, offset_of};
-use crate::error::{Error, TableFault};
+use super::columns::{Column, unbracketed, unit_in};
+use super::{Located, csv_fault, line_number, offset_of, tabbed, text_of};
+use crate::error::{Error, TableFault, excerpt};
 
 /// Names of the columns, where they are not to be recognised automatically.
 ///
@@ -47,16 +47,16 @@ pub(crate) struct VectorTable {
     pub(crate) vectors: Vec<Vector>,
     /// The unit of displacements that the header states in brackets.
     pub(crate) unit: Option<String>,
+    /// The unit of places, likewise.
+    pub(crate) place_unit: Option<String>,
+    /// Which columns were taken for what, in words.
+    pub(crate) columns: String,
 }
 
 /// Reads a table, compressed or not; `path` only names the place.
 pub(crate) fn read_table(path: &Path, bytes: &[u8], names: &FlowColumnNames) -> Result<VectorTable, Error> {
     let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
-    let text = decompress(bytes).map_err(|fault| failure(None, fault))?;
-    // Text has no zero bytes; what PIVlab saves for MATLAB and images have.
-    if text.contains(&0) {
-        return Err(failure(None, TableFault::NotText));
-    }
+    let text = text_of(bytes).map_err(|fault| failure(None, fault))?.bytes;
     let (text, separator) = match separator(&text) {
         Some(separator) => (text, separator),
         None => (Cow::Owned(tabbed(&text)), b'\t'),
@@ -74,7 +74,7 @@ fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTa
     // The last line of text that is no header, and why it is none.
     let mut preface: Option<(ByteRecord, TableFault)> = None;
     let mut lines = Lines { text, at: 0, line: 1 };
-    let mut table = VectorTable { vectors: Vec::new(), unit: None };
+    let mut table = VectorTable { vectors: Vec::new(), unit: None, place_unit: None, columns: String::new() };
     for row in reader.byte_records() {
         let row = row.map_err(csv_fault)?;
         if row.iter().all(|field| field.trim_ascii().is_empty()) {
@@ -105,7 +105,9 @@ fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTa
     match (columns, preface) {
         (Some(_), _) if table.vectors.is_empty() => Err((None, TableFault::NoRows)),
         (Some(columns), _) => {
-            table.unit = columns.unit();
+            table.unit = unit_in(&columns.u.name);
+            table.place_unit = unit_in(&columns.x.name);
+            table.columns = columns.described();
             Ok(table)
         }
         (None, Some((header, fault))) => Err((offset_of(&header), fault)),
@@ -172,11 +174,15 @@ impl Columns {
         })
     }
 
-    /// The unit of displacements that the header states in brackets.
-    fn unit(&self) -> Option<String> {
-        let start = self.u.name.find(['[', '('])? + 1;
-        let unit = self.u.name[start..].trim_end_matches([']', ')']).trim();
-        (!unit.is_empty()).then(|| unit.to_owned())
+    /// Which columns are what.
+    fn described(&self) -> String {
+        let roles = [("x", Some(&self.x)), ("y", Some(&self.y)), ("u", Some(&self.u)), ("v", Some(&self.v))];
+        let more = [("frame", self.frame.as_ref()), ("mask", self.mask.as_ref())];
+        let found = roles.into_iter().chain(more).filter_map(|(role, column)| Some((role, column?)));
+        found
+            .map(|(role, column)| format!("{role} is \"{}\"", excerpt(&column.name)))
+            .collect::<Vec<_>>()
+            .join(", ")
     }
 
     fn vector(&self, row: &ByteRecord, line: u64) -> Result<Vector, TableFault> {
@@ -249,34 +255,6 @@ fn separator(text: &[u8]) -> Option<u8> {
     [b';', b'\t', b','].into_iter().find(|separator| line.contains(separator))
 }
 
-/// Text with a tab wherever there are blanks between fields; lines stay as they are.
-fn tabbed(text: &[u8]) -> Vec<u8> {
-    let text = String::from_utf8_lossy(text);
-    let mut out = String::with_capacity(text.len());
-    for line in text.split('\n') {
-        let line = line.trim();
-        // The mark of a comment belongs to the first field.
-        let (mark, rest) = match line.strip_prefix('#') {
-            Some(rest) => ("#", rest),
-            None => ("", line),
-        };
-        out.push_str(mark);
-        let mut before: Option<&str> = None;
-        for word in rest.split_whitespace() {
-            // A unit belongs to the name before it, and PIVlab has a column "vector type".
-            let goes_on =
-                word.starts_with(['[', '(']) || (before == Some("vector") && word.starts_with("type"));
-            if before.is_some() {
-                out.push(if goes_on { ' ' } else { '\t' });
-            }
-            out.push_str(word);
-            before = Some(word);
-        }
-        out.push('\n');
-    }
-    out.into_bytes()
-}
-
 fn is_comment(row: &ByteRecord) -> bool {
     row.get(0).is_some_and(|field| field.trim_ascii_start().starts_with(b"#"))
 }
@@ -286,9 +264,4 @@ fn is_numbers(row: &ByteRecord) -> bool {
     let mut fields = row.iter().map(<[u8]>::trim_ascii).filter(|field| !field.is_empty());
     let is_number = |field: &[u8]| std::str::from_utf8(field).is_ok_and(|text| text.parse::<f64>().is_ok());
     row.len() >= 4 && fields.all(is_number)
-}
-
-/// A column name without its unit and without what people write differently.
-fn unbracketed(name: &str) -> String {
-    plain(name.split(['[', '(']).next().unwrap_or_default())
 }

@@ -216,6 +216,27 @@ fn mutated_images_are_read_or_refused() {
 }
 
 #[test]
+fn mutated_files_of_other_programs_are_read_or_refused() {
+    let scratch = Scratch::new();
+    let sample = |name: &str| {
+        fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/imports").join(name)).unwrap()
+    };
+    let path = scratch.path("masks.npy");
+    assert_survives(13, &sample("masks_seg.npy"), &path, 600, || labels(&path));
+    let path = scratch.path("labels.tif");
+    for (seed, name) in [(14, "labels-slices.tif"), (15, "labels.ome.tif")] {
+        assert_survives(seed, &sample(name), &path, 100, || labels(&path));
+    }
+    let path = scratch.path("tracks.xml");
+    for (seed, name) in
+        [(16, "trackmate-model.xml"), (17, "trackmate-tracks.xml"), (18, "napari-tracks-3d.npy")]
+    {
+        let options = ImportOptions::default();
+        assert_survives(seed, &sample(name), &path, 300, || import_tracks(&path, &options).map(|_| ()));
+    }
+}
+
+#[test]
 fn mutated_checkpoints_and_journals_are_refused_or_shorter() {
     let scratch = Scratch::new();
     let folder = OutputFolder::claim(scratch.root()).unwrap();

@@ -8,9 +8,11 @@ mod flow_arrays;
 mod flow_tables;
 mod flows;
 mod folders;
+mod foreign_tables;
 mod frames;
 mod output;
 mod settings;
+mod trackmate_files;
 mod tracks;
 mod velocities;
 

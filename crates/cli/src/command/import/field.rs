@@ -1,6 +1,8 @@
 //! `import field`: extrema of a stream function or of an intensity.
 
 use super::ImageArguments;
+use super::linking::{Link, warn_of_breaks};
+use super::notes::{records, told};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::boundary::domain;
@@ -10,7 +12,7 @@ use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Edge, Tessellation};
-use voronudge_io::{FieldImport, FieldLinking, FieldOptions, Snapshot, WantedExtrema, import_field};
+use voronudge_io::{FieldImport, FieldOptions, Snapshot, WantedExtrema, import_field_series};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
@@ -29,8 +31,10 @@ const GUIDE: &[[&str; 2]] = &[
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The field (ny, nx) or (frames, ny, nx), .npy, a grey .tif of one page or several, or a grey .png.
-    file: PathBuf,
+    /// The field (ny, nx) or (frames, ny, nx), .npy, a grey .tif of one page or several, or a grey .png; several files, or those of a
+    /// folder, are frames in the order of the numbers in their names.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
     #[command(flatten)]
     image: ImageArguments,
     /// Which extrema are cells.
@@ -68,17 +72,9 @@ enum Kind {
     Both,
 }
 
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Link {
-    /// None: each frame has cells of its own.
-    None,
-    /// The nearest of the same kind in the next frame.
-    Nearest,
-}
-
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = arguments.common.output([&arguments.file])?;
+    let mut out = arguments.common.output(&arguments.files)?;
     let options = FieldOptions {
         scale: arguments.image.scale(),
         extrema: match arguments.extrema {
@@ -90,20 +86,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         prominence: arguments.prominence,
         distance: arguments.distance,
         edge: if arguments.periodic { Edge::Periodic } else { Edge::Open },
-        linking: match arguments.link {
-            Link::None => FieldLinking::Separate,
-            Link::Nearest => FieldLinking::Nearest { limit: arguments.link_limit },
-        },
+        linking: arguments.link.linking(arguments.link_limit),
     };
-    let import = import_field(&arguments.file, &options)?;
+    let import = import_field_series(&arguments.files, &options)?;
     let data = &import.dataset;
-    let expected: usize = import.counts.iter().skip(1).sum();
-    if arguments.link == Link::Nearest && import.linked < expected {
-        run.warn(format!(
-            "{} of {expected} extrema after the first frame continue none of the frame before; each begins a cell of its own",
-            expected - import.linked
-        ));
-    }
+    warn_of_breaks(&mut run, arguments.link, &import.counts, import.linked, "extrema");
+    let understood = told(&mut run, &import.notes);
     data.save(&mut out)?;
     out.write_array("heights.npy", import.heights.view())?;
     out.write_array("prominences.npy", import.prominences.view())?;
@@ -122,13 +110,14 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .copied()
             .filter(|x| x.is_finite())
             .fold(f64::INFINITY, f64::min),
+        notes: records(&import.notes),
     };
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page(&arguments.file, &import, &report)?)?;
+    out.write_text("report.html", &page(&arguments.files[0], &import, &report)?)?;
     let extrema: usize = report.frames.iter().sum();
     let text = format!(
-        "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\nwritten to {}\n",
+        "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
         report.frames.len(),
         report.tracks,
         report.linked,

@@ -1,6 +1,7 @@
 //! `import flow`: a dense optical flow, or tables of vectors on a grid.
 
 use super::ScaleArguments;
+use super::notes::{records, told};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -10,6 +11,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use voronudge_io::{DataSet, FlowColumnNames, FlowOptions, FlowSummary, import_flow};
 use voronudge_report::infer_report::RunRecord;
+use voronudge_report::shape_report::NoteRecord;
 
 /// More grid points in a frame than the cells of any tissue need.
 const MANY_POINTS: usize = 100_000;
@@ -60,6 +62,7 @@ struct Report {
     spacing: [f64; 2],
     missing_points: usize,
     cells: Option<usize>,
+    notes: Vec<NoteRecord>,
 }
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
@@ -87,6 +90,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     let import = import_flow(&arguments.files, &options)?;
     warn(&mut run, &import.summary, is_scaled);
+    let understood = told(&mut run, &import.notes);
     import.save(&mut out)?;
     let summary = &import.summary;
     let report = Report {
@@ -98,10 +102,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         spacing: summary.spacing,
         missing_points: summary.missing,
         cells: import.is_complete().then(|| import.dataset.cells()),
+        notes: records(&import.notes),
     };
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
-    let mut text = describe(summary, &import.dataset);
+    let mut text = describe(summary, &import.dataset) + &understood;
     text += &format!("written to {}\n", out.path().display());
     if !import.is_complete() {
         let there = out.path().join("positions.npy").exists();

@@ -9,12 +9,14 @@ use crate::failure::Failure;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
-use voronudge_io::{BorderCells, LabelLinking, LabelOptions, import_labels};
+use voronudge_io::{BorderCells, LabelLinking, LabelOptions, import_label_series};
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, a grey .tif of one page or several, or a .png.
-    file: PathBuf,
+    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, a _seg.npy of Cellpose, a grey .tif of one page or several, or a .png; several files, or
+    /// those of a folder, are frames in the order of the numbers in their names.
+    #[arg(required = true, value_name = "FILE")]
+    files: Vec<PathBuf>,
     #[command(flatten)]
     image: ImageArguments,
     /// Cells touch across at most so many pixels of background, counted from side to side.
@@ -53,7 +55,7 @@ enum Border {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.output([&arguments.file])?;
+    let out = arguments.common.output(&arguments.files)?;
     let options = LabelOptions {
         scale: arguments.image.scale(),
         gap: arguments.gap,
@@ -67,7 +69,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             Border::LeaveOut => BorderCells::LeftOut,
         },
     };
-    let import = import_labels(&arguments.file, &options)?;
+    let import = import_label_series(&arguments.files, &options)?;
     if import.summary.in_pieces > 0 {
         run.warn(format!(
             "{} labels lie in several pieces; centroid, area and perimeter are those of all pieces together",
@@ -77,6 +79,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if import.frames.len() > 1 && arguments.link == Link::None {
         run.warn("each frame has cells of its own, so nothing moves; --link labels or --link overlap follows cells");
     }
-    let source = Source { file: &arguments.file, gap: Some(arguments.gap), positions: arguments.positions };
+    let source =
+        Source { file: &arguments.files[0], gap: Some(arguments.gap), positions: arguments.positions };
     shapes::finish(run, out, &source, import)
 }

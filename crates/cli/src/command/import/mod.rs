@@ -3,17 +3,22 @@
 mod field;
 mod flow;
 mod labels;
+mod linking;
+mod notes;
 mod outlines;
+mod points;
 mod shapes;
 mod sites;
 mod tracks;
 
+pub(crate) use notes::records;
+
 use crate::Answer;
 use crate::failure::Failure;
 use clap::{Args, Subcommand};
-use voronudge_io::{Boundary, ImageScale, YAxis};
+use voronudge_io::{Boundary, ColumnNames, ImageScale, ImportOptions, YAxis};
 
-/// Turns tracks, flow fields, label images, outlines or fields of other programs into a data set.
+/// Turns tracks, points, flow fields, label images, outlines or fields of other programs into a data set.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
@@ -22,10 +27,12 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// TrackMate's spots table (.csv or .csv.gz).
+    /// What TrackMate saves (.xml), its exported tracks (.xml), or its table of spots (.csv or .csv.gz).
     Trackmate(tracks::Arguments),
-    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y.
+    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y; or a tracks layer of napari (.npy).
     Tracks(tracks::Arguments),
+    /// Points that nobody has followed (.csv, .csv.gz or .npy): x, y and perhaps a frame; cells are followed from frame to frame.
+    Points(points::Arguments),
     /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
     Flow(flow::Arguments),
     /// Label images, as segmentations make them (.npy, .tif or .png): every pixel carries the number of its cell, or 0.
@@ -49,16 +56,16 @@ struct ScaleArguments {
 /// What images do not say about themselves.
 #[derive(Debug, Args)]
 struct ImageArguments {
-    /// Length of a pixel: coordinates and displacements are multiplied by it [default: 1].
+    /// Length of a pixel: coordinates and displacements are multiplied by it [default: that of a TIFF, else 1].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pixel_size: Option<f64>,
-    /// Time between frames.
+    /// Time between frames [default: that of the file, else 1].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     frame_interval: Option<f64>,
-    /// Unit of length after scaling.
+    /// Unit of length after scaling [default: that of the file].
     #[arg(long, value_name = "UNIT")]
     length_unit: Option<String>,
-    /// Unit of time.
+    /// Unit of time [default: that of the file].
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
     /// Direction in which rows are counted, or y grows [default: down, as in images].
@@ -79,6 +86,23 @@ impl ImageArguments {
 }
 
 impl ScaleArguments {
+    /// All that a table of cells does not say about itself.
+    fn options(&self, columns: ColumnNames, image_size: Option<&[f64]>) -> ImportOptions {
+        let ImageScale { pixel_size, length_unit, time_unit, frame_interval, y_axis } = self.image.scale();
+        let image_size = image_size.map(|size| [size[0], size[1]]);
+        let boundary = self.boundary();
+        ImportOptions {
+            columns,
+            pixel_size,
+            length_unit,
+            time_unit,
+            frame_interval,
+            y_axis,
+            boundary,
+            image_size,
+        }
+    }
+
     fn boundary(&self) -> Option<Boundary> {
         self.box_lengths.as_ref().map(|l| Boundary::Periodic { lengths: [l[0], l[1]] })
     }
@@ -88,6 +112,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     match arguments.what {
         What::Trackmate(arguments) => tracks::run(arguments, voronudge_io::import_trackmate),
         What::Tracks(arguments) => tracks::run(arguments, voronudge_io::import_tracks),
+        What::Points(arguments) => points::run(arguments),
         What::Flow(arguments) => flow::run(arguments),
         What::Labels(arguments) => labels::run(arguments),
         What::Outlines(arguments) => outlines::run(arguments),

@@ -1,5 +1,6 @@
 //! True outlines beside the Voronoi polygons of the positions: the comparison, its report and its page.
 
+use super::notes::{records, told};
 use super::sites::{Positions, place_at_sites};
 use crate::Answer;
 use crate::command::drawing::cells_view;
@@ -77,6 +78,7 @@ pub(super) fn finish(
             "no cell can be compared: all are at the rim, at the border of the image, or next to one that is",
         );
     }
+    let understood = told(&mut run, &import.notes);
     import.save(&mut out)?;
     let data = &import.dataset;
     let report = ShapeReport {
@@ -99,6 +101,7 @@ pub(super) fn finish(
         gap: source.gap,
         of_centroids,
         sites,
+        notes: records(&import.notes),
     };
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
@@ -115,7 +118,7 @@ pub(super) fn finish(
     let text = format!(
         "{} outlines in {} frames, {} cells\n{described}\
          Voronoi polygons of {} cells against their outlines: precision {}, recall {} of {} contacts; correlation of areas {}, of \
-         perimeters {}\nwritten to {}\n",
+         perimeters {}\n{understood}written to {}\n",
         report.outlines,
         report.frames.len(),
         report.tracks,

@@ -1,6 +1,7 @@
 //! `import trackmate` and `import tracks`: tables of tracks.
 
 use super::ScaleArguments;
+use super::notes::{records, told};
 use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
@@ -10,10 +11,11 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use voronudge_io::{ColumnNames, Import, ImportOptions};
 use voronudge_report::infer_report::RunRecord;
+use voronudge_report::shape_report::NoteRecord;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The table.
+    /// The table; a .npy array of tracks for import tracks.
     file: PathBuf,
     #[command(flatten)]
     scale: ScaleArguments,
@@ -48,6 +50,7 @@ struct Report {
     left_out_untracked: usize,
     left_out_duplicate: usize,
     track_ids: Vec<i64>,
+    notes: Vec<NoteRecord>,
 }
 
 /// What reads a table.
@@ -56,29 +59,21 @@ type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
 pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &table.common)?;
     let mut out = table.common.output([&table.file])?;
-    let scale = table.scale;
-    let options = ImportOptions {
-        columns: ColumnNames {
-            track: table.track_column,
-            frame: table.frame_column,
-            x: table.x_column,
-            y: table.y_column,
-        },
-        boundary: scale.boundary(),
-        image_size: table.image_size.as_ref().map(|size| [size[0], size[1]]),
-        pixel_size: scale.image.pixel_size,
-        length_unit: scale.image.length_unit,
-        time_unit: scale.image.time_unit,
-        frame_interval: scale.image.frame_interval,
-        y_axis: scale.image.y_axis,
+    let columns = ColumnNames {
+        track: table.track_column,
+        frame: table.frame_column,
+        x: table.x_column,
+        y: table.y_column,
     };
-    let Import { dataset, track_ids, summary } = read(&table.file, &options)?;
+    let options = table.scale.options(columns, table.image_size.as_deref());
+    let Import { dataset, track_ids, summary, notes } = read(&table.file, &options)?;
     if summary.left_out_duplicate > 0 {
         run.warn(format!(
             "{} spots share track and frame with another (a split track); the first of each was kept",
             summary.left_out_duplicate
         ));
     }
+    let understood = told(&mut run, &notes);
     dataset.save(&mut out)?;
     let report = Report {
         run: run.record(Some(&dataset)),
@@ -90,11 +85,12 @@ pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
         left_out_untracked: summary.left_out_untracked,
         left_out_duplicate: summary.left_out_duplicate,
         track_ids,
+        notes: records(&notes),
     };
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let text = format!(
-        "{} spots of {} tracks in {} frames ({} without a track left out)\nwritten to {}\n",
+        "{} spots of {} tracks in {} frames ({} without a track left out)\n{understood}written to {}\n",
         report.spots,
         report.tracks,
         report.frames,

@@ -1,0 +1,92 @@
+//! `import points`: places of cells that nobody has followed.
+
+use super::ScaleArguments;
+use super::linking::{Link, warn_of_breaks};
+use super::notes::{records, told};
+use crate::Answer;
+use crate::arguments::CommonArguments;
+use crate::failure::Failure;
+use crate::run::Run;
+use clap::Args;
+use serde::Serialize;
+use std::path::PathBuf;
+use voronudge_io::{ColumnNames, import_points};
+use voronudge_report::infer_report::RunRecord;
+use voronudge_report::shape_report::NoteRecord;
+
+#[derive(Debug, Args)]
+pub(super) struct Arguments {
+    /// A table with a row for each point: x, y and perhaps a frame; or a .npy array of rows (frame, (z,)) y, x, as napari keeps points.
+    file: PathBuf,
+    #[command(flatten)]
+    scale: ScaleArguments,
+    /// Name of the column with the frame's number; without one all rows are of one frame.
+    #[arg(long, value_name = "NAME")]
+    frame_column: Option<String>,
+    /// Name of the column with x.
+    #[arg(long, value_name = "NAME")]
+    x_column: Option<String>,
+    /// Name of the column with y.
+    #[arg(long, value_name = "NAME")]
+    y_column: Option<String>,
+    /// Width and height of the image in the unit of the table: the field of view.
+    #[arg(long, num_args = 2, value_names = ["W", "H"], conflicts_with = "box_lengths", allow_negative_numbers = true)]
+    image_size: Option<Vec<f64>>,
+    /// Which points of different frames are one cell.
+    #[arg(long, value_enum, default_value_t = Link::Nearest)]
+    link: Link,
+    /// The farthest that a cell moves between frames, in units after scaling [default: half the mean distance of cells].
+    #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+    link_limit: Option<f64>,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Serialize)]
+struct Report {
+    #[serde(flatten)]
+    run: RunRecord,
+    frames: Vec<usize>,
+    first_frame: i64,
+    tracks: usize,
+    linked: usize,
+    notes: Vec<NoteRecord>,
+}
+
+pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("import", &arguments.common)?;
+    let mut out = arguments.common.output([&arguments.file])?;
+    let columns = ColumnNames {
+        track: None,
+        frame: arguments.frame_column,
+        x: arguments.x_column,
+        y: arguments.y_column,
+    };
+    let options = arguments.scale.options(columns, arguments.image_size.as_deref());
+    let linking = arguments.link.linking(arguments.link_limit);
+    let found = import_points(&arguments.file, &options, linking)?;
+    let data = &found.import.dataset;
+    warn_of_breaks(&mut run, arguments.link, &found.counts, found.linked, "points");
+    let understood = told(&mut run, &found.import.notes);
+    data.save(&mut out)?;
+    let report = Report {
+        run: run.record(Some(data)),
+        frames: found.counts,
+        first_frame: found.import.summary.first_frame,
+        tracks: data.cells(),
+        linked: found.linked,
+        notes: records(&found.import.notes),
+    };
+    let json = serde_json::to_string_pretty(&report)?;
+    out.write_text("report.json", &json)?;
+    let text = format!(
+        "{} points in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
+        report.frames.iter().sum::<usize>(),
+        report.frames.len(),
+        report.tracks,
+        report.linked,
+        out.path().display()
+    );
+    run.finish(Some(out), &json, &text)?;
+    Ok(Answer::Positive)
+}

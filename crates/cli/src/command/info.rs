@@ -1,0 +1,138 @@
+//! `voronudge info`: what is in a data set or a file, and which command reads it.
+
+use crate::Answer;
+use crate::command::import::records;
+use crate::failure::Failure;
+use crate::terminal::{self, legible};
+use clap::Args;
+use serde::Serialize;
+use std::fmt::Write as _;
+use std::path::PathBuf;
+use voronudge_io::{Boundary, Inspection, NoteKind, inspect};
+use voronudge_report::numbers::significant;
+use voronudge_report::shape_report::NoteRecord;
+
+/// What is in a data set, or in a file of another program: shape, units, frames, cells, and what was guessed.
+///
+/// Nothing is written.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    /// A data set, a file of any kind that import reads, or a folder of images.
+    path: PathBuf,
+    /// Print JSON.
+    #[arg(long)]
+    json: bool,
+}
+
+/// What `--json` prints.
+#[derive(Serialize)]
+struct Record {
+    path: String,
+    kind: String,
+    shape: Option<Vec<usize>>,
+    frames: Option<usize>,
+    cells: Option<usize>,
+    present: Vec<usize>,
+    extent: Option<[f64; 4]>,
+    pixel_size: Option<f64>,
+    length_unit: Option<String>,
+    frame_interval: Option<f64>,
+    time_unit: Option<String>,
+    y_axis: Option<String>,
+    #[serde(rename = "box")]
+    cell_box: Option<[f64; 2]>,
+    files: Vec<String>,
+    notes: Vec<NoteRecord>,
+    command: String,
+}
+
+pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
+    let found = inspect(&arguments.path)?;
+    let path = arguments.path.display().to_string();
+    let printed = match arguments.json {
+        true => terminal::print(&format!("{}\n", serde_json::to_string_pretty(&record(path, &found))?)),
+        false => terminal::print(&legible(&described(&path, &found))),
+    };
+    printed.map_err(|error| Failure::new(format!("stdout cannot be written: {error}")))?;
+    Ok(Answer::Positive)
+}
+
+fn record(path: String, found: &Inspection) -> Record {
+    Record {
+        command: format!("voronudge {} {path} --out DIR", found.kind.command()),
+        path,
+        kind: found.kind.to_string(),
+        shape: found.shape.clone(),
+        frames: found.frames,
+        cells: found.cells,
+        present: found.present.clone(),
+        extent: found.extent,
+        pixel_size: found.pixel_size,
+        length_unit: found.length_unit.clone(),
+        frame_interval: found.frame_interval,
+        time_unit: found.time_unit.clone(),
+        y_axis: found.y_axis.map(|axis| axis.to_string()),
+        cell_box: match found.boundary {
+            Some(Boundary::Periodic { lengths }) => Some(lengths),
+            _ => None,
+        },
+        files: found.files.iter().map(|file| file.display().to_string()).collect(),
+        notes: records(&found.notes),
+    }
+}
+
+fn described(path: &str, found: &Inspection) -> String {
+    let mut text = format!("{path}: {}\n", found.kind);
+    let mut line = |name: &str, value: Option<String>| {
+        if let Some(value) = value {
+            let _ = writeln!(text, "  {name:<11} {value}");
+        }
+    };
+    let unit = found.length_unit.as_deref().unwrap_or_default();
+    let list = |lengths: &[usize]| lengths.iter().map(usize::to_string).collect::<Vec<_>>().join(" × ");
+    line("files", (found.files.len() > 1).then(|| found.files.len().to_string()));
+    line("shape", found.shape.as_deref().map(list));
+    line("frames", found.frames.map(|frames| frames.to_string()));
+    let range = found.present.iter().min().zip(found.present.iter().max());
+    line(
+        "cells",
+        match (found.cells, range) {
+            (Some(cells), Some((low, high))) if low == high => Some(format!("{cells}, {low} in each frame")),
+            (Some(cells), Some((low, high))) => Some(format!("{cells}, {low} to {high} in a frame")),
+            (None, Some((low, high))) if low == high => Some(format!("{low} in each frame")),
+            (None, Some((low, high))) => Some(format!("{low} to {high} in a frame")),
+            (cells, None) => cells.map(|cells| cells.to_string()),
+        },
+    );
+    line("pixels", found.pixel_size.map(|size| format!("{size} {unit}")));
+    line(
+        "extent",
+        found.extent.map(|corners| {
+            let [x0, y0, x1, y1] = corners.map(|length| significant(length, 4));
+            format!("x {x0} to {x1}, y {y0} to {y1} {unit}")
+        }),
+    );
+    line(
+        "surrounding",
+        found.boundary.map(|boundary| match boundary {
+            Boundary::Periodic { lengths: [x, y] } => format!("a periodic box of {x} × {y} {unit}"),
+            Boundary::Open => "an open field of view".into(),
+        }),
+    );
+    line("y", found.y_axis.map(|axis| axis.to_string()));
+    let many = found.frames.is_some_and(|frames| frames > 1);
+    let interval = found.frame_interval.filter(|_| many);
+    line(
+        "interval",
+        interval.map(|step| format!("{step} {}", found.time_unit.as_deref().unwrap_or_default())),
+    );
+    for kind in [NoteKind::Read, NoteKind::Guessed, NoteKind::Doubtful] {
+        let of = found.notes.iter().filter(|note| note.kind == kind);
+        let texts: Vec<&str> = of.map(|note| note.text.as_str()).collect();
+        if !texts.is_empty() {
+            let _ = writeln!(text, "{kind}: {}", texts.join("; "));
+        }
+    }
+    let _ = writeln!(text, "next: voronudge {} {path} --out DIR", found.kind.command());
+    text
+}
