@@ -32,10 +32,11 @@ fn fault(name: &str) -> Option<String> {
     })
 }
 
-/// A test for each tissue, so that they run side by side.
+/// A test for each tissue, so that they run side by side; the slowest only if asked for.
 macro_rules! tissues {
-    ($($name:ident)*) => {$(
+    ($($(#[$attribute:meta])* $name:ident)*) => {$(
         #[test]
+        $(#[$attribute])*
         fn $name() {
             assert_eq!(fault(&stringify!($name).replace('_', "-")), None);
         }
@@ -43,5 +44,9 @@ macro_rules! tissues {
 }
 
 tissues! {
-    tissue_01 tissue_02 tissue_03 tissue_04 tissue_05 tissue_06 tissue_07 tissue_08 tissue_09 tissue_10 tissue_11 tissue_12
+    tissue_01 tissue_02 tissue_03 tissue_04 tissue_05 tissue_09 tissue_11 tissue_12
+    #[ignore = "slow"] tissue_06
+    #[ignore = "slow"] tissue_07
+    #[ignore = "slow"] tissue_08
+    #[ignore = "slow"] tissue_10
 }

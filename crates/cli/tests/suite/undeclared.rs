@@ -73,12 +73,13 @@ fn check(part: usize) {
     assert!(faults.is_empty(), "{faults:#?}");
 }
 
-/// Every so many sets are one test, so that tests run side by side.
+/// Every so many sets are one test, so that tests run side by side; every other one only if asked for.
 macro_rules! parts {
-    ($($part:literal $name:ident)*) => {
+    ($($part:literal $(#[$attribute:meta])* $name:ident)*) => {
         const TESTS: usize = [$($part),*].len();
         $(
             #[test]
+            $(#[$attribute])*
             fn $name() {
                 check($part);
             }
@@ -88,11 +89,11 @@ macro_rules! parts {
 
 parts! {
     0 the_truth_is_found_in_the_first_part
-    1 the_truth_is_found_in_the_second_part
+    1 #[ignore = "slow"] the_truth_is_found_in_the_second_part
     2 the_truth_is_found_in_the_third_part
-    3 the_truth_is_found_in_the_fourth_part
+    3 #[ignore = "slow"] the_truth_is_found_in_the_fourth_part
     4 the_truth_is_found_in_the_fifth_part
-    5 the_truth_is_found_in_the_sixth_part
+    5 #[ignore = "slow"] the_truth_is_found_in_the_sixth_part
     6 the_truth_is_found_in_the_seventh_part
-    7 the_truth_is_found_in_the_eighth_part
+    7 #[ignore = "slow"] the_truth_is_found_in_the_eighth_part
 }

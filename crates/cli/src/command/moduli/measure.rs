@@ -9,7 +9,7 @@ use crate::progress::Progress;
 use std::ops::ControlFlow;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicU64, Ordering};
-use voronudge_geometry::Domain;
+use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::moduli::{Dynamic, Elastic, Settled, Viscosity, viscous};
 use voronudge_simulate::{Error, Simulation, seed_of_replica};
@@ -42,6 +42,8 @@ pub(crate) struct Measured {
     pub elastic: Elastic,
     pub viscosity: Option<Viscosity>,
     pub dynamic: Vec<Dynamic>,
+    /// Where the tissue came to rest, or was when it was given up.
+    pub positions: Vec<Vector<f64>>,
 }
 
 /// Measures all replicas, one after another; the strained states of one run at the same time.
@@ -55,7 +57,8 @@ pub(super) fn replicas(
     let mut measured = Vec::new();
     for (index, (_, start)) in starts.iter().enumerate() {
         let stage = format!("replica {} of {}", index + 1, starts.len());
-        measured.push(one(start, parameters, protocol, &stage, &progress)?);
+        let tissue = (start.positions.as_slice(), start.cell_box);
+        measured.push(one(tissue, parameters, protocol, &stage, &progress)?);
     }
     if let Ok(shown) = progress.lock() {
         shown.finish();
@@ -65,7 +68,7 @@ pub(super) fn replicas(
 
 /// Measures one tissue.
 pub(crate) fn one(
-    start: &Start,
+    (positions, cell_box): (&[Vector<f64>], PeriodicBox),
     parameters: &Parameters<f64>,
     protocol: &Protocol,
     stage: &str,
@@ -78,7 +81,7 @@ pub(crate) fn one(
         progress.try_lock().map_or(ControlFlow::Continue(()), |mut shown| shown.step(stage, done, most))
     };
     let model = Model::chiral_voronoi(parameters);
-    let simulation = Simulation::new(start.positions.clone(), Domain::Periodic(start.cell_box), model)?;
+    let simulation = Simulation::new(positions.to_vec(), Domain::Periodic(cell_box), model)?;
     let interrupted = |error: Error| match error {
         Error::Interrupted => Failure::interrupted(),
         other => other.into(),
@@ -90,5 +93,6 @@ pub(crate) fn one(
     let viscosity = (protocol.viscosity.as_ref())
         .map(|viscosity| viscous(&simulation, viscosity, &stop).map_err(interrupted))
         .transpose()?;
-    Ok(Measured { elastic, viscosity, dynamic })
+    let positions = settled.simulation().positions().to_vec();
+    Ok(Measured { elastic, viscosity, dynamic, positions })
 }

@@ -12,13 +12,18 @@ use voronudge_model::Parameters;
 use voronudge_report::Units;
 use voronudge_report::moduli_report::{ModuliReport, ModulusRecord, ReplicaRecord};
 use voronudge_report::numbers::significant;
-use voronudge_simulate::moduli::{Moduli, Motion};
+use voronudge_simulate::moduli::{Moduli, Motion, Viscosity};
 
 /// A nonlinearity above this share of the largest modulus means that contacts changed.
 const LINEAR: f64 = 0.02;
 
-pub(super) const NAMES: [(&str, &str); 4] =
+/// Moduli in the order of [`Moduli::to_array`], by name and symbol.
+pub(crate) const NAMES: [(&str, &str); 4] =
     [("bulk", "B"), ("odd_bulk", "A"), ("shear", "μ"), ("odd_shear", "Kᵒ")];
+
+/// Viscosities, by name and symbol.
+pub(crate) const VISCOSITY_NAMES: [(&str, &str); 2] =
+    [("shear_viscosity", "η"), ("odd_shear_viscosity", "ηᵒ")];
 
 pub(super) fn report(
     run: &Run,
@@ -45,8 +50,11 @@ pub(super) fn report(
         }
     });
     let moduli = moduli.collect();
-    let viscosities = |of: fn(&voronudge_simulate::moduli::Viscosity) -> f64| {
-        measured.iter().filter_map(|m| m.viscosity.as_ref().map(of)).collect::<Vec<_>>()
+    let viscosity = |k: usize| {
+        let (name, symbol) = VISCOSITY_NAMES[k];
+        let of = |own: &Viscosity| [(own.shear, own.shear_error), (own.odd_shear, own.odd_shear_error)][k];
+        let (values, errors) = measured.iter().filter_map(|m| m.viscosity.as_ref().map(of)).unzip();
+        record(name, symbol, values, errors)
     };
     let dynamic = super::dynamic::records(&measured.iter().map(|m| m.dynamic.as_slice()).collect::<Vec<_>>());
     let first = &starts[0].1;
@@ -66,19 +74,7 @@ pub(super) fn report(
             (0..2).for_each(|k| prestress[k][k] += pressure);
             prestress
         }),
-        viscosities: if protocol.viscosity.is_some() {
-            vec![
-                record("shear_viscosity", "η", viscosities(|v| v.shear), viscosities(|v| v.shear_error)),
-                record(
-                    "odd_shear_viscosity",
-                    "ηᵒ",
-                    viscosities(|v| v.odd_shear),
-                    viscosities(|v| v.odd_shear_error),
-                ),
-            ]
-        } else {
-            Vec::new()
-        },
+        viscosities: if protocol.viscosity.is_some() { vec![viscosity(0), viscosity(1)] } else { Vec::new() },
         media: super::dynamic::media(&dynamic),
         dynamic,
         replicas: (starts.iter().zip(measured))

@@ -1,12 +1,14 @@
-//! Tissues simulated at the fitted parameters and at parameters moved by one standard error, from the same starts.
+//! Tissues simulated at the fitted parameters, and from where they came to at parameters moved by one standard error.
 
 use super::posterior::{Posterior, Scaled};
 use crate::command::moduli::measure::{Measured, one};
 use crate::command::moduli::protocol::{Protocol, ProtocolArguments};
+use crate::command::moduli::report::{NAMES, VISCOSITY_NAMES};
 use crate::command::simulate::Start;
 use crate::failure::Failure;
 use crate::progress::Progress;
 use std::sync::Mutex;
+use voronudge_geometry::Vector;
 use voronudge_report::rheology_report::{FittedRheology, RheologyFrequency, RheologyQuantity};
 use voronudge_simulate::moduli::{Dynamic, DynamicModulus, Motion};
 use voronudge_theory::{MeanField, Moduli};
@@ -24,9 +26,6 @@ enum Told {
     /// Frequency, which of B, A, μ, Kᵒ, and whether it is the loss modulus.
     Dynamic(usize, usize, bool),
 }
-
-const MODULI: [(&str, &str); 4] = [("bulk", "B"), ("odd_bulk", "A"), ("shear", "μ"), ("odd_shear", "Kᵒ")];
-const VISCOSITIES: [(&str, &str); 2] = [("shear_viscosity", "η"), ("odd_shear_viscosity", "ηᵒ")];
 
 impl Told {
     /// The number in a tissue, in units of the data; none where that tissue has none.
@@ -47,10 +46,10 @@ impl Told {
 
     fn named(self) -> (String, String) {
         match self {
-            Self::Modulus(k) => (MODULI[k].0.into(), MODULI[k].1.into()),
-            Self::Viscosity(k) => (VISCOSITIES[k].0.into(), VISCOSITIES[k].1.into()),
-            Self::Dynamic(_, k, false) => (format!("{}_storage", MODULI[k].0), format!("{}′", MODULI[k].1)),
-            Self::Dynamic(_, k, true) => (format!("{}_loss", MODULI[k].0), format!("{}″", MODULI[k].1)),
+            Self::Modulus(k) => (NAMES[k].0.into(), NAMES[k].1.into()),
+            Self::Viscosity(k) => (VISCOSITY_NAMES[k].0.into(), VISCOSITY_NAMES[k].1.into()),
+            Self::Dynamic(_, k, false) => (format!("{}_storage", NAMES[k].0), format!("{}′", NAMES[k].1)),
+            Self::Dynamic(_, k, true) => (format!("{}_loss", NAMES[k].0), format!("{}″", NAMES[k].1)),
         }
     }
 }
@@ -63,31 +62,40 @@ pub(super) struct Work<'a> {
 }
 
 impl Work<'_> {
-    /// All tissues at some parameters; `frequencies` of the data.
-    fn tissues(&self, scaled: &Scaled, stage: &str) -> Result<Vec<Measured>, Failure> {
+    /// All tissues at some parameters, from some positions.
+    fn tissues(
+        &self,
+        from: &[&[Vector<f64>]],
+        scaled: &Scaled,
+        stage: &str,
+    ) -> Result<Vec<Measured>, Failure> {
         let arguments = ProtocolArguments {
             frequencies: self.arguments.frequencies.iter().map(|own| own / scaled.rate).collect(),
             ..self.arguments.clone()
         };
         let protocol = Protocol::new(&arguments, &scaled.parameters, 1.0)?;
-        let own = |(k, start): (usize, &Start)| {
+        let own = |(k, (positions, start)): (usize, (&&[Vector<f64>], &Start))| {
             let stage = format!("{stage}, tissue {} of {}", k + 1, self.starts.len());
-            one(start, &scaled.parameters, &protocol, &stage, self.progress)
+            one((positions, start.cell_box), &scaled.parameters, &protocol, &stage, self.progress)
         };
-        self.starts.iter().enumerate().map(own).collect()
+        from.iter().zip(self.starts).enumerate().map(own).collect()
     }
 
     /// Everything that a fit implies.
     pub fn fitted(&self, fit: &Posterior, at: f64, name: &str) -> Result<FittedRheology, Failure> {
         let estimate = fit.estimate()?;
-        let centre = self.tissues(&estimate, &format!("{name}, at the estimate"))?;
+        let starts: Vec<&[Vector<f64>]> =
+            self.starts.iter().map(|start| start.positions.as_slice()).collect();
+        let centre = self.tissues(&starts, &estimate, &format!("{name}, at the estimate"))?;
+        // A solid keeps its state, which differs more from one to another than moduli do with parameters.
+        let settled: Vec<&[Vector<f64>]> = centre.iter().map(|own| own.positions.as_slice()).collect();
         let mut sides = Vec::new();
         for axis in 0..fit.axes() {
             let mut both = Vec::new();
             for (side, word) in [(1.0, "above"), (-1.0, "below")] {
                 let scaled = fit.moved(axis, side)?;
                 let stage = format!("{name}, axis {} of {} {word}", axis + 1, fit.axes());
-                both.push((self.tissues(&scaled, &stage)?, scaled.rate));
+                both.push((self.tissues(&settled, &scaled, &stage)?, scaled.rate));
             }
             sides.push(both);
         }

@@ -15,7 +15,7 @@ use voronudge_report::units::label_with_unit;
 const GUIDE: &[[&str; 2]] = &[
     [
         "What was done",
-        "Tissues are simulated at the fitted parameters, and from the same starting positions at parameters that are one standard error off, to either side, \
+        "Tissues are simulated at the fitted parameters, and from where they came to at parameters that are one standard error off, to either side, \
          along each principal axis of the covariance. Their moduli are measured as by voronudge moduli.",
     ],
     [
