@@ -302,9 +302,7 @@ fn yielding(size: Size) -> Result<Made, Box<dyn Error>> {
         found,
         panels: vec![Panel {
             name: "",
-            caption:
-                "Mean shear stress against the rate: a liquid's vanishes with the rate, a solid's does not"
-                    .into(),
+            caption: "Mean shear stress against the rate".into(),
             svg,
         }],
     })
