@@ -300,10 +300,6 @@ fn yielding(size: Size) -> Result<Made, Box<dyn Error>> {
             "{cells} cells, {replicas} tissues each, `voronudge moduli --viscosity --rate ε̇ --period 2/ε̇`, so that the strain goes from 0 to 1 and back"
         ),
         found,
-        panels: vec![Panel {
-            name: "",
-            caption: "Mean shear stress against the rate".into(),
-            svg,
-        }],
+        panels: vec![Panel { name: "", caption: "Mean shear stress against the rate".into(), svg }],
     })
 }
