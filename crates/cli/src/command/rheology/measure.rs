@@ -118,7 +118,9 @@ impl Work<'_> {
             for both in &sides {
                 let [above, below] = [0, 1].map(|side: usize| of_all(told, &both[side].0, both[side].1));
                 let halves: Vec<f64> = above?.iter().zip(below?).map(|(a, b)| 0.5 * (a - b)).collect();
-                variance += mean_and_deviation(&halves).0.powi(2);
+                let (half, spread) = mean_and_deviation(&halves);
+                // And what so few tissues do not tell of it.
+                variance += half * half + spread * spread / count;
             }
             let inference_error = variance.sqrt();
             let reach = NORMAL_95 * inference_error.hypot(simulation_error);
