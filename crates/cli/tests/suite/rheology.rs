@@ -67,6 +67,10 @@ fn a_solid_has_the_moduli_of_its_parameters() {
         let expected = 0.02 * number(&plain, &format!("/moduli/{k}/value"));
         assert!((own - expected).abs() < 1e-6 * expected.abs().max(1e-3), "{k}: {own} {expected}");
     }
+    // Two degrees of freedom.
+    let at = |name: &str| number(&found, &format!("/fits/0/moduli/3/{name}"));
+    let reach = (1.959_964 * at("inference_error")).hypot(4.302_653 * at("simulation_error"));
+    assert!((at("ci95/1") - at("value") - reach).abs() < 1e-5 * reach, "{}", found["fits"][0]["moduli"][3]);
     let dynamic = found["fits"][0]["dynamic"][0]["moduli"].as_array().unwrap();
     let storage = dynamic.iter().find(|own| own["name"] == "shear_storage").unwrap();
     let shear = number(&plain, "/dynamic/0/moduli/2/storage/value");

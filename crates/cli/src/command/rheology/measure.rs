@@ -7,6 +7,7 @@ use crate::command::moduli::report::{NAMES, VISCOSITY_NAMES};
 use crate::command::simulate::Start;
 use crate::failure::Failure;
 use crate::progress::Progress;
+use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::sync::Mutex;
 use voronudge_geometry::Vector;
 use voronudge_report::rheology_report::{FittedRheology, RheologyFrequency, RheologyQuantity};
@@ -123,7 +124,9 @@ impl Work<'_> {
                 variance += half * half + spread * spread / count;
             }
             let inference_error = variance.sqrt();
-            let reach = NORMAL_95 * inference_error.hypot(simulation_error);
+            let student =
+                StudentsT::new(0.0, 1.0, count - 1.0).map_or(NORMAL_95, |law| law.inverse_cdf(0.975));
+            let reach = (NORMAL_95 * inference_error).hypot(student * simulation_error);
             let (name, symbol) = told.named();
             let mean_field = match told {
                 Told::Modulus(k) => theory.map(|theory| theory[k]),
