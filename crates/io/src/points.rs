@@ -2,18 +2,15 @@
 
 use std::path::Path;
 
-use ndarray::{Axis, Ix2};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 
-use crate::array::parse_reals;
 use crate::dataset::Boundary;
-use crate::error::{Error, SettingFault, ShapeFault, TableFault};
+use crate::error::{Error, SettingFault};
 use crate::input::read_input;
 use crate::linking::{Follower, Place, PlaceLinking, default_limit};
-use crate::napari::{self, finite, whole};
+use crate::napari;
 use crate::note::Note;
-use crate::stated::Stated;
-use crate::table::{Depths, Layout, Spot, SpotTable, decompressed, read_spots};
+use crate::table::{Layout, decompressed, read_spots};
 use crate::tracks::{Import, ImportOptions, finish, frame_span, table_error};
 use crate::validate;
 
@@ -46,7 +43,7 @@ pub fn import_points(
     let (bytes, record) = read_input(path)?;
     let unfolded = decompressed(&bytes).map_err(|fault| table_error(path, fault))?;
     let mut table = match unfolded.starts_with(napari::SIGNATURE) {
-        true => read_points_layer(path, &unfolded)?,
+        true => napari::read_layer(path, &unfolded, Layout::Points)?,
         false => read_spots(path, &unfolded, Layout::Points, &options.columns)?,
     };
     let (first, frames) =
@@ -109,40 +106,4 @@ fn spacing(places: &[Place], boundary: Option<Boundary>) -> f64 {
             .product(),
     };
     (area.max(0.0) / places.len().max(1) as f64).sqrt()
-}
-
-/// Reads the data of a points layer.
-fn read_points_layer(path: &Path, bytes: &[u8]) -> Result<SpotTable, Error> {
-    const EXPECTED: &str = "(rows, 2), (rows, 3) or (rows, 4), rows of (frame, (z,)) y, x";
-    let array = parse_reals(path, bytes)?;
-    let found = array.shape().to_vec();
-    let shape = |fault| Error::Shape { path: path.to_path_buf(), fault };
-    let width = found.last().copied().unwrap_or_default();
-    let array = match array.into_dimensionality::<Ix2>() {
-        Ok(array) if matches!(width, 2..=4) => array,
-        _ => return Err(shape(ShapeFault::Dimensions { found, expected: EXPECTED })),
-    };
-    if array.is_empty() {
-        return Err(shape(ShapeFault::Nothing { found, axis: "rows" }));
-    }
-    let mut depths = Depths::default();
-    let mut spots = Vec::with_capacity(array.nrows());
-    for (index, row) in array.axis_iter(Axis(0)).enumerate() {
-        let frame = if width > 2 { whole(index, row, 0) } else { Ok(0) };
-        let spot = |frame| {
-            Ok::<Spot, TableFault>(Spot {
-                track: 0,
-                frame,
-                x: finite(index, row, width - 1)?,
-                y: finite(index, row, width - 2)?,
-            })
-        };
-        spots.push(frame.and_then(spot).map_err(|fault| table_error(path, fault))?);
-        depths.include((width == 4).then(|| row[1]));
-    }
-    let order = ["y, x", "frame, y, x", "frame, z, y, x"][width - 2];
-    let mut notes =
-        vec![Note::guessed(format!("columns of the array are {order}, as in a points layer of napari"))];
-    notes.extend(depths.note());
-    Ok(SpotTable { spots, untracked: 0, stated: Stated::default(), notes })
 }

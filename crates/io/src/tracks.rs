@@ -173,7 +173,7 @@ fn read_any(
     }
     let table = match layout {
         Layout::Tracks if unfolded.starts_with(napari::SIGNATURE) => {
-            napari::read_tracks_layer(path, &unfolded)?
+            napari::read_layer(path, &unfolded, layout)?
         }
         _ => read_spots(path, &unfolded, layout, columns)?,
     };

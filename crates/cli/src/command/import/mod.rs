@@ -73,6 +73,43 @@ struct ImageArguments {
     y_axis: Option<YAxis>,
 }
 
+/// What tables of spots do not say about themselves.
+#[derive(Debug, Args)]
+struct SpotArguments {
+    #[command(flatten)]
+    scale: ScaleArguments,
+    /// Name of the column with the frame's number [default: a usual one; points without one are of one frame].
+    #[arg(long, value_name = "NAME")]
+    frame_column: Option<String>,
+    /// Name of the column with x.
+    #[arg(long, value_name = "NAME")]
+    x_column: Option<String>,
+    /// Name of the column with y.
+    #[arg(long, value_name = "NAME")]
+    y_column: Option<String>,
+    /// Width and height of the image in the unit of the table: the field of view.
+    #[arg(long, num_args = 2, value_names = ["W", "H"], conflicts_with = "box_lengths", allow_negative_numbers = true)]
+    image_size: Option<Vec<f64>>,
+}
+
+impl SpotArguments {
+    /// With the name of the column of tracks, where there is one.
+    fn options(self, track: Option<String>) -> ImportOptions {
+        let ImageScale { pixel_size, length_unit, time_unit, frame_interval, y_axis } =
+            self.scale.image.scale();
+        ImportOptions {
+            boundary: self.scale.boundary(),
+            columns: ColumnNames { track, frame: self.frame_column, x: self.x_column, y: self.y_column },
+            pixel_size,
+            length_unit,
+            time_unit,
+            frame_interval,
+            y_axis,
+            image_size: self.image_size.map(|size| [size[0], size[1]]),
+        }
+    }
+}
+
 impl ImageArguments {
     fn scale(&self) -> ImageScale {
         ImageScale {
@@ -86,23 +123,6 @@ impl ImageArguments {
 }
 
 impl ScaleArguments {
-    /// All that a table of cells does not say about itself.
-    fn options(&self, columns: ColumnNames, image_size: Option<&[f64]>) -> ImportOptions {
-        let ImageScale { pixel_size, length_unit, time_unit, frame_interval, y_axis } = self.image.scale();
-        let image_size = image_size.map(|size| [size[0], size[1]]);
-        let boundary = self.boundary();
-        ImportOptions {
-            columns,
-            pixel_size,
-            length_unit,
-            time_unit,
-            frame_interval,
-            y_axis,
-            boundary,
-            image_size,
-        }
-    }
-
     fn boundary(&self) -> Option<Boundary> {
         self.box_lengths.as_ref().map(|l| Boundary::Periodic { lengths: [l[0], l[1]] })
     }

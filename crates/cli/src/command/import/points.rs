@@ -1,6 +1,6 @@
 //! `import points`: places of cells that nobody has followed.
 
-use super::ScaleArguments;
+use super::SpotArguments;
 use super::linking::{Link, warn_of_breaks};
 use super::notes::{records, told};
 use crate::Answer;
@@ -10,7 +10,7 @@ use crate::run::Run;
 use clap::Args;
 use serde::Serialize;
 use std::path::PathBuf;
-use voronudge_io::{ColumnNames, import_points};
+use voronudge_io::import_points;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_report::shape_report::NoteRecord;
 
@@ -19,19 +19,7 @@ pub(super) struct Arguments {
     /// A table with a row for each point: x, y and perhaps a frame; or a .npy array of rows (frame, (z,)) y, x, as napari keeps points.
     file: PathBuf,
     #[command(flatten)]
-    scale: ScaleArguments,
-    /// Name of the column with the frame's number; without one all rows are of one frame.
-    #[arg(long, value_name = "NAME")]
-    frame_column: Option<String>,
-    /// Name of the column with x.
-    #[arg(long, value_name = "NAME")]
-    x_column: Option<String>,
-    /// Name of the column with y.
-    #[arg(long, value_name = "NAME")]
-    y_column: Option<String>,
-    /// Width and height of the image in the unit of the table: the field of view.
-    #[arg(long, num_args = 2, value_names = ["W", "H"], conflicts_with = "box_lengths", allow_negative_numbers = true)]
-    image_size: Option<Vec<f64>>,
+    spots: SpotArguments,
     /// Which points of different frames are one cell.
     #[arg(long, value_enum, default_value_t = Link::Nearest)]
     link: Link,
@@ -56,13 +44,7 @@ struct Report {
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
     let mut out = arguments.common.output([&arguments.file])?;
-    let columns = ColumnNames {
-        track: None,
-        frame: arguments.frame_column,
-        x: arguments.x_column,
-        y: arguments.y_column,
-    };
-    let options = arguments.scale.options(columns, arguments.image_size.as_deref());
+    let options = arguments.spots.options(None);
     let linking = arguments.link.linking(arguments.link_limit);
     let found = import_points(&arguments.file, &options, linking)?;
     let data = &found.import.dataset;

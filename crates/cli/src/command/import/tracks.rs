@@ -1,6 +1,6 @@
 //! `import trackmate` and `import tracks`: tables of tracks.
 
-use super::ScaleArguments;
+use super::SpotArguments;
 use super::notes::{records, told};
 use crate::Answer;
 use crate::arguments::CommonArguments;
@@ -9,7 +9,7 @@ use crate::run::Run;
 use clap::Args;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
-use voronudge_io::{ColumnNames, Import, ImportOptions};
+use voronudge_io::{Import, ImportOptions};
 use voronudge_report::infer_report::RunRecord;
 use voronudge_report::shape_report::NoteRecord;
 
@@ -18,22 +18,10 @@ pub(super) struct Arguments {
     /// The table; a .npy array of tracks for import tracks.
     file: PathBuf,
     #[command(flatten)]
-    scale: ScaleArguments,
+    spots: SpotArguments,
     /// Name of the column with the track's number.
     #[arg(long, value_name = "NAME")]
     track_column: Option<String>,
-    /// Name of the column with the frame's number.
-    #[arg(long, value_name = "NAME")]
-    frame_column: Option<String>,
-    /// Name of the column with x.
-    #[arg(long, value_name = "NAME")]
-    x_column: Option<String>,
-    /// Name of the column with y.
-    #[arg(long, value_name = "NAME")]
-    y_column: Option<String>,
-    /// Width and height of the image in the unit of the table: the field of view.
-    #[arg(long, num_args = 2, value_names = ["W", "H"], conflicts_with = "box_lengths", allow_negative_numbers = true)]
-    image_size: Option<Vec<f64>>,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -59,13 +47,7 @@ type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
 pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &table.common)?;
     let mut out = table.common.output([&table.file])?;
-    let columns = ColumnNames {
-        track: table.track_column,
-        frame: table.frame_column,
-        x: table.x_column,
-        y: table.y_column,
-    };
-    let options = table.scale.options(columns, table.image_size.as_deref());
+    let options = table.spots.options(table.track_column);
     let Import { dataset, track_ids, summary, notes } = read(&table.file, &options)?;
     if summary.left_out_duplicate > 0 {
         run.warn(format!(
