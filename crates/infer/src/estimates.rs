@@ -7,8 +7,12 @@ use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 /// A change of −2 log likelihood that one parameter exceeds by chance in 5 % of cases: the 95 % quantile of χ²₁.
 pub const CHI_SQUARED_95: f64 = 3.841_458_820_694_124;
 
-/// Usual sizes of the coefficients relative to K_P, in units of ℓ₀: P_0 is about the perimeter of a regular hexagon.
-const SIZES: [f64; 4] = [1.0, 3.722, 1.0, 1.0];
+/// Two-sided 95 % quantile of the normal distribution.
+pub const NORMAL_95: f64 = 1.959_963_984_540_054;
+
+/// Usual sizes of the coefficients `K_A`, `K_P P_0`, `K_P`, `K_P α` relative to K_P, in units of ℓ₀, which the components of a [`Direction`] are
+/// measured in: P_0 is about the perimeter of a regular hexagon.
+pub const COEFFICIENT_SIZES: [f64; 4] = [1.0, 3.722, 1.0, 1.0];
 
 /// Distance from a bound, in standard errors, that is rounding.
 const ROUNDING: f64 = 1e-9;
@@ -139,7 +143,8 @@ impl Fitted<'_> {
     /// Principal axes of the covariance of the coefficients, each measured in its usual size: stiffest first.
     pub fn directions(&self) -> Result<Vec<Direction>, Error> {
         let covariance = self.space.covariance(&crate::least_squares::invert(self.information.clone())?);
-        let relative = Matrix4::from_fn(|i, j| covariance[(i, j)] / (SIZES[i] * SIZES[j]));
+        let relative =
+            Matrix4::from_fn(|i, j| covariance[(i, j)] / (COEFFICIENT_SIZES[i] * COEFFICIENT_SIZES[j]));
         let eigen = relative.symmetric_eigen();
         let mut order: Vec<usize> = (0..4).collect();
         order.sort_by(|a, b| eigen.eigenvalues[*a].total_cmp(&eigen.eigenvalues[*b]));

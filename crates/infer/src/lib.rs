@@ -69,6 +69,7 @@ pub use constraints::{Constraints, Prior};
 pub use curve::{DecayFit, DecayPoint, DecayShape, Intercept, Line, LinePoint, fit_decay, straight_line};
 pub use doubts::{Doubt, Part, Voids};
 pub use error::Error;
+pub use estimates::{COEFFICIENT_SIZES, NORMAL_95};
 pub use flow::{Flow, Window, WindowKind};
 pub use inference::infer;
 pub use latent::{Change, ChangeKind, CompletedFrame, Completion, Origin, complete};

@@ -12,7 +12,9 @@ use crate::least_squares::{self, invert};
 use crate::noisy_fit::{SETTLED, STEPS_PER_ROUND, first_levels, most_likely};
 use crate::objective::Objective;
 use crate::search::{Watch, follow, refine};
-use crate::{Error, NoiseLevels, Observation, Progress, Quantity, Request, Velocities, Window, WindowKind};
+use crate::{
+    Error, NORMAL_95, NoiseLevels, Observation, Progress, Quantity, Request, Velocities, Window, WindowKind,
+};
 use std::ops::ControlFlow;
 use voronudge_geometry::Grid;
 
@@ -88,9 +90,6 @@ pub(crate) const CENTROIDS: f64 = 1.0;
 
 /// How far beyond its interval the share may be from these: cells that were not detected shift it by as much.
 const TOLERANCE: f64 = 0.1;
-
-/// Half-width of a 95 % interval in standard errors.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// Rounds of steps of the unknowns and of the noise levels.
 const ROUNDS: usize = 12;

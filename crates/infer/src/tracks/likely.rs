@@ -21,7 +21,7 @@ const SLOW: f64 = 0.02;
 const SPACINGS: [f64; 4] = [1.0, 0.5, 1.0, 0.5];
 
 /// Quantile of the normal distribution for intervals of 95 %, and the square of it.
-pub(super) const QUANTILE: f64 = 1.959_963_984_540_054;
+pub(super) const QUANTILE: f64 = crate::NORMAL_95;
 pub(super) const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
 
 /// A step that leads to less likely levels is made shorter by this factor, so many times; then none is taken.

@@ -1,15 +1,16 @@
 //! Storage and loss moduli: the stress under a strain that oscillates.
 
 use super::deformation::{Deformation, Strain, parts};
+use super::relaxation::SparseJacobian;
 use super::settled::Settled;
 use super::{Moduli, Motion, Observer, Response, Stop, deformed, standard_error, stress_of};
 use crate::simulation::derivatives;
 use crate::{Direction, Driving, Error, Shear, Simulation};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-use voronudge_geometry::{Domain, Vector};
-use voronudge_linalg::{BlockSparse, Complex64, LinearSystem};
-use voronudge_model::{BlockMatrix, jacobian, stress};
+use voronudge_geometry::Vector;
+use voronudge_linalg::{Complex64, LinearSystem};
+use voronudge_model::stress;
 
 /// How storage and loss moduli are measured.
 #[derive(Debug, Clone, PartialEq)]
@@ -113,8 +114,7 @@ impl Settled {
 /// The linear response of a tissue at rest.
 struct Linear<'a> {
     base: &'a Simulation,
-    jacobian: BlockSparse,
-    places: Vec<[f64; 2]>,
+    jacobian: SparseJacobian,
     /// Derivatives of velocities by each strain, with cells that follow it.
     forces: [Vec<Vector<f64>>; 3],
     /// Derivatives of the stress by each strain, with cells that follow it.
@@ -123,13 +123,6 @@ struct Linear<'a> {
 
 impl<'a> Linear<'a> {
     fn new(base: &'a Simulation, strain: f64) -> Result<Self, Error> {
-        let Domain::Periodic(cell_box) = base.tessellation().domain() else {
-            return Err(Error::OpenDomain);
-        };
-        let BlockMatrix { row_start, column, block } =
-            jacobian(base.tessellation(), base.positions(), base.model());
-        let jacobian = BlockSparse::new(row_start, column, block)
-            .map_err(|source| Error::Response { frequency: 0.0, source })?;
         let mut affine = Response::default();
         let mut forces = [const { Vec::new() }; 3];
         for (k, own) in Strain::ALL.into_iter().enumerate() {
@@ -144,8 +137,7 @@ impl<'a> Linear<'a> {
             forces[k] = forward.iter().zip(&backward).map(slope).collect();
             (0..4).for_each(|part| affine[part][k] = (above[part] - below[part]) / (2.0 * strain));
         }
-        let places = base.positions().iter().map(|r| cell_box.wrap(*r).into()).collect();
-        Ok(Self { base, jacobian, places, forces, affine })
+        Ok(Self { base, jacobian: SparseJacobian::of(base)?, forces, affine })
     }
 
     fn at(&self, frequency: f64) -> Result<Dynamic, Error> {
@@ -160,8 +152,9 @@ impl<'a> Linear<'a> {
     /// Derivatives of stresses by strains, in phase and out of phase.
     fn response(&self, frequency: f64) -> Result<[Response; 2], Error> {
         // (J − iω) u = −f
-        let system = LinearSystem::new(&self.jacobian, Complex64::new(0.0, frequency), &self.places)
-            .map_err(|source| Error::Response { frequency, source })?;
+        let system =
+            LinearSystem::new(&self.jacobian.matrix, Complex64::new(0.0, frequency), &self.jacobian.places)
+                .map_err(|source| Error::Response { frequency, source })?;
         let (mut storage, mut loss) = (self.affine, Response::default());
         for (k, force) in self.forces.iter().enumerate() {
             let mut displacements: Vec<Complex64> =
@@ -251,7 +244,7 @@ mod tests {
     use crate::moduli::{Relaxation, Settings};
     use crate::{RandomPlacement, generator, honeycomb};
     use std::ops::ControlFlow;
-    use voronudge_geometry::PeriodicBox;
+    use voronudge_geometry::{Domain, PeriodicBox};
     use voronudge_model::{Model, Parameters};
 
     fn solid(seed: u64) -> Settled {

@@ -95,15 +95,29 @@ impl Relaxation {
     }
 }
 
+/// The exact Jacobian of the velocities of a periodic tissue, and where its unknowns are.
+pub(super) struct SparseJacobian {
+    pub matrix: BlockSparse,
+    pub places: Vec<[f64; 2]>,
+}
+
+impl SparseJacobian {
+    pub fn of(simulation: &Simulation) -> Result<Self, Error> {
+        let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
+        let Domain::Periodic(cell_box) = tessellation.domain() else {
+            return Err(Error::OpenDomain);
+        };
+        let BlockMatrix { row_start, column, block } = jacobian(tessellation, positions, simulation.model());
+        let matrix = BlockSparse::new(row_start, column, block)
+            .map_err(|source| Error::Response { frequency: 0.0, source })?;
+        Ok(Self { matrix, places: positions.iter().map(|r| cell_box.wrap(*r).into()).collect() })
+    }
+}
+
 /// The state after an implicit step of size `h`; none if it cannot be made.
 fn implicit_step(simulation: &Simulation, h: f64) -> Option<Simulation> {
-    let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
-    let Domain::Periodic(cell_box) = tessellation.domain() else {
-        return None;
-    };
-    let BlockMatrix { row_start, column, block } = jacobian(tessellation, positions, simulation.model());
-    let places: Vec<[f64; 2]> = positions.iter().map(|r| cell_box.wrap(*r).into()).collect();
-    let matrix = BlockSparse::new(row_start, column, block).ok()?;
+    let SparseJacobian { matrix, places } = SparseJacobian::of(simulation).ok()?;
+    let positions = simulation.positions();
     let mut step: Vec<f64> = simulation.velocities().iter().flat_map(|v| [-v.x, -v.y]).collect();
     LinearSystem::new(&matrix, 1.0 / h, &places).ok()?.solve(&mut step);
     let moved = |(r, d): (&Vector<f64>, &[f64])| r + Vector::new(d[0], d[1]);

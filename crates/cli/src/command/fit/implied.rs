@@ -1,15 +1,11 @@
 //! What fitted parameters imply by the mean-field theory.
 
 use voronudge::problem::Problem;
-use voronudge_infer::{Direction, Inference};
+use voronudge_infer::{COEFFICIENT_SIZES, Direction, Inference, NORMAL_95};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{ImpliedByMeanField, Parameter};
 use voronudge_theory::{MeanField, Moduli, PhaseDiffusivities};
 
-/// Two-sided 95 % quantile of a normal distribution.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
-/// The size of K_P P_0 that the components of directions are measured in.
-const PERIMETER_SIZE: f64 = 3.722;
 /// Coefficients are moved by this many standard errors to see what becomes of the moduli, which are linear in them.
 const STEP: f64 = 1e-6;
 
@@ -24,8 +20,9 @@ pub(crate) fn implied(prepared: &Problem, result: &Inference, units: &Units) -> 
     let at_estimate = moduli(coefficients)?;
     let moved = |direction: &Direction| {
         let along = STEP / direction.eigenvalue.sqrt();
-        let size = [1.0, PERIMETER_SIZE, 1.0, 1.0];
-        moduli(std::array::from_fn(|k| coefficients[k] + along * size[k] * direction.components[k]))
+        moduli(std::array::from_fn(|k| {
+            coefficients[k] + along * COEFFICIENT_SIZES[k] * direction.components[k]
+        }))
     };
     let along: Option<Vec<Moduli>> = result.directions.iter().map(moved).collect();
     let scale = &prepared.scale;

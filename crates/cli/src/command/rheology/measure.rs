@@ -10,12 +10,10 @@ use crate::progress::Progress;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::sync::Mutex;
 use voronudge_geometry::Vector;
+use voronudge_infer::NORMAL_95;
 use voronudge_report::rheology_report::{FittedRheology, RheologyFrequency, RheologyQuantity};
 use voronudge_simulate::moduli::{Dynamic, DynamicModulus, Motion};
 use voronudge_theory::{MeanField, Moduli};
-
-/// Two-sided 95 % quantile of a normal distribution.
-const NORMAL_95: f64 = 1.959_963_984_540_054;
 
 /// What is told of a tissue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -3,12 +3,11 @@
 use crate::failure::Failure;
 use serde_json::Value;
 use std::path::{Path, PathBuf};
+use voronudge_infer::COEFFICIENT_SIZES;
 use voronudge_io::{InputFile, read_text};
 use voronudge_model::Parameters;
 use voronudge_report::Units;
 
-/// The size of K_P P_0 that the components of directions are measured in.
-const PERIMETER_SIZE: f64 = 3.722;
 /// Axes that make less than this share of the variance of all coefficients move no modulus by more than other errors.
 const NEGLIGIBLE: f64 = 1e-4;
 
@@ -74,14 +73,10 @@ impl Posterior {
                 return Err(fault("a combination of the parameters is not bounded by the data")
                     .with_hint("hold a parameter that the data do not tell, as in --fix K_A=0"));
             }
-            let component = |name: &str| own["direction"][name].as_f64().unwrap_or(0.0);
+            let components = ["K_A", "K_P_P_0", "K_P", "K_P_alpha"];
+            let components = components.map(|name| own["direction"][name].as_f64().unwrap_or(0.0));
             let step = 1.0 / (eigenvalue.sqrt() * time);
-            axes.push([
-                step * component("K_A"),
-                step * PERIMETER_SIZE * component("K_P_P_0"),
-                step * component("K_P"),
-                step * component("K_P_alpha"),
-            ]);
+            axes.push(std::array::from_fn(|k| step * COEFFICIENT_SIZES[k] * components[k]));
         }
         let size = |axis: &[f64; 4]| axis.iter().map(|x| x * x).sum::<f64>();
         let all: f64 = axes.iter().map(size).sum();
