@@ -5,6 +5,7 @@ use serde_json::Value;
 use std::error::Error;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::figure::ErrorPoint;
+use voronudge_report::numbers::significant;
 
 pub(super) const FIGURES: &[Figure] = &[
     Figure {
@@ -196,11 +197,11 @@ fn oscillating(size: Size) -> Result<Made, Box<dyn Error>> {
         }
         let media: Vec<String> = (report["media"].as_array().into_iter().flatten())
             .map(|own| {
-                let pair = |name: &str| [0, 1].map(|k| number(own, &format!("/{name}/{k}")));
+                let pair = |name: &str| [0, 1].map(|k| significant(number(own, &format!("/{name}/{k}")), 2));
                 let ([mu, odd], [eta, odd_eta]) = (pair("elasticity"), pair("viscosity"));
                 let arrangement = if own["arrangement"] == "maxwell" { "Maxwell" } else { "Kelvin–Voigt" };
                 format!(
-                    "{arrangement} (μ {mu:.2}, Kᵒ {odd:.2}, η {eta:.3}, ηᵒ {odd_eta:.3}) misses by {:.0} %",
+                    "{arrangement} (μ {mu}, Kᵒ {odd}, η {eta}, ηᵒ {odd_eta}) misses by {:.0} %",
                     100.0 * number(own, "/missed")
                 )
             })
