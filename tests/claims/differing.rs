@@ -35,6 +35,7 @@ fn a_spread_put_into_a_simulation_comes_out_of_the_fit() {
 
 /// Were what a cell has of its own to follow the coefficients, these would come out too large and the spread too small by the same factor.
 #[test]
+#[ignore = "slow"]
 fn spreads_do_not_grow_at_the_cost_of_what_all_cells_share() {
     for (parameter, size, shared) in [
         (PreferredArea, 0.2, Quantity::AreaElasticity),
@@ -85,6 +86,7 @@ fn the_search_finds_that_cells_differ_and_says_that_this_predicts_no_other_cell(
 
 /// Motion of its own of every cell, and a smooth flow, are no differences between cells: neither goes with the forces on a cell and its neighbours.
 #[test]
+#[ignore = "slow"]
 fn what_cells_do_of_themselves_does_not_pose_as_cells_that_differ() {
     let tissue = Differing::new(144, 2, 1, &[]).unwrap();
     let frame = &tissue.measured(NOISE, 2).unwrap()[0];

@@ -112,8 +112,8 @@ impl From<voronudge_infer::Error> for Failure {
     }
 }
 
-impl From<voronudge::problem::Error> for Failure {
-    fn from(error: voronudge::problem::Error) -> Self {
+impl From<crate::problem::Error> for Failure {
+    fn from(error: crate::problem::Error) -> Self {
         let hint = error.hint();
         Self::from_parts(error, hint)
     }

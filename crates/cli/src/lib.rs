@@ -15,6 +15,7 @@
 //! | [`spectrum`] | linear modes, distance from a T1 transition | `spectrum` |
 //! | [`infer`] | nudged inference, search for effects, forecasts | `infer` |
 //! | [`io`] | data sets, tables of tracks, label images, safe output | `io` |
+//! | [`program`] | the commands of the command line | `cli` |
 //! | [`problem`] | from a data set to what [`infer`] needs, and back to the units of the data | `infer` and `io` |
 //!
 //! The feature `cli`, on by default, is the program `voronudge` and takes all of them. A library wants
@@ -51,8 +52,28 @@
 //!
 //! Units are those of what is passed in: friction is absorbed, so `K_P` is a rate; y points up.
 
+#[cfg(feature = "cli")]
+mod arguments;
+#[cfg(feature = "cli")]
+mod boundary;
+#[cfg(feature = "cli")]
+mod command;
+#[cfg(feature = "cli")]
+mod failure;
+#[cfg(feature = "cli")]
+mod memory;
+#[cfg(feature = "cli")]
+mod output;
 #[cfg(all(feature = "infer", feature = "io"))]
 pub mod problem;
+#[cfg(feature = "cli")]
+pub mod program;
+#[cfg(feature = "cli")]
+mod progress;
+#[cfg(feature = "cli")]
+mod run;
+#[cfg(feature = "cli")]
+mod terminal;
 
 #[cfg(feature = "infer")]
 pub use voronudge_infer as infer;

@@ -111,6 +111,5 @@ impl Run {
 
 /// The command line as typed; what is not text is replaced.
 fn command_line() -> String {
-    let words = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
-    words.collect::<Vec<_>>().join(" ")
+    crate::program::typed().join(" ")
 }

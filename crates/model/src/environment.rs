@@ -2,7 +2,7 @@
 
 use crate::CellFactors;
 use thiserror::Error;
-use voronudge_geometry::{Domain, Grid, Scalar, Vector};
+use voronudge_geometry::{Certificate, Domain, Grid, Scalar, Tessellation, Vector, areas};
 
 /// Why an environment cannot be used.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -127,6 +127,41 @@ impl Default for Environment {
 }
 
 impl Environment {
+    /// What effects may refer to at given positions (N): `ℓ_0` is the root of the mean area (of the box per cell, or of the
+    /// cells that count, or if there are none of those with a closed polygon), the origin the middle of the box or the mean
+    /// position of these cells, and in an open field cells that do not count are beyond the edge.
+    ///
+    /// # Errors
+    /// [`EnvironmentError::Value`] if no cell has a size.
+    pub fn around(
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        view: &Certificate,
+    ) -> Result<Self, EnvironmentError> {
+        match tessellation.domain() {
+            Domain::Periodic(cell_box) => {
+                let [x, y] = cell_box.lengths();
+                let area = cell_box.area() / positions.len() as f64;
+                Self::default().about(Vector::new(0.5 * x, 0.5 * y)).with_cell_size(area.sqrt())
+            }
+            Domain::Open => {
+                let cells = 0..positions.len();
+                let mut counted: Vec<usize> = cells.clone().filter(|&cell| view.counts(cell)).collect();
+                if counted.is_empty() {
+                    counted = cells.clone().filter(|&cell| tessellation.is_closed(cell)).collect();
+                }
+                let areas = areas(tessellation, positions);
+                let number = counted.len().max(1) as f64;
+                let middle = counted.iter().map(|&cell| positions[cell]).sum::<Vector<f64>>() / number;
+                let area = counted.iter().map(|&cell| areas[cell]).sum::<f64>() / number;
+                Self::default()
+                    .about(middle)
+                    .with_cell_size(area.sqrt())?
+                    .with_beyond_edge(cells.map(|cell| !view.counts(cell)).collect())
+            }
+        }
+    }
+
     /// The same with another origin, about which ramps and polynomials are taken: the centre of the data.
     #[must_use]
     pub fn about(self, origin: Vector<f64>) -> Self {

@@ -43,6 +43,17 @@ impl BlockMatrix {
             .collect()
     }
 
+    /// The transpose of the matrix applied to a field of vectors: what a change of each position does to `Σ_i w_i·v_i`.
+    pub fn apply_transposed(&self, w: &[Vector<f64>]) -> Vec<Vector<f64>> {
+        let mut sums = vec![Vector::zeros(); self.rows()];
+        for (row, w) in w.iter().enumerate() {
+            for (column, b) in self.row(row) {
+                sums[column] += Vector::new(b[0] * w.x + b[2] * w.y, b[1] * w.x + b[3] * w.y);
+            }
+        }
+        sums
+    }
+
     /// Multiplies one row by a factor.
     pub fn scale_row(&mut self, row: usize, factor: f64) {
         let range = self.row_start[row]..self.row_start[row + 1];

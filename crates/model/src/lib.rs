@@ -49,7 +49,7 @@ pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use axis::Axis;
 pub use cell_element::{CellElement, RingForces};
 pub use cell_parameters::{CellDerivatives, CellFactors, CellParameter, cell_derivatives};
-pub use effect::{Column, Effect};
+pub use effect::{Column, Effect, EffectError};
 pub use element::VertexForces;
 pub use environment::{Environment, EnvironmentError, VectorMap};
 pub use jacobian::{BlockMatrix, JacobianBuilder, jacobian};

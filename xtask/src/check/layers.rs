@@ -25,6 +25,7 @@ const LAYERS: &[(&str, Imports)] = &[
     ("io", Imports::Only(&["geometry", "model"], &[])),
     ("report", Imports::Only(&[], &[])),
     ("cli", Imports::Any),
+    ("python", Imports::Only(&["cli"], &[])),
 ];
 
 /// Packages from elsewhere that one crate alone may import.

@@ -5,7 +5,7 @@ use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use voronudge_geometry::{Certificate, Domain, Tessellation, Vector, areas};
+use voronudge_geometry::{Certificate, Domain, Tessellation, Vector};
 use voronudge_model::{Effect, Environment, Model};
 
 #[derive(Debug, Args)]
@@ -72,61 +72,21 @@ impl ChosenEffects {
     ) -> Result<Model<f64>, Failure> {
         let mut model = model;
         for (id, values) in &self.0 {
-            let fault = |message: String| Failure::new(format!("--effect {id}: {message}"));
             let Some(effect) = Effect::from_id(id) else { continue };
-            let columns = effect.columns(&environment, domain).map_err(|reason| {
-                fault(reason.into()).with_hint("docs/effects.md tells what each effect needs")
-            })?;
-            if columns.len() != values.len() {
-                return Err(fault(format!(
-                    "{} coefficients are given, but there are {}",
-                    values.len(),
-                    columns.len()
-                ))
-                .with_hint(format!("the coefficients are: {}", effect.coefficients)));
-            }
-            for (column, value) in columns.into_iter().zip(values) {
-                model = model.with(column, *value);
-            }
+            model = (effect.add_to(model, &environment, domain, values))
+                .map_err(|error| Failure::new(format!("--effect {id}: {error}")).with_hint(error.hint()))?;
         }
         Ok(model.within(&Arc::new(environment)))
     }
 }
 
-/// What effects may refer to at given positions: `ℓ_0` is the root of the mean area (of the box per cell, or of the cells
-/// that count, or if there are none of those with a closed polygon), the origin the middle of the box or the mean position of these cells.
+/// [`Environment::around`] positions, or a failure.
 pub(crate) fn environment(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
     view: &Certificate,
 ) -> Result<Environment, Failure> {
-    let (origin, area) = match tessellation.domain() {
-        Domain::Periodic(cell_box) => {
-            let [x, y] = cell_box.lengths();
-            (Vector::new(0.5 * x, 0.5 * y), cell_box.area() / positions.len() as f64)
-        }
-        Domain::Open => {
-            let those = |chosen: &dyn Fn(usize) -> bool| -> Vec<usize> {
-                (0..positions.len()).filter(|&cell| chosen(cell)).collect()
-            };
-            let certain = those(&|cell| view.counts(cell));
-            let counted = match certain.is_empty() {
-                true => those(&|cell| tessellation.is_closed(cell)),
-                false => certain,
-            };
-            let areas = areas(tessellation, positions);
-            let number = counted.len().max(1) as f64;
-            let middle = counted.iter().map(|&cell| positions[cell]).sum::<Vector<f64>>() / number;
-            (middle, counted.iter().map(|&cell| areas[cell]).sum::<f64>() / number)
-        }
-    };
-    let environment = Environment::default().about(origin).with_cell_size(area.sqrt());
-    let beyond = (0..positions.len()).map(|cell| !view.counts(cell)).collect();
-    environment
-        .and_then(|environment| match tessellation.domain() {
-            Domain::Open => environment.with_beyond_edge(beyond),
-            Domain::Periodic(_) => Ok(environment),
-        })
+    Environment::around(tessellation, positions, view)
         .map_err(|error| Failure::new(error.to_string()).with_hint("check the positions"))
 }
 

@@ -1,9 +1,9 @@
 //! `voronudge check-gradients`: every derivative against independent ways to get it.
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
 use crate::boundary::domain;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use serde::Serialize;

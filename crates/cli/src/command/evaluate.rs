@@ -1,12 +1,12 @@
 //! `voronudge evaluate`: the model's fields at given positions.
 
-use crate::Answer;
 use crate::arguments::{
     ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ParameterArguments, environment,
 };
 use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
+use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};

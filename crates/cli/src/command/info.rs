@@ -1,8 +1,8 @@
 //! `voronudge info`: what is in a data set or a file, and which command reads it.
 
-use crate::Answer;
 use crate::command::import::records;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::terminal::{self, legible};
 use clap::Args;
 use serde::Serialize;

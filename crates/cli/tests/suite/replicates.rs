@@ -198,6 +198,15 @@ fn assert_parts_make_the_whole(line: &str, data: &Path, whole: &Results) -> [Fol
         let out = Folder::new();
         run(&format!("{line} --shard {part}/2"), data, out.path());
         assert_eq!(out.names(), ["replicates.jsonl"]);
+        // A part that ended is not made again: a number that nothing computes stays.
+        let made = fs::read_to_string(out.file("replicates.jsonl")).unwrap();
+        let (head, tail) = made.rsplit_once('[').unwrap();
+        let end = tail.find([',', ']']).unwrap();
+        let marked = format!("{head}[0.125{}", &tail[end..]);
+        out.write("replicates.jsonl", &marked);
+        run(&format!("{line} --shard {part}/2 --resume"), data, out.path());
+        assert_eq!(fs::read_to_string(out.file("replicates.jsonl")).unwrap(), marked);
+        out.write("replicates.jsonl", made);
         out
     });
     let [first, second] = parts.each_ref().map(|part| part.path().as_os_str());

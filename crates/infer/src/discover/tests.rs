@@ -150,6 +150,7 @@ fn the_score_beside_tracks_is_that_of_a_refit() {
 
 /// Cells that turn towards their neighbours. So few of them have much of their motion in common, which a drift is as well: that is not asked.
 #[test]
+#[ignore = "slow"]
 fn tracks_tell_whether_polarities_align() {
     let filmed = Filmed { size: [100, 5], step: 0.15, error: 0.01, seed: 7 };
     let mut search = search(&["polarity", "polarity_alignment", "alpha_area"]);
@@ -167,6 +168,7 @@ fn tracks_tell_whether_polarities_align() {
 
 /// What turns the polarities of cells is named where it is there, beside the polarity, and not in its place.
 #[test]
+#[ignore = "slow"]
 fn tracks_tell_what_drives_polarities() {
     let filmed = Filmed { size: [100, 7], step: 0.15, error: 0.01, seed: 8 };
     let mut search = search(&[
@@ -200,6 +202,7 @@ fn tracks_tell_what_drives_polarities() {
 
 /// Cells that are moved at random are found to be, by as much as they are; of others, and of those that crawl, it is not said.
 #[test]
+#[ignore = "slow"]
 fn tracks_tell_whether_cells_move_at_random() {
     let filmed = Filmed { size: [100, 6], step: 0.1, error: 0.01, seed: 9 };
     let mut search = search(&["polarity", "alpha_area", "random_motion"]);

@@ -98,6 +98,7 @@ impl Crawling {
 
 /// Of cells that crawl, who knows that they do says more, and about how wrong that will be.
 #[test]
+#[ignore = "slow"]
 fn a_polarity_that_was_seen_before_helps() {
     let crawling = Crawling::filmed(11, 6);
     let found = forecast(&crawling.ahead(8), &crawling.models(), &mut SILENT.clone()).unwrap();
@@ -116,6 +117,7 @@ fn a_polarity_that_was_seen_before_helps() {
 
 /// Of cells that take on the polarity of their neighbours within two intervals, fits say how wrong they will be, too.
 #[test]
+#[ignore = "slow"]
 fn polarities_that_align_go_on_as_in_the_fit() {
     let driving = Driving {
         speed: 2.5,
@@ -137,6 +139,7 @@ fn polarities_that_align_go_on_as_in_the_fit() {
 
 /// Simulated movies of cells that do not crawl are not like one of cells that do; those of cells that do are.
 #[test]
+#[ignore = "slow"]
 fn a_model_without_the_polarity_does_not_make_such_cells() {
     let crawling = Crawling::filmed(11, 22);
     let found = check(&crawling.ahead(49), &crawling.models(), &mut SILENT.clone()).unwrap();

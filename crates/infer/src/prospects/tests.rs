@@ -54,6 +54,7 @@ fn what_is_foreseen_of_snapshots_comes_true() {
 
 /// The same of tracks that are seen twice as often.
 #[test]
+#[ignore = "slow"]
 fn what_is_foreseen_of_tracks_comes_true() {
     let seen = |frames: usize, step: f64| {
         let (movie, _) = Filmed { size: [100, frames], step, error: 0.02, seed: 3 }.movie();

@@ -73,6 +73,7 @@ fn polarities_are_told_from_forces() {
 
 /// Of cells that crawl, each by itself, no alignment is reported. (Of those that align it is: see the tests of the search for effects.)
 #[test]
+#[ignore = "slow"]
 fn no_alignment_is_made_of_crawling() {
     let request = Request { activity: Activity::Alignment, ..crawling() };
     let filmed = Filmed { size: [144, 6], step: 0.15, error: 0.01, seed: 5 };
@@ -90,6 +91,7 @@ fn no_alignment_is_made_of_crawling() {
 
 /// Cells whose polarity turns away from contacts and along the forces: both coefficients are found; of cells that only crawl they are none.
 #[test]
+#[ignore = "slow"]
 fn drives_of_polarities_are_found() {
     let drives = Drives { contact_inhibition: true, velocity_alignment: true };
     let request = Request { drives, ..crawling() };

@@ -90,7 +90,7 @@ pub use size_friction::SizeFriction;
 pub use smooth_field::{Polarisation, WaveFlow};
 pub use time_lag::TimeLag;
 
-use crate::{CellParameter, Environment, Parity, Response, Term};
+use crate::{CellParameter, Environment, Model, Parity, Response, Term};
 use voronudge_geometry::Domain;
 
 /// One coefficient's contribution to the velocities.
@@ -134,6 +134,35 @@ pub struct Alias {
 /// The columns of an effect, or why it cannot be tested.
 type Columns = fn(&Environment, Domain) -> Result<Vec<Column>, &'static str>;
 
+/// Why an effect cannot be part of a model.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EffectError {
+    /// It refers to what is not given here.
+    #[error("{0}")]
+    NotHere(&'static str),
+    /// Too few coefficients, or too many.
+    #[error("{found} coefficients are given, but there are {expected}")]
+    Coefficients {
+        /// Number given.
+        found: usize,
+        /// Number of columns.
+        expected: usize,
+        /// What they are.
+        names: &'static str,
+    },
+}
+
+impl EffectError {
+    /// Advice on what to change.
+    pub fn hint(&self) -> String {
+        match self {
+            Self::NotHere(_) => "docs/effects.md tells what each effect needs".into(),
+            Self::Coefficients { names, .. } => format!("the coefficients are: {names}"),
+        }
+    }
+}
+
 /// An entry of the catalogue.
 #[derive(Debug, Clone, Copy)]
 pub struct Effect {
@@ -168,6 +197,28 @@ impl Effect {
     /// The reason why the effect cannot be tested here, such as `no labels were given`.
     pub fn columns(&self, environment: &Environment, domain: Domain) -> Result<Vec<Column>, &'static str> {
         (self.columns)(environment, domain)
+    }
+
+    /// A model with the effect, of one coefficient for each column.
+    ///
+    /// # Errors
+    /// [`EffectError`] if it needs what the environment does not have, or other coefficients.
+    pub fn add_to(
+        &self,
+        model: Model<f64>,
+        environment: &Environment,
+        domain: Domain,
+        coefficients: &[f64],
+    ) -> Result<Model<f64>, EffectError> {
+        let columns = self.columns(environment, domain).map_err(EffectError::NotHere)?;
+        if columns.len() != coefficients.len() {
+            let (found, expected) = (coefficients.len(), columns.len());
+            return Err(EffectError::Coefficients { found, expected, names: self.coefficients });
+        }
+        Ok(columns
+            .into_iter()
+            .zip(coefficients)
+            .fold(model, |model, (column, &value)| model.with(column, value)))
     }
 
     /// Whether the effect can be tested.

@@ -60,7 +60,8 @@ fn draw_row(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, f64))
     chart.svg.text([left - 9.0, y + 4.0], &name, TextStyle { colour, ..TextStyle::label(Anchor::End) });
     let reach = effect.size.clamp(0.0, end);
     let look = Look::of(effect);
-    if look != Look::NotTestable {
+    let is_drawn = look != Look::NotTestable;
+    if is_drawn {
         let [from, to] = [chart.place([0.0, middle + 0.34]), chart.place([reach, middle - 0.34])];
         look.fill(&mut chart.svg, [from, to]);
         draw_interval(chart, effect, (middle, end));
@@ -80,8 +81,12 @@ fn draw_row(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, f64))
         CandidateStatus::NotTestable => remarks.push("not testable"),
         CandidateStatus::Selected | CandidateStatus::BelowThreshold | CandidateStatus::Description => {}
     }
-    let far =
-        [reach, if limit <= end { limit } else { 0.0 }, interval(effect, end).map_or(0.0, |ends| ends[1])];
+    let ends = interval(effect, end).filter(|_| is_drawn);
+    let far = [
+        if is_drawn { reach } else { 0.0 },
+        if limit <= end { limit } else { 0.0 },
+        ends.map_or(0.0, |ends| ends[1]),
+    ];
     let far = far.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
     let [x, y] = [chart.place([far, middle])[0] + 8.0, y + 4.0];
     chart.svg.text([x, y], &remarks.join(", "), TextStyle { size: 10.5, ..TextStyle::quiet(Anchor::Start) });

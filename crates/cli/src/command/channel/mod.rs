@@ -7,9 +7,9 @@ mod page;
 mod report;
 mod request;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, ParameterArguments};
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;

@@ -2,7 +2,7 @@
 
 use super::sentences::{listed, percent, probability, told_apart_by};
 use crate::command::fit::prospects::Coefficient;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_infer::Estimate;
 use voronudge_infer::discover::{Discovery, Fate, Ranked, Selected};
 use voronudge_model::effect::{Effect, Kind, Unit};

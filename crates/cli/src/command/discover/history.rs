@@ -5,9 +5,9 @@
 
 use crate::command::fit::{SnapshotArguments, place_of_data};
 use crate::failure::Failure;
+use crate::problem::Measured;
 use clap::ValueEnum;
 use ndarray::Axis;
-use voronudge::problem::Measured;
 use voronudge_geometry::Vector;
 use voronudge_io::{DataSet, Difference, Snapshot, derive_velocities};
 use voronudge_model::Effect;

@@ -1,7 +1,7 @@
 //! What was found out about the measurement before the search: it stands beside what the tissue may do, and goes first.
 
 use super::sentences::{listed, percent};
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_infer::discover::Fitted;
 use voronudge_infer::{ChangeKind, NoiseSource};
 use voronudge_report::Units;

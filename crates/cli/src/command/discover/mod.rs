@@ -22,9 +22,10 @@ use super::fit::{
     outcome, spreads, tracks, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
+use crate::problem::{Measured, Problem};
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use candidates::SearchOptions;
@@ -36,7 +37,6 @@ use material::{Past, Searched};
 use predictions::PredictionArguments;
 use report::Found;
 use surroundings::FieldArguments;
-use voronudge::problem::{Measured, Problem};
 use voronudge_infer::{Constraints, Part, Scale};
 use voronudge_io::{DataSet, Difference};
 use voronudge_model::Effect;

@@ -3,8 +3,8 @@
 use super::Asked;
 use super::material::Searched;
 use crate::failure::Failure;
+use crate::problem::{self, Measured, Problem};
 use crate::run::Run;
-use voronudge::problem::{self, Measured, Problem};
 use voronudge_infer::Movie;
 use voronudge_infer::forecast::Forecaster;
 use voronudge_io::{DataSet, Difference, derive_velocities};

@@ -3,7 +3,7 @@
 use super::report::Found;
 use crate::command::fit::{spreads, views};
 use crate::failure::Failure;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_geometry::Vector;
 use voronudge_infer::diagnostics::{Bin, Cause, Correlation as Measured, Diagnostics};
 use voronudge_infer::discover::{Discovery, Selected};

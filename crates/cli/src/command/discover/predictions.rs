@@ -3,10 +3,10 @@
 use super::Asked;
 use super::report::held_out_error;
 use crate::failure::Failure;
+use crate::problem::Problem;
 use crate::run::Run;
 use clap::Args;
 use std::path::PathBuf;
-use voronudge::problem::Problem;
 use voronudge_infer::Observation;
 use voronudge_infer::discover::{Absent, Discovery, Search, Transfer};
 use voronudge_io::DataSet;

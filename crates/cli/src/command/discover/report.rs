@@ -6,8 +6,8 @@ use super::sentences::probability;
 use super::{effects, sentences};
 use crate::command::fit::flow::described;
 use crate::command::fit::{Stated, outcome, prospects};
+use crate::problem::Problem;
 use crate::run::Run;
-use voronudge::problem::Problem;
 use voronudge_infer::diagnostics::Kind;
 use voronudge_infer::discover::{
     Budget, Described, Discovery, Fitted, HeldOut, HeldOutUnit, Search, Verdict as Answer,

@@ -2,7 +2,7 @@
 
 use super::history::has_memory;
 use super::measured::Findings;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_infer::NoiseSource;
 use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Ranked, Search, Selected, Verdict};
 use voronudge_model::Effect;

@@ -3,10 +3,10 @@
 use super::history::History;
 use crate::command::fit::SnapshotArguments;
 use crate::failure::Failure;
+use crate::problem::{OrderedField, Problem};
 use clap::Args;
 use std::path::PathBuf;
 use std::sync::Arc;
-use voronudge::problem::{OrderedField, Problem};
 use voronudge_geometry::Vector;
 use voronudge_io::{DataSet, DeclaredWindow};
 use voronudge_model::{EnvironmentError, VectorMap};

@@ -5,9 +5,9 @@ mod page;
 
 pub(crate) use line::{Tissue, slope};
 
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use serde_json::Value;

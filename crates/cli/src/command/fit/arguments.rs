@@ -3,9 +3,9 @@
 use super::flow::FlowArguments;
 use crate::arguments::DataSetArguments;
 use crate::failure::Failure;
+use crate::problem;
 use clap::{Args, ValueEnum};
 use std::path::Path;
-use voronudge::problem;
 use voronudge_io::{DataSet, FrameSelection};
 use voronudge_report::infer_report::{NoiseSource, RegionSource};
 

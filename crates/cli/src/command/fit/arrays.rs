@@ -1,7 +1,7 @@
 //! Positions and velocities of a fit as arrays.
 
 use crate::failure::Failure;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_geometry::Vector;
 use voronudge_infer::Inference;
 use voronudge_io::{DataSet, OutputDirectory};

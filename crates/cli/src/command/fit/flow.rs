@@ -2,8 +2,8 @@
 
 use crate::arguments::DataSetArguments;
 use crate::failure::Failure;
+use crate::problem::OrderedField;
 use clap::{Args, ValueEnum};
-use voronudge::problem::OrderedField;
 use voronudge_infer::{Window, WindowKind};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{FlowGrid, FlowWindow};

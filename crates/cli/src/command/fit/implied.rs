@@ -1,6 +1,6 @@
 //! What fitted parameters imply by the mean-field theory.
 
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_infer::{COEFFICIENT_SIZES, Direction, Inference, NORMAL_95};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{ImpliedByMeanField, Parameter};

@@ -1,9 +1,9 @@
 //! Cells that were not detected: what is asked, and what was found.
 
 use crate::failure::Failure;
+use crate::problem::{Detections, Problem};
 use clap::{ArgAction, Args};
 use ndarray::Array2;
-use voronudge::problem::{Detections, Problem};
 use voronudge_infer::{ChangeKind, Inference, Origin};
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_report::infer_report::LatentCells;

@@ -2,8 +2,8 @@
 
 use super::arguments::SnapshotArguments;
 use crate::failure::Failure;
+use crate::problem::{Error, Measured};
 use std::path::PathBuf;
-use voronudge::problem::{Error, Measured};
 use voronudge_io::{DataSet, Difference};
 
 /// What there is to be explained: velocities if there are any, otherwise the tracks, or their differences if these are asked for.

@@ -1,7 +1,7 @@
 //! How cells were measured: what a report says of it.
 
+use crate::problem::Problem;
 use crate::run::Run;
-use voronudge::problem::Problem;
 use voronudge_infer::{Determined, Measurement, Quantity};
 use voronudge_report::infer_report::{self as told, MeasurementSource, PositionKind};
 use voronudge_report::numbers::significant;

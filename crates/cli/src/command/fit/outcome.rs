@@ -3,8 +3,8 @@
 use super::Stated;
 use super::units::unit;
 use super::words;
+use crate::problem::Problem;
 use std::collections::BTreeMap;
-use voronudge::problem::Problem;
 use voronudge_geometry::{Certainty, Visibility};
 use voronudge_infer::{
     Constraints, Estimate, Inference, Method, NoiseSource as Source, Observation, Prior, Profile,

@@ -5,9 +5,9 @@ use super::measured::file;
 use crate::boundary::{domain, unknown};
 use crate::failure::Failure;
 use crate::memory::refuse_fit_beyond;
+use crate::problem::{Detections, Measured, Problem, Question};
 use crate::run::Run;
 use std::path::PathBuf;
-use voronudge::problem::{Detections, Measured, Problem, Question};
 use voronudge_geometry::Domain;
 use voronudge_infer::{Constraints, Error, Method, Scale};
 use voronudge_io::DataSet;
@@ -57,7 +57,7 @@ impl Inquiry<'_> {
         };
         let problem = Problem::of(data, &question, velocities, frames);
         let absent: usize = present.iter().map(|present| data.cells() - present).sum();
-        let seen = matches!(problem, Ok(_) | Err(voronudge::problem::Error::Fit(_)));
+        let seen = matches!(problem, Ok(_) | Err(crate::problem::Error::Fit(_)));
         if seen && absent > 0 && matches!(domain, Domain::Periodic(_)) {
             run.warn(format!(
                 "{absent} cells are absent from frames of the periodic box: if they were there and not seen, the polygons around \
@@ -74,8 +74,8 @@ pub(crate) fn place(problem: &Problem, error: Error, arguments: &SnapshotArgumen
 }
 
 /// Says in which file and frame a fault of data lies.
-pub(crate) fn place_of_data(arguments: &SnapshotArguments, error: voronudge::problem::Error) -> Failure {
-    use voronudge::problem::Error;
+pub(crate) fn place_of_data(arguments: &SnapshotArguments, error: crate::problem::Error) -> Failure {
+    use crate::problem::Error;
     match error {
         Error::Frame { frame, source } => {
             let file = arguments.data.positions_file();
@@ -107,8 +107,8 @@ impl<'a> Place<'a> {
     }
 
     /// A fault of data that make no problem.
-    fn of(&self, error: voronudge::problem::Error) -> Failure {
-        use voronudge::problem::Error;
+    fn of(&self, error: crate::problem::Error) -> Failure {
+        use crate::problem::Error;
         match error {
             Error::Fit(error) => self.of_fit(error),
             Error::NoFrame => Failure::from(error).at(self.positions.display()),

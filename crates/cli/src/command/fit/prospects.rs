@@ -1,8 +1,8 @@
 //! What to measure next, computed: what a fit would know with other measurements.
 
 use super::units::{symbol, unit};
+use crate::problem::Problem;
 use std::collections::BTreeMap;
-use voronudge::problem::Problem;
 use voronudge_infer::{Ambiguity, Inference, Prospects, Quantity};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{AmbiguityReport, DESIGNS, ProspectOf, ProspectsReport};

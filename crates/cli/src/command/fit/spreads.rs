@@ -1,7 +1,7 @@
 //! What single cells have of their own, as arrays and figures.
 
 use crate::failure::Failure;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_geometry::Vector;
 use voronudge_infer::{Inference, Spread};
 use voronudge_io::{DataSet, OutputDirectory};

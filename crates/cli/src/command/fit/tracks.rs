@@ -1,8 +1,8 @@
 //! What came of tracks that were fitted.
 
 use crate::failure::Failure;
+use crate::problem::{Problem, Tracks};
 use ndarray::Array3;
-use voronudge::problem::{Problem, Tracks};
 use voronudge_geometry::Vector;
 use voronudge_infer::{Drift, Inference, Tracked};
 use voronudge_io::{DataSet, OutputDirectory};

@@ -1,7 +1,7 @@
 //! Frames to be drawn.
 
 use crate::command::drawing::borders;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
 use voronudge_infer::Inference;
 use voronudge_report::figure::FlowMap;

@@ -3,11 +3,11 @@
 use super::ImageArguments;
 use super::linking::{Link, warn_of_breaks};
 use super::notes::{records, told};
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::boundary::domain;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};

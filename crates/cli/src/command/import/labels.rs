@@ -3,9 +3,9 @@
 use super::ImageArguments;
 use super::shapes::{self, Source};
 use super::sites::Positions;
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;

@@ -13,8 +13,8 @@ mod tracks;
 
 pub(crate) use notes::records;
 
-use crate::Answer;
 use crate::failure::Failure;
+use crate::program::Answer;
 use clap::{Args, Subcommand};
 use voronudge_io::{Boundary, ColumnNames, ImageScale, ImportOptions, YAxis};
 

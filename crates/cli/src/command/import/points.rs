@@ -3,9 +3,9 @@
 use super::SpotArguments;
 use super::linking::{Link, warn_of_breaks};
 use super::notes::{records, told};
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use serde::Serialize;

@@ -2,9 +2,9 @@
 
 use super::notes::{records, told};
 use super::sites::{Positions, place_at_sites};
-use crate::Answer;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;

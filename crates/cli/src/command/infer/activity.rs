@@ -2,7 +2,7 @@
 
 use crate::command::fit::outcome;
 use crate::failure::Failure;
-use voronudge::problem::{Problem, Tracks};
+use crate::problem::{Problem, Tracks};
 use voronudge_infer::{Drive, Inference, Polarity, Quantity, Tracked};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{ActivityReport, Parameter};

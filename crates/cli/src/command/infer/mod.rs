@@ -16,15 +16,15 @@ use super::fit::{
     words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
+use crate::problem::Measured;
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
 use questions::UncertaintyArguments;
-use voronudge::problem::Measured;
 use voronudge_infer::{Activity, Drives, prospects};
 use voronudge_io::Difference;
 use voronudge_model::CellParameter;

@@ -6,7 +6,7 @@ use super::questions::Answers;
 use crate::command::fit::units::symbol;
 use crate::command::fit::{spreads, views};
 use crate::failure::Failure;
-use voronudge::problem::{Measured, Problem};
+use crate::problem::{Measured, Problem};
 use voronudge_geometry::Domain;
 use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};

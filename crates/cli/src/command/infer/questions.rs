@@ -4,9 +4,9 @@ use crate::arguments::Shard;
 use crate::command::fit::quantity;
 use crate::command::replicates::Kept;
 use crate::failure::Failure;
+use crate::problem::Problem;
 use crate::progress::Progress;
 use clap::Args;
-use voronudge::problem::Problem;
 use voronudge_infer::{
     Bootstrap, CoefficientSpace, Constraints, Error, Inference, Landscape, Profile, Quantity, bootstrap,
     landscape, profile,

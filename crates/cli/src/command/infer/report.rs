@@ -5,8 +5,8 @@ use super::verdict::verdict;
 use super::{answers, spreads};
 use crate::command::fit::flow::described;
 use crate::command::fit::{Stated, implied, outcome, prospects};
+use crate::problem::Problem;
 use crate::run::Run;
-use voronudge::problem::Problem;
 use voronudge_infer::{Inference, NoiseSource, Prospects, Quantity as What};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{

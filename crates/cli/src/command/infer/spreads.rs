@@ -2,7 +2,7 @@
 
 use crate::command::fit::spreads::symbol;
 use crate::failure::Failure;
-use voronudge::problem::Problem;
+use crate::problem::Problem;
 use voronudge_infer::{Inference, Method, Spread};
 use voronudge_model::CellParameter;
 use voronudge_report::infer_report::SpreadReport;

@@ -1,11 +1,11 @@
 //! The parts of a phase diagram put together.
 
 use super::{Arguments, check, read, refuse_incomplete, refuse_other};
-use crate::Answer;
 use crate::arguments::Shard;
 use crate::command::phase_diagram::finish;
 use crate::command::phase_diagram::points::{FILE, Header, Points};
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use std::collections::BTreeSet;
 use std::path::Path;

@@ -5,9 +5,9 @@ mod replicates;
 
 use super::phase_diagram::ScalingArguments;
 use super::replicates::FILE;
-use crate::Answer;
 use crate::arguments::{CommonArguments, Shard};
 use crate::failure::Failure;
+use crate::program::Answer;
 use clap::Args;
 use std::path::{Path, PathBuf};
 

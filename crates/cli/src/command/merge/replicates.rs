@@ -4,8 +4,7 @@ use super::{Arguments, HINT, check, read, refuse_incomplete, refuse_other};
 use crate::arguments::{CommonArguments, Shard};
 use crate::command::replicates::{Agreement, Course, FILE, Made, ReplicateArguments};
 use crate::failure::Failure;
-use crate::{Answer, Command};
-use clap::Parser;
+use crate::program::{self, Answer, Command};
 use std::path::Path;
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
@@ -15,12 +14,12 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         .collect::<Result<_, Failure>>()?;
     let made = merged(parts)?;
     let line = made.header.command_line.clone();
-    let typed = crate::Arguments::try_parse_from(line.words())?;
+    let typed = program::parse(line.words())?;
     // Where an interrupted merge has made fits itself, it goes on.
     let replicates = ReplicateArguments { resume: true, shard: None };
     let course = Course { line, made: Some(made) };
     let common = |own: CommonArguments| arguments.common.with_seed(own.seed);
-    match typed.command {
+    match typed {
         Command::Discover(own) => own.merged(common, replicates, course),
         Command::Infer(own) => own.merged(common, replicates, course),
         _ => Err(Failure::new("the parts are of no command that is shared among machines").with_hint(HINT)),

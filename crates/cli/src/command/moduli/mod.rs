@@ -5,11 +5,11 @@ pub(crate) mod measure;
 pub(crate) mod protocol;
 pub(crate) mod report;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, ParameterArguments};
 use crate::command::simulate::StartArguments;
 use crate::failure::Failure;
 use crate::memory::{OF_A_STRAINED_CELL, refuse_beyond};
+use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use protocol::{Protocol, ProtocolArguments};

@@ -3,12 +3,12 @@
 mod page;
 mod report;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments};
 use crate::boundary::domain_at;
 use crate::command::fit::{MeanToRemove, check_largest_area};
 use crate::failure::Failure;
 use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
+use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use ndarray::{Array2, Array3, Axis};

@@ -11,16 +11,19 @@ mod work;
 pub(crate) use outcome::finish;
 pub(crate) use scaling::ScalingArguments;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, Shard};
 use crate::failure::Failure;
 use crate::output::NO_INPUTS;
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
 use points::{Header, Points};
 use request::{GridArguments, Request};
 use std::collections::BTreeSet;
+use std::fs;
+use std::io::ErrorKind;
+use std::path::Path;
 use voronudge_io::{Journal, OutputFolder, Recording};
 use work::{Ending, work};
 
@@ -32,7 +35,7 @@ use work::{Ending, work};
 pub(crate) struct Arguments {
     #[command(flatten)]
     grid: GridArguments,
-    /// Go on with the diagram that was interrupted in --out; begin if there is none.
+    /// Go on with the diagram that was interrupted in --out; begin if there is none. One that is complete is not made again.
     #[arg(long)]
     resume: bool,
     /// Make only a part of the runs, such as 1/4; `merge` puts all parts together.
@@ -79,6 +82,19 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     Ok(points.answer())
 }
 
+/// The runs of a diagram that ended, if it is of the same request.
+fn finished(out: &Path, header: &Header) -> Result<Option<Points>, Failure> {
+    let path = out.join(points::FILE);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Failure::new(format!("{}: {error}", path.display()))),
+    };
+    // One that another version made is made again.
+    let found = Points::parse(text.lines(), path.display()).ok();
+    Ok(found.filter(|found| matches!(found.header.difference(header), Ok(None))))
+}
+
 /// Begins a journal, or goes on with one of the same request.
 fn open(folder: &OutputFolder, header: Header, resume: bool) -> Result<(Journal, Points), Failure> {
     let out = folder.path();
@@ -88,8 +104,9 @@ fn open(folder: &OutputFolder, header: Header, resume: bool) -> Result<(Journal,
             .with_hint("give another --out, or remove its folder .voronudge-run"));
     }
     let Some(lines) = Journal::find(out)? else {
+        let known = if resume { finished(out, &header)? } else { None };
         let journal = Journal::begin(folder, &serde_json::to_string(&header)?)?;
-        return Ok((journal, Points { header, records: Vec::new() }));
+        return Ok((journal, known.unwrap_or(Points { header, records: Vec::new() })));
     };
     if !resume {
         return Err(Failure::new(format!("{} holds a run that was interrupted", place()))

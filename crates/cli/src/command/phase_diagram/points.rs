@@ -2,9 +2,9 @@
 
 use super::point::Record;
 use super::request::Request;
-use crate::Answer;
 use crate::arguments::Shard;
 use crate::failure::Failure;
+use crate::program::Answer;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 

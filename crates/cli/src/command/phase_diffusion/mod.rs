@@ -4,9 +4,9 @@ mod page;
 mod pattern;
 mod report;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments};
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use pattern::TrackedPattern;

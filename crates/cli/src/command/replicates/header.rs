@@ -2,7 +2,6 @@
 
 use crate::arguments::Shard;
 use crate::failure::Failure;
-use clap::CommandFactory;
 use serde::{Deserialize, Serialize};
 use std::any::TypeId;
 use std::collections::BTreeMap;
@@ -24,7 +23,7 @@ pub(crate) struct CommandLine(Vec<String>);
 impl CommandLine {
     /// As it was typed.
     pub fn typed() -> Self {
-        Self(std::env::args_os().skip(1).map(|word| word.to_string_lossy().into_owned()).collect())
+        Self(crate::program::typed().iter().skip(1).cloned().collect())
     }
 
     /// The words, the name of the program first.
@@ -34,8 +33,8 @@ impl CommandLine {
 
     /// The values of all arguments of the command, defaults included, by name.
     fn settings(&self) -> Result<BTreeMap<String, Vec<String>>, Failure> {
-        let matches = crate::Arguments::command().try_get_matches_from(self.words())?;
-        let whole = crate::Arguments::command();
+        let matches = crate::program::description().try_get_matches_from(self.words())?;
+        let whole = crate::program::description();
         let mut settings = BTreeMap::new();
         let Some((name, own)) = matches.subcommand() else { return Ok(settings) };
         let command = whole.find_subcommand(name);

@@ -3,10 +3,12 @@
 use super::header::Header;
 use super::lines::{Agreement, FILE, Made, Series, outcome_line};
 use super::{Course, ReplicateArguments};
-use crate::Answer;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
+use std::fs;
+use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use voronudge_infer::{Inference, Keeper, Known};
@@ -58,6 +60,10 @@ impl Kept {
             written = earlier.series.len();
             made.add(earlier.series);
             journal = Some(Journal::resume(folder)?.0);
+        } else if arguments.resume
+            && let Some(earlier) = finished(folder.path(), &made.header)?
+        {
+            made.add(earlier.series);
         }
         let is_part = arguments.shard.is_some();
         let folder = folder.clone();
@@ -238,4 +244,17 @@ fn interrupted(out: &Path, header: &Header, resume: bool) -> Result<Option<Made>
             .with_hint("repeat the options of the interrupted run, or give another --out"));
     }
     Ok(Some(made))
+}
+
+/// The fits of a part that ended, if it is of the same request.
+fn finished(out: &Path, header: &Header) -> Result<Option<Made>, Failure> {
+    let path = out.join(FILE);
+    let text = match fs::read_to_string(&path) {
+        Ok(text) => text,
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
+        Err(error) => return Err(Failure::new(format!("{}: {error}", path.display()))),
+    };
+    // One that another version made is made again.
+    let found = Made::parse(text.lines(), path.display()).ok();
+    Ok(found.filter(|own| own.header.shard == header.shard && header.difference(&own.header).is_none()))
 }

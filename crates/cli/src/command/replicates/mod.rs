@@ -21,7 +21,7 @@ use clap::Args;
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "General")]
 pub(crate) struct ReplicateArguments {
-    /// Go on with the run that was interrupted in --out; begin if there is none.
+    /// Go on with the run that was interrupted in --out; begin if there is none. A part that is complete is not made again.
     #[arg(long)]
     pub resume: bool,
     /// Fit only a part of the synthetic data, such as 1/4, and nothing that comes after; `merge` puts all parts together.

@@ -4,12 +4,12 @@ mod measure;
 mod page;
 mod posterior;
 
-use crate::Answer;
 use crate::arguments::CommonArguments;
 use crate::command::moduli::protocol::ProtocolArguments;
 use crate::command::simulate::{Start, StartArguments};
 use crate::failure::Failure;
 use crate::memory::{OF_A_STRAINED_CELL, refuse_beyond};
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;

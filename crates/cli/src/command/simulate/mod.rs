@@ -12,9 +12,9 @@ mod sensitivity;
 mod start;
 mod surroundings;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, environment};
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use cells::OfCells;

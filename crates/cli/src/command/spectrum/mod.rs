@@ -9,10 +9,10 @@ mod request;
 mod search;
 mod view;
 
-use crate::Answer;
 use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
 use crate::boundary::domain_at;
 use crate::failure::Failure;
+use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use clap::Args;
