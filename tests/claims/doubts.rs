@@ -31,6 +31,7 @@ fn observed(
 }
 
 #[test]
+#[ignore = "slow"]
 fn complete_tissues_are_seldom_doubted() {
     let found = doubted(8, |_| true, |tissue, seed| tissue.measured(NOISE, seed).unwrap());
     assert!(found <= 1, "{found} of 8");

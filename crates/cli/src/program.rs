@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use crate::{command, terminal};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
+use serde_json::json;
 use std::ffi::OsString;
 use std::sync::OnceLock;
 
@@ -33,6 +34,7 @@ pub(crate) enum Command {
     Info(command::info::Arguments),
     PhaseDiffusion(command::phase_diffusion::Arguments),
     Rheology(Box<command::rheology::Arguments>),
+    Completions(command::completions::Arguments),
 }
 
 /// What a command that ran has to say.
@@ -61,6 +63,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     TYPED.get_or_init(|| arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect());
     let failed = |failure: Failure| {
         terminal::note(&failure.to_string());
+        if wants_json(typed()) {
+            let fault =
+                json!({"error": failure.message(), "hint": failure.hint(), "exit_code": failure.exit_code()});
+            // Nothing more can be told when stdout is gone.
+            let _ = terminal::print(&format!("{fault}\n"));
+        }
         failure.exit_code()
     };
     match Arguments::try_parse_from(arguments) {
@@ -80,6 +88,12 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
             _ => failed(error.into()),
         },
     }
+}
+
+/// Whether results are asked for as JSON, and faults, too: seen in the words themselves, since a fault may be of these.
+fn wants_json(words: &[String]) -> bool {
+    let asked = words.windows(2).any(|pair| pair[0] == "--format" && pair[1] == "json");
+    asked || words.iter().any(|word| word == "--format=json")
 }
 
 /// The commands with their options and help, as clap has them.
@@ -110,5 +124,6 @@ fn call(command: Command) -> Result<Answer, Failure> {
         Command::Info(arguments) => command::info::run(&arguments),
         Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
         Command::Rheology(arguments) => command::rheology::run(*arguments),
+        Command::Completions(arguments) => command::completions::run(&arguments),
     }
 }

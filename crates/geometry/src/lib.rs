@@ -66,7 +66,7 @@ pub use moving::{MovingTessellation, Renewal};
 pub use outline::{Outline, outline_contacts};
 pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
 pub use plane::{Corner, Vector, circumcentre, cross, dot, quarter_turn, side_direction};
-pub use polygon::{CellPolygon, Shape, areas, perimeters};
+pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons};
 pub use raster::{Edge, smooth};
 pub use region::Region;
 pub use scalar::{Scalar, lift};

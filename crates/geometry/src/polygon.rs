@@ -162,3 +162,17 @@ pub fn areas(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64>
 pub fn perimeters(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
     per_cell(tessellation, positions, |polygon| polygon.shape().perimeter)
 }
+
+/// Vertices of every cell's polygon, counter-clockwise, around its centre; none of an open one.
+pub fn polygons(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<Vec<Vector<f64>>> {
+    let mut polygon = CellPolygon::default();
+    (0..tessellation.len())
+        .map(|cell| {
+            if !tessellation.is_closed(cell) {
+                return Vec::new();
+            }
+            polygon.fill(tessellation, positions, cell);
+            polygon.vertices().map(|vertex| vertex + positions[cell]).collect()
+        })
+        .collect()
+}

@@ -20,6 +20,7 @@
 //! | refuse what the machine has no memory for | [`machine_memory`] |
 //! | keep other processes out of a directory of results | [`OutputFolder`] |
 //! | write results so that a killed run spoils nothing | [`OutputDirectory`] |
+//! | write cells with their polygons for other programs | [`export_cells`] |
 //! | write frames of a long run that can be taken up again | [`Recording`] |
 //!
 //! # Conventions
@@ -38,6 +39,7 @@ mod cellpose;
 mod dataset;
 mod digest;
 mod error;
+mod export;
 mod field_import;
 mod field_of_view;
 mod flow;
@@ -79,6 +81,7 @@ pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,
 };
+pub use export::{CellFrame, CellValues, ExportFormat, export_cells};
 pub use field_import::{FieldImport, FieldOptions, WantedExtrema, import_field, import_field_series};
 pub use field_of_view::SeenArea;
 pub use flow::FlowField;

@@ -7,7 +7,7 @@ use ndarray::{Array2, Array3};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
-use voronudge::geometry::{CellPolygon, FieldOfView, areas, perimeters};
+use voronudge::geometry::{FieldOfView, areas, perimeters, polygons};
 use voronudge::model::{jacobian, stress, velocities};
 use voronudge::{Domain, PeriodicBox, Tessellation, Vector};
 
@@ -95,16 +95,8 @@ impl Tissue {
 
     /// Vertices of each cell's polygon, counter-clockwise; an array without rows where it is open.
     fn polygons<'py>(&self, py: Python<'py>) -> Vec<Bound<'py, PyArray2<f64>>> {
-        let mut polygon = CellPolygon::default();
-        (0..self.positions.len())
-            .map(|cell| {
-                if !self.tessellation.is_closed(cell) {
-                    return array(py, []);
-                }
-                polygon.fill(&self.tessellation, &self.positions, cell);
-                array(py, polygon.vertices().map(|vertex| vertex + self.positions[cell]))
-            })
-            .collect()
+        let polygons = py.detach(|| polygons(&self.tessellation, &self.positions));
+        polygons.into_iter().map(|vertices| array(py, vertices)).collect()
     }
 
     /// Velocities of the cells (N, 2); NaN where the polygon of a cell or of a neighbour is open.

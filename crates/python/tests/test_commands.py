@@ -5,6 +5,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import numpy as np
 import pandas
@@ -116,3 +117,8 @@ def test_every_command_is_a_function_with_help():
     for name in ["infer", "discover", "evaluate", "simulate", "spectrum", "moduli", "import_tracks", "import_labels"]:
         function = getattr(voronudge, name)
         assert name in voronudge.__all__ and "Parameters\n----------" in function.__doc__
+
+
+def test_type_checkers_see_every_command():
+    stub = (Path(voronudge.__file__).parent / "__init__.pyi").read_text()
+    assert all(f"def {name}(" in stub or f" as {name}\n" in stub or f"{name}:" in stub for name in voronudge.__all__)

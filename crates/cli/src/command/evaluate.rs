@@ -1,7 +1,8 @@
 //! `voronudge evaluate`: the model's fields at given positions.
 
 use crate::arguments::{
-    ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ParameterArguments, environment,
+    ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ExportArguments, ParameterArguments,
+    cell_frame, environment,
 };
 use crate::boundary::domain_at;
 use crate::failure::Failure;
@@ -14,7 +15,7 @@ use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Cursor;
 use voronudge_geometry::{Tessellation, Vector, areas, perimeters};
-use voronudge_io::{DataSet, FrameSelection, OutputDirectory, Snapshot, YAxis};
+use voronudge_io::{CellFrame, CellValues, DataSet, FrameSelection, OutputDirectory, Snapshot, YAxis};
 use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
 use voronudge_observables::mean_square_velocity;
 use voronudge_report::infer_report::RunRecord;
@@ -39,6 +40,8 @@ pub(crate) struct Arguments {
     /// Also write the Jacobian of velocities with respect to positions.
     #[arg(long)]
     jacobian: bool,
+    #[command(flatten)]
+    export: ExportArguments,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -104,6 +107,25 @@ struct Fields {
     stress: [[f64; 2]; 2],
     /// Cells that count: in an open field, those away from its rim.
     counted: Vec<bool>,
+    tessellation: Tessellation,
+}
+
+impl Fields {
+    /// For other programs.
+    fn cells(&self, frame: usize) -> CellFrame {
+        let chosen: Vec<(usize, usize)> = self.snapshot.cells.iter().copied().enumerate().collect();
+        let numbers = |all: &[f64]| CellValues::Numbers(all.to_vec());
+        let counts: Vec<f64> = self.counted.iter().map(|&counts| f64::from(u8::from(counts))).collect();
+        CellFrame {
+            values: vec![
+                ("area", numbers(&self.areas)),
+                ("perimeter", numbers(&self.perimeters)),
+                ("counts", CellValues::Numbers(counts)),
+                ("velocity", CellValues::Vectors(self.velocities.clone())),
+            ],
+            ..cell_frame(frame, (&self.tessellation, &self.snapshot.positions), &chosen)
+        }
+    }
 }
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
@@ -160,10 +182,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
                 data.y_axis,
             ),
             counted: (0..snapshot.cells.len()).map(|cell| view.counts(cell)).collect(),
+            tessellation,
             snapshot,
         });
     }
     write_fields(&mut out, &data, &fields)?;
+    arguments.export.write(&mut out, &data, || {
+        fields.iter().zip(&frames).map(|(own, &frame)| own.cells(frame)).collect()
+    })?;
     let finite = |f: &Fields| f.velocities.iter().filter(|v| v.x.is_finite()).count();
     let report = Report {
         run: run.record(Some(&data)),

@@ -2,6 +2,7 @@
 
 pub(crate) mod channel;
 pub(crate) mod check_gradients;
+pub(crate) mod completions;
 pub(crate) mod discover;
 mod drawing;
 pub(crate) mod estimate_chirality;

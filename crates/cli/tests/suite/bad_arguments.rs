@@ -127,3 +127,28 @@ fn help_and_version_are_no_faults() {
         assert!(outcome.stdout.contains("voronudge") && outcome.stderr.is_empty(), "{outcome:?}");
     }
 }
+
+/// Scripts that ask for JSON get faults in it, and people as ever.
+#[test]
+fn faults_are_told_as_json_where_results_are() {
+    for line in ["infer /nowhere --format json", "infer --format=json --frames one"] {
+        let outcome = voronudge(line.split_whitespace());
+        let told: serde_json::Value = serde_json::from_str(&outcome.stdout).unwrap();
+        assert_eq!((outcome.code, &told["exit_code"]), (Some(2), &2.into()));
+        let [error, hint] = ["error", "hint"].map(|name| told[name].as_str().unwrap());
+        assert_eq!(outcome.stderr, format!("error: {error}\n\nhint: {hint}\n"));
+    }
+    assert_eq!(voronudge(["infer", "/nowhere"]).stdout, "");
+}
+
+#[test]
+fn shells_learn_all_commands_and_options() {
+    for shell in ["bash", "zsh", "fish"] {
+        let outcome = voronudge(["completions", shell]);
+        assert_eq!(outcome.code, Some(0));
+        for word in ["phase-diagram", "trackmate", "position-noise"] {
+            assert!(outcome.stdout.contains(word), "{shell} {word}");
+        }
+    }
+    assert_eq!(voronudge(["completions", "tcsh"]).code, Some(2));
+}

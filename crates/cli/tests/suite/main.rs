@@ -10,6 +10,7 @@ mod bad_places;
 mod channels;
 mod discoveries;
 mod evaluations;
+mod exports;
 #[cfg(target_os = "linux")]
 mod faults;
 mod fields_of_view;

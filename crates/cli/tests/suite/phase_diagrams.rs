@@ -47,9 +47,9 @@ fn a_complete_diagram_is_not_made_again() {
     let out = diagram(&line);
     let made = fs::read_to_string(out.file("points.jsonl")).unwrap();
     // A number that nothing computes shows where it comes from.
-    let (head, rest) = made.split_once("\"mean_square_velocity\":").unwrap();
+    let (head, rest) = made.split_once("\"mean_square_velocity\":[").unwrap();
     let (_, tail) = rest.split_once(',').unwrap();
-    let marked = format!("{head}\"mean_square_velocity\":0.125,{tail}");
+    let marked = format!("{head}\"mean_square_velocity\":[0.125,{tail}");
     assert_ne!(marked, made);
     out.write("points.jsonl", &marked);
     succeed(&format!("{line} --resume"), &[("--out", out.path())]);
@@ -58,7 +58,7 @@ fn a_complete_diagram_is_not_made_again() {
     assert_eq!(fs::read_to_string(out.file("points.jsonl")).unwrap(), made);
     out.write("points.jsonl", &marked);
     succeed(&format!("{line} --resume --seed 6").replacen("--seed 5 ", "", 1), &[("--out", out.path())]);
-    assert!(!fs::read_to_string(out.file("points.jsonl")).unwrap().contains(":0.125,"));
+    assert!(!fs::read_to_string(out.file("points.jsonl")).unwrap().contains("[0.125,"));
 }
 
 #[test]

@@ -166,6 +166,7 @@ fn a_bootstrap_that_was_cut_off_goes_on_to_the_same_bytes() {
 
 #[cfg(unix)]
 #[test]
+#[ignore = "slow"]
 fn a_search_that_was_killed_goes_on_with_what_is_on_the_disk() {
     let out = Folder::new();
     let data = fixture(SEARCH_DATA);
@@ -205,7 +206,9 @@ fn assert_parts_make_the_whole(line: &str, data: &Path, whole: &Results) -> [Fol
         let marked = format!("{head}[0.125{}", &tail[end..]);
         out.write("replicates.jsonl", &marked);
         run(&format!("{line} --shard {part}/2 --resume"), data, out.path());
-        assert_eq!(fs::read_to_string(out.file("replicates.jsonl")).unwrap(), marked);
+        let again = fs::read_to_string(out.file("replicates.jsonl")).unwrap();
+        // The first line has the command line.
+        assert!(again.lines().skip(1).eq(marked.lines().skip(1)), "{again}");
         out.write("replicates.jsonl", made);
         out
     });

@@ -96,4 +96,12 @@ parts! {
     5 #[ignore = "slow"] the_truth_is_found_in_the_sixth_part
     6 #[ignore = "slow"] the_truth_is_found_in_the_seventh_part
     7 #[ignore = "slow"] the_truth_is_found_in_the_eighth_part
+    8 #[ignore = "slow"] the_truth_is_found_in_the_ninth_part
+    9 #[ignore = "slow"] the_truth_is_found_in_the_tenth_part
+    10 #[ignore = "slow"] the_truth_is_found_in_the_eleventh_part
+    11 #[ignore = "slow"] the_truth_is_found_in_the_twelfth_part
+    12 #[ignore = "slow"] the_truth_is_found_in_the_thirteenth_part
+    13 #[ignore = "slow"] the_truth_is_found_in_the_fourteenth_part
+    14 #[ignore = "slow"] the_truth_is_found_in_the_fifteenth_part
+    15 #[ignore = "slow"] the_truth_is_found_in_the_sixteenth_part
 }

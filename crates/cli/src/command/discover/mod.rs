@@ -18,11 +18,11 @@ mod surroundings;
 
 use super::fit::measured::{frames, measured, velocities};
 use super::fit::{
-    ConstraintArguments, Inquiry, SearchArguments, SnapshotArguments, arrays, browser, latent, measurement,
-    outcome, spreads, tracks, words,
+    ConstraintArguments, Inquiry, SearchArguments, SnapshotArguments, arrays, browser, export, latent,
+    measurement, outcome, spreads, tracks, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
-use crate::arguments::CommonArguments;
+use crate::arguments::{CommonArguments, ExportArguments};
 use crate::failure::Failure;
 use crate::problem::{Measured, Problem};
 use crate::program::Answer;
@@ -60,6 +60,8 @@ pub(crate) struct Arguments {
     /// What given velocities are, which decides which earlier ones may predict them [default: instantaneous].
     #[arg(long, value_enum)]
     given_difference: Option<GivenDifference>,
+    #[command(flatten)]
+    export: ExportArguments,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -158,6 +160,7 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     }
     spreads::write(&mut out, "after_", &data, &prepared, last)?;
     latent::write(&mut out, &data, &prepared, last)?;
+    arguments.export.write(&mut out, &data, || export::frames(&prepared, last))?;
     let predictions =
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
     let followed = prepared.tracks.as_ref().zip(discovery.after.tracked.as_ref());

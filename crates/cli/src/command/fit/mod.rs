@@ -6,12 +6,13 @@
 //! | `measured`, `prepare` | from options to the problem, and faults of the data |
 //! | `latent`, `measurement`, `tracks`, `spreads`, `units` | what was found out, in the units of the data |
 //! | `outcome`, `implied`, `prospects`, `words` | a fitted model as reports tell it |
-//! | `arrays`, `views`, `browser` | arrays, frames to be drawn, the page on the screen |
+//! | `arrays`, `export`, `views`, `browser` | arrays, cells for other programs, frames to be drawn, the page on the screen |
 
 mod arguments;
 pub(crate) mod arrays;
 pub(crate) mod browser;
 mod constraints;
+pub(crate) mod export;
 pub(crate) mod flow;
 pub(crate) mod implied;
 pub(crate) mod latent;

@@ -12,11 +12,11 @@ mod verdict;
 
 use super::fit::measured::{frames, measured};
 use super::fit::{
-    ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, latent, measurement, place, tracks,
-    words,
+    ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, export, latent, measurement, place,
+    tracks, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
-use crate::arguments::CommonArguments;
+use crate::arguments::{CommonArguments, ExportArguments};
 use crate::failure::Failure;
 use crate::problem::Measured;
 use crate::program::Answer;
@@ -57,6 +57,8 @@ pub(crate) struct Arguments {
     /// Let cells differ in a parameter: alpha. For velocities of cells.
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
     vary: Vec<CellParameter>,
+    #[command(flatten)]
+    export: ExportArguments,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -176,6 +178,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     arrays::write(&mut out, "", &data, &prepared, &result)?;
     super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
+    arguments.export.write(&mut out, &data, || export::frames(&prepared, &result))?;
     let followed = prepared.tracks.as_ref().zip(tracked.as_ref());
     if let Some((movie, tracked)) = followed {
         tracks::write(&mut out, "", &data, (&prepared, movie), tracked)?;

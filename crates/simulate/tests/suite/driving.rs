@@ -1,7 +1,5 @@
 //! Shear, self-propulsion, noise, and steps of adaptive size.
 
-#![allow(clippy::unwrap_used)]
-
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
 use voronudge_model::effect::away_from_contacts;
 use voronudge_model::{Model, Parameters, stress, velocities};

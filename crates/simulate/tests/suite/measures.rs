@@ -1,7 +1,5 @@
 //! Measurements on solids and liquids.
 
-#![allow(clippy::unwrap_used)]
-
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};

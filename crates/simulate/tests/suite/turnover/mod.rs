@@ -1,7 +1,5 @@
 //! Extrusion and proliferation, in a periodic box and between walls.
 
-#![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
-
 mod periodic;
 mod walled;
 

@@ -1,7 +1,5 @@
 //! Derivatives of whole runs against differences of runs.
 
-#![allow(clippy::unwrap_used)]
-
 use num_dual::DualSVec64;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};

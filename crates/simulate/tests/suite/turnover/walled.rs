@@ -1,6 +1,6 @@
 //! Extrusion and proliferation between torque-free walls.
 
-use crate::{TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
+use super::{TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector, areas};
 use voronudge_model::{Model, Parameters};

@@ -1,7 +1,5 @@
 //! What integration in time must keep, and how accurate it is.
 
-#![allow(clippy::unwrap_used)]
-
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{Error, RandomPlacement, Simulation, generator, measure};

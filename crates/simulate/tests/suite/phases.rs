@@ -1,7 +1,5 @@
 //! Solid and liquid: the mean square velocity on either side of the transition.
 
-#![allow(clippy::unwrap_used)]
-
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox};
 use voronudge_model::{Model, Parameters};

@@ -1,7 +1,5 @@
 //! Cells between torque-free walls.
 
-#![allow(clippy::unwrap_used)]
-
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{
