@@ -56,6 +56,7 @@ fn missed_cells_are_doubted() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn centroids_taken_for_sites_are_doubted() {
     let found = doubted(
         4,

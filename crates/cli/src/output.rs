@@ -4,6 +4,7 @@ use crate::arguments::CommonArguments;
 use crate::failure::Failure;
 use serde_json::Value;
 use std::fs;
+use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 use voronudge_io::{OutputDirectory, OutputFolder};
 
@@ -90,4 +91,14 @@ fn read_by_the_last_run(out: &Path) -> Option<Vec<PathBuf>> {
     };
     let paths = inputs.iter().filter_map(|input| input.get("path").and_then(Value::as_str));
     Some(paths.filter_map(|path| inside(Path::new(path))).collect())
+}
+
+/// A file of earlier results; `None` if there is none.
+pub(crate) fn read_if_there(path: &Path) -> Result<Option<String>, Failure> {
+    match fs::read_to_string(path) {
+        Ok(text) => Ok(Some(text)),
+        Err(error) if error.kind() == ErrorKind::NotFound => Ok(None),
+        Err(error) => Err(Failure::new(format!("{}: {error}", path.display()))
+            .with_hint("give another --out, or remove what is there")),
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use voronudge_geometry::{Tessellation, Vector, polygons};
+use voronudge_geometry::{Domain, Tessellation, Vector, polygons};
 use voronudge_io::{CellFrame, DataSet, ExportFormat, OutputDirectory, export_cells};
 
 #[derive(Debug, Args)]
@@ -29,13 +29,24 @@ impl ExportArguments {
 }
 
 /// The cells of a frame with their polygons and neighbours, without values: `chosen` are those to write, by their number in the
-/// tessellation and in the data set.
+/// tessellation and in the data set. In an open field a polygon that reaches beyond all cells counts as open: it would be another one if more
+/// had been seen.
 pub(crate) fn cell_frame(
     frame: usize,
     (tessellation, positions): (&Tessellation, &[Vector<f64>]),
     chosen: &[(usize, usize)],
 ) -> CellFrame {
     let mut vertices = polygons(tessellation, positions);
+    if tessellation.domain() == Domain::Open {
+        let far = f64::INFINITY;
+        let corners =
+            positions.iter().fold([Vector::new(far, far), Vector::new(-far, -far)], |[low, high], r| {
+                [low.inf(r), high.sup(r)]
+            });
+        let [low, high] = corners;
+        let is_within = |v: &Vector<f64>| (low.x..=high.x).contains(&v.x) && (low.y..=high.y).contains(&v.y);
+        vertices.iter_mut().filter(|own| !own.iter().all(is_within)).for_each(Vec::clear);
+    }
     let mut numbers = vec![None; positions.len()];
     chosen.iter().for_each(|&(own, cell)| numbers[own] = Some(cell));
     let neighbours = |own: usize| -> Vec<usize> {

@@ -174,6 +174,7 @@ fn the_page_needs_nothing_from_elsewhere() {
 
 /// Positions alone, of cells that move as the model says: the tracks themselves are searched.
 #[test]
+#[ignore = "slow"]
 fn tracks_that_lack_nothing_lead_to_nothing() {
     let out = discover(&fixture("open-field"), "");
     let told = report(out.path());

@@ -22,6 +22,7 @@ fn values(forecast: &Value, list: &str) -> Vec<f64> {
 
 /// Frames after those of the fit are told by the polarities that cells had before, better than by forces alone and by baselines.
 #[test]
+#[ignore = "slow"]
 fn cells_that_crawl_are_forecast() {
     let data =
         tissue("--time 0.55 --frames 12 --self-propulsion 0.6 --rotational-diffusion 0.3 --start random");

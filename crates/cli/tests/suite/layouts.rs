@@ -23,13 +23,13 @@ fn results(data: &Path) -> Arrays {
 }
 
 /// Those of the data set as it stands.
-static STANDARD: LazyLock<Arrays> = LazyLock::new(|| results(&fixture("chiral-liquid")));
+static STANDARD: LazyLock<Arrays> = LazyLock::new(|| results(&fixture("chiral-liquid-clean")));
 
 const ARRAYS: [&str; 2] = ["positions.npy", "velocities.npy"];
 
 #[test]
 fn fortran_order_changes_nothing() {
-    let data = Folder::copy_of("chiral-liquid");
+    let data = Folder::copy_of("chiral-liquid-clean");
     for name in ARRAYS {
         let standard: Array2<f64> = read(&data.file(name));
         let mut fortran = Array2::zeros(standard.raw_dim().f());
@@ -43,14 +43,14 @@ fn fortran_order_changes_nothing() {
 
 #[test]
 fn single_precision_is_widened_in_either_order() {
-    let data = Folder::copy_of("chiral-liquid");
+    let data = Folder::copy_of("chiral-liquid-clean");
     // What single precision can hold, in double precision.
     for name in ARRAYS {
         data.change(name, |array| array.mapv_inplace(|value| f64::from(value as f32)));
     }
     let expected = results(data.path());
     for fortran in [false, true] {
-        let single = Folder::copy_of("chiral-liquid");
+        let single = Folder::copy_of("chiral-liquid-clean");
         for name in ARRAYS {
             let double: Array2<f64> = read(&data.file(name));
             let mut array = Array2::<f32>::zeros(double.raw_dim().set_f(fortran));
@@ -63,7 +63,7 @@ fn single_precision_is_widened_in_either_order() {
 
 #[test]
 fn big_endian_numbers_are_read() {
-    let data = Folder::copy_of("chiral-liquid");
+    let data = Folder::copy_of("chiral-liquid-clean");
     for name in ARRAYS {
         let array: Array2<f64> = read(&data.file(name));
         let body: Vec<u8> = array.iter().flat_map(|value| value.to_be_bytes()).collect();
@@ -74,7 +74,7 @@ fn big_endian_numbers_are_read() {
 
 #[test]
 fn one_frame_with_an_axis_of_frames_is_one_frame_without() {
-    let data = Folder::copy_of("chiral-liquid");
+    let data = Folder::copy_of("chiral-liquid-clean");
     for name in ARRAYS {
         let array: Array2<f64> = read(&data.file(name));
         data.write_array(name, &array.insert_axis(ndarray::Axis(0)));
@@ -84,7 +84,7 @@ fn one_frame_with_an_axis_of_frames_is_one_frame_without() {
 
 #[test]
 fn files_given_one_by_one_are_the_folder() {
-    let data = Folder::copy_of("chiral-liquid");
+    let data = Folder::copy_of("chiral-liquid-clean");
     let out = [Folder::new(), Folder::new()];
     succeed("evaluate --quiet", &[("", data.path()), ("--out", out[0].path())]);
     data.remove("dataset.toml");

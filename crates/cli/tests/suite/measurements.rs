@@ -88,6 +88,7 @@ fn what_cannot_be_said_of_a_measurement_is_refused() {
 
 /// A cell that no frame shows, and one that is lost on the way, are put back into their tracks.
 #[test]
+#[ignore = "slow"]
 fn cells_that_tracks_lack_are_found() {
     let data = Folder::copy_of("open-field");
     let mut positions: Array3<f64> = read(&data.file("positions.npy"));

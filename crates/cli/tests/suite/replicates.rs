@@ -144,6 +144,7 @@ fn assert_cut_off_and_resumed_is_the_same(
 
 #[cfg(unix)]
 #[test]
+#[ignore = "slow"]
 fn a_search_that_was_cut_off_goes_on_to_the_same_bytes() {
     let others = [
         ("--seed 4", "\"--seed\""),

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import signal
 import subprocess
 import sys
@@ -27,8 +28,8 @@ _COMMANDS = {
 _HELP = {tuple(words): help for words, help, _ in _options()}
 
 
-def _words(words: tuple[str, ...], options: Mapping, inputs: Path) -> list[str]:
-    """The command line of these options; arrays are written to the folder of inputs."""
+def _words(words: tuple[str, ...], options: Mapping, folder: Path) -> list[str]:
+    """The command line of these options; arrays are written to the folder."""
     known = {name.replace("-", "_"): name for name in _COMMANDS[words]}
     line: list[str] = []
     for keyword, value in options.items():
@@ -45,7 +46,7 @@ def _words(words: tuple[str, ...], options: Mapping, inputs: Path) -> list[str]:
                 raise Error(f"{keyword} is either True or False", None)
             line.append(flag)
         elif isinstance(value, np.ndarray) and values == ["FILE"]:
-            path = inputs / f"{keyword}.npy"
+            path = folder / f"{keyword}.npy"
             np.save(path, value)
             line += [flag, str(path)]
         elif isinstance(value, Mapping):
@@ -150,15 +151,17 @@ def run(*command: str, inputs=(), out=None, quiet: bool = False, **options) -> R
     if command not in _COMMANDS:
         raise Error(f"there is no command {' '.join(command)!r}", f"commands: {', '.join(map(' '.join, _COMMANDS))}")
     inputs = [inputs] if isinstance(inputs, (str, os.PathLike)) else list(inputs)
-    written = temporary_folder()
+    folder = Path(out) if out is not None else temporary_folder()
+    arrays = temporary_folder()
     try:
-        folder = Path(out) if out is not None else temporary_folder()
-        line = [*command, *map(os.fspath, inputs), "--out", str(folder), *_words(command, options, written)]
+        line = [*command, *map(os.fspath, inputs), "--out", str(folder), *_words(command, options, arrays)]
         done = _call(line, quiet, capture=False)
+    except BaseException:
+        if out is None:
+            shutil.rmtree(folder, ignore_errors=True)
+        raise
     finally:
-        import shutil
-
-        shutil.rmtree(written, ignore_errors=True)
+        shutil.rmtree(arrays, ignore_errors=True)
     return Report(folder, done.returncode, temporary=out is None)
 
 

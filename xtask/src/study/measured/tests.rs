@@ -37,6 +37,7 @@ fn fit(class: &Class, seed: u64, cells: Option<usize>) -> Fit {
 }
 
 #[test]
+#[ignore = "slow"]
 fn small_sets_of_every_class() {
     CLASSES.par_iter().for_each(|class| {
         let fit = fit(class, SEED, Some(CELLS));

@@ -13,7 +13,7 @@ pub(crate) use scaling::ScalingArguments;
 
 use crate::arguments::{CommonArguments, Shard};
 use crate::failure::Failure;
-use crate::output::NO_INPUTS;
+use crate::output::{NO_INPUTS, read_if_there};
 use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
@@ -21,8 +21,6 @@ use clap::Args;
 use points::{Header, Points};
 use request::{GridArguments, Request};
 use std::collections::BTreeSet;
-use std::fs;
-use std::io::ErrorKind;
 use std::path::Path;
 use voronudge_io::{Journal, OutputFolder, Recording};
 use work::{Ending, work};
@@ -85,11 +83,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
 /// The runs of a diagram that ended, if it is of the same request.
 fn finished(out: &Path, header: &Header) -> Result<Option<Points>, Failure> {
     let path = out.join(points::FILE);
-    let text = match fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Failure::new(format!("{}: {error}", path.display()))),
-    };
+    let Some(text) = read_if_there(&path)? else { return Ok(None) };
     // One that another version made is made again.
     let found = Points::parse(text.lines(), path.display()).ok();
     Ok(found.filter(|found| matches!(found.header.difference(header), Ok(None))))

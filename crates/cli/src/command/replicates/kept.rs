@@ -4,11 +4,10 @@ use super::header::Header;
 use super::lines::{Agreement, FILE, Made, Series, outcome_line};
 use super::{Course, ReplicateArguments};
 use crate::failure::Failure;
+use crate::output::read_if_there;
 use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
-use std::fs;
-use std::io::ErrorKind;
 use std::ops::ControlFlow;
 use std::path::Path;
 use voronudge_infer::{Inference, Keeper, Known};
@@ -249,11 +248,7 @@ fn interrupted(out: &Path, header: &Header, resume: bool) -> Result<Option<Made>
 /// The fits of a part that ended, if it is of the same request.
 fn finished(out: &Path, header: &Header) -> Result<Option<Made>, Failure> {
     let path = out.join(FILE);
-    let text = match fs::read_to_string(&path) {
-        Ok(text) => text,
-        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(None),
-        Err(error) => return Err(Failure::new(format!("{}: {error}", path.display()))),
-    };
+    let Some(text) = read_if_there(&path)? else { return Ok(None) };
     // One that another version made is made again.
     let found = Made::parse(text.lines(), path.display()).ok();
     Ok(found.filter(|own| own.header.shard == header.shard && header.difference(&own.header).is_none()))
