@@ -233,6 +233,7 @@ fn assert_merge_refused(parts: &[&Folder], facts: &[&str]) {
 }
 
 #[test]
+#[ignore = "slow"]
 fn parts_of_a_search_make_the_whole() {
     let data = fixture(SEARCH_DATA);
     let [first, second] = assert_parts_make_the_whole(SEARCH, &data, &SEARCHED);

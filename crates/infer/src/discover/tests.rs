@@ -99,6 +99,7 @@ fn the_score_is_that_of_the_dense_problem() {
 /// Cells that crawl are found to, with the speed that they have; a candidate beside takes nothing of it. Cells that do not are not, and what
 /// has a memory of velocities is not asked of tracks.
 #[test]
+#[ignore = "slow"]
 fn tracks_tell_whether_cells_crawl() {
     let filmed = Filmed { size: [100, 5], step: 0.1, error: 0.01, seed: 5 };
     let mut search =
