@@ -9,7 +9,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voronudge::geometry::{FieldOfView, areas, perimeters, polygons};
 use voronudge::model::{jacobian, stress, velocities};
-use voronudge::{Domain, PeriodicBox, Tessellation, Vector};
+use voronudge::{Domain, Model, PeriodicBox, Tessellation, Vector};
 
 /// Cells at given positions and their Voronoi tessellation.
 #[pyclass(frozen, module = "voronudge")]
@@ -20,6 +20,15 @@ pub(crate) struct Tissue {
 }
 
 type Blocks<'py> = (Bound<'py, PyArray3<f64>>, Bound<'py, PyArray1<u32>>, Bound<'py, PyArray1<u64>>);
+
+impl Tissue {
+    /// What was given, and the model that it is here.
+    fn model(&self, py: Python<'_>, parameters: Option<&Bound<'_, PyDict>>) -> PyResult<(Given, Model<f64>)> {
+        let given = Given::read(py, parameters)?;
+        let model = given.model(py, &self.tessellation, &self.positions, &self.view)?;
+        Ok((given, model))
+    }
+}
 
 #[pymethods]
 impl Tissue {
@@ -138,8 +147,7 @@ impl Tissue {
         parameters: Option<&Bound<'py, PyDict>>,
     ) -> PyResult<(Bound<'py, PyArray2<f64>>, Bound<'py, PyDict>)> {
         let w = field(py, "w", &w, self.positions.len())?;
-        let given = Given::read(py, parameters)?;
-        let model = given.model(py, &self.tessellation, &self.positions, &self.view)?;
+        let (given, model) = self.model(py, parameters)?;
         let (by_position, by_parameter) = py.detach(|| {
             let matrix = jacobian(&self.tessellation, &self.positions, &model);
             let slopes = given.slopes(&self.tessellation, &self.positions, &model, &w);

@@ -5,7 +5,8 @@ use ::csv::Writer;
 
 /// A row for each cell and frame.
 pub(super) fn table(frames: &[CellFrame], y_sign: f64, time: impl Fn(usize) -> f64) -> String {
-    written(frames, |frame, cell| {
+    let cells = frames.iter().flat_map(|frame| (0..frame.cells.len()).map(move |cell| (frame, cell)));
+    lines(cells.map(|(frame, cell)| {
         let place = frame.positions[cell];
         let neighbours: Vec<String> = frame.neighbours[cell].iter().map(usize::to_string).collect();
         let mut row = vec![
@@ -18,7 +19,7 @@ pub(super) fn table(frames: &[CellFrame], y_sign: f64, time: impl Fn(usize) -> f
         row.extend(numbers(frame, cell, y_sign).into_iter().map(|(name, value)| (name, text(value))));
         row.push(("neighbours".to_owned(), neighbours.join(" ")));
         row
-    })
+    }))
 }
 
 /// Rows of a tracks layer of napari: track, frame, y, x and properties; sorted by track.
@@ -41,11 +42,6 @@ pub(super) fn tracks(frames: &[CellFrame], y_sign: f64) -> String {
         row
     });
     lines(rows)
-}
-
-fn written(frames: &[CellFrame], row: impl Fn(&CellFrame, usize) -> Vec<(String, String)>) -> String {
-    let rows = frames.iter().flat_map(|frame| (0..frame.cells.len()).map(move |cell| (frame, cell)));
-    lines(rows.map(|(frame, cell)| row(frame, cell)))
 }
 
 /// A table of rows with the same names.

@@ -33,6 +33,10 @@ class Jacobian:
         side = 2 * (len(self.indptr) - 1)
         return side, side
 
+    def _rows(self) -> np.ndarray:
+        """The cell whose velocity each block is about."""
+        return np.repeat(np.arange(len(self.indptr) - 1), np.diff(self.indptr.astype(np.int64)))
+
     def to_scipy(self):
         """The same as ``scipy.sparse.bsr_array``."""
         from scipy.sparse import bsr_array
@@ -43,15 +47,13 @@ class Jacobian:
         """The dense matrix (2N, 2N), in the order x₀, y₀, x₁, y₁, …"""
         cells = len(self.indptr) - 1
         dense = np.zeros((cells, 2, cells, 2))
-        rows = np.repeat(np.arange(cells), np.diff(self.indptr.astype(np.int64)))
-        dense[rows, :, self.indices, :] = self.data
+        dense[self._rows(), :, self.indices, :] = self.data
         return dense.reshape(self.shape)
 
     def __matmul__(self, displacements) -> np.ndarray:
         """Change of the velocities (N, 2) for displacements (N, 2) of the cells."""
         displacements = np.asarray(displacements, dtype=float)
         cells = len(self.indptr) - 1
-        rows = np.repeat(np.arange(cells), np.diff(self.indptr.astype(np.int64)))
         changes = np.zeros((cells, 2))
-        np.add.at(changes, rows, np.einsum("bij,bj->bi", self.data, displacements[self.indices]))
+        np.add.at(changes, self._rows(), np.einsum("bij,bj->bi", self.data, displacements[self.indices]))
         return changes
