@@ -1,6 +1,6 @@
 //! The plane, its boundaries and the Voronoi tessellation.
 //!
-//! Topology is decided on `f64` by spade; every formula of the geometry is generic over [`Scalar`], so the same code
+//! Topology is decided on `f64` by spade; every formula of the geometry is generic over [`Scalar`], or its [`Arithmetic`], so the same code
 //! gives values on `f64` and exact derivatives on dual numbers, at frozen topology.
 //!
 //! There is no physics here.
@@ -27,6 +27,7 @@
 
 mod agreement;
 mod builder;
+mod by_sides;
 mod centroid;
 mod domain;
 mod error;
@@ -37,6 +38,7 @@ mod grid;
 mod honeycomb;
 mod hull;
 mod interface;
+mod lanes;
 mod linking;
 mod mask;
 mod moving;
@@ -52,6 +54,7 @@ mod tessellation;
 mod transition;
 
 pub use agreement::{Agreement, MeasuredShape, agreement, comparable};
+pub use by_sides::{Batch, BySides};
 pub use centroid::centroid_slopes;
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
@@ -60,6 +63,7 @@ pub use field_of_view::{Certainty, Certificate, FieldOfView, Seen, Visibility};
 pub use grid::{Grid, Patch};
 pub use honeycomb::honeycomb;
 pub use interface::{Interface, outline_interfaces};
+pub use lanes::Lanes;
 pub use linking::{link_nearest, link_overlapping};
 pub use mask::{Mask, MaskedCell};
 pub use moving::{MovingTessellation, Renewal};
@@ -69,7 +73,7 @@ pub use plane::{Corner, Vector, circumcentre, cross, dot, quarter_turn, side_dir
 pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons};
 pub use raster::{Edge, smooth};
 pub use region::Region;
-pub use scalar::{Scalar, lift};
+pub use scalar::{Arithmetic, Scalar, lift};
 pub use side::Side;
 pub use tessellation::{Tessellation, Triangle};
 pub use transition::Transition;

@@ -1,25 +1,25 @@
 //! Vectors of the plane and the circumcentre.
 
-use crate::Scalar;
+use crate::Arithmetic;
 
 /// A vector or a point of the plane, y axis up.
 pub type Vector<S> = nalgebra::Vector2<S>;
 
 /// `a × b = a_x b_y − a_y b_x`, positive if `b` is counter-clockwise of `a`.
-#[inline]
-pub fn cross<S: Scalar>(a: Vector<S>, b: Vector<S>) -> S {
+#[inline(always)]
+pub fn cross<S: Arithmetic>(a: Vector<S>, b: Vector<S>) -> S {
     a.x * b.y - a.y * b.x
 }
 
 /// `a · b`.
-#[inline]
-pub fn dot<S: Scalar>(a: Vector<S>, b: Vector<S>) -> S {
+#[inline(always)]
+pub fn dot<S: Arithmetic>(a: Vector<S>, b: Vector<S>) -> S {
     a.x * b.x + a.y * b.y
 }
 
 /// `ẑ × (a_x, a_y) = (−a_y, a_x)`: the counter-clockwise quarter turn.
-#[inline]
-pub fn quarter_turn<S: Scalar>(a: Vector<S>) -> Vector<S> {
+#[inline(always)]
+pub fn quarter_turn<S: Arithmetic>(a: Vector<S>) -> Vector<S> {
     Vector::new(-a.y, a.x)
 }
 
@@ -34,8 +34,8 @@ pub fn quarter_turn<S: Scalar>(a: Vector<S>) -> Vector<S> {
 /// let c = circumcentre(Vector::new(2.0, 0.0), Vector::new(0.0, 4.0));
 /// assert_eq!(c, Vector::new(1.0, 2.0));
 /// ```
-#[inline]
-pub fn circumcentre<S: Scalar>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
+#[inline(always)]
+pub fn circumcentre<S: Arithmetic>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
     Corner::new(a, b).centre
 }
 
@@ -52,12 +52,19 @@ pub struct Corner<S> {
     inverse_cross: S,
 }
 
-impl<S: Scalar> Corner<S> {
+impl<S: Arithmetic> Corner<S> {
+    /// A place to write a corner to.
+    pub(crate) fn nowhere() -> Self {
+        let zero = S::constant(0.0);
+        let at = Vector::new(zero, zero);
+        Self { a: at, b: at, centre: at, inverse_cross: zero }
+    }
+
     /// See [`circumcentre`].
-    #[inline]
+    #[inline(always)]
     pub fn new(a: Vector<S>, b: Vector<S>) -> Self {
         let (a2, b2) = (dot(a, a), dot(b, b));
-        let inverse_cross = cross(a, b).recip();
+        let inverse_cross = cross(a, b).inverse();
         let half = inverse_cross * 0.5;
         let centre = Vector::new((b.y * a2 - a.y * b2) * half, (a.x * b2 - b.x * a2) * half);
         Self { a, b, centre, inverse_cross }
@@ -67,7 +74,7 @@ impl<S: Scalar> Corner<S> {
     ///
     /// Differentiating `a·c = a²/2`, `b·c = b²/2` gives `∂c/∂a = −(ẑ×b)/(a×b) ⊗ (a − c)` and
     /// `∂c/∂b = (ẑ×a)/(a×b) ⊗ (b − c)`. The rest of `f` acts on the cell itself.
-    #[inline]
+    #[inline(always)]
     pub fn transmit(&self, f: Vector<S>) -> [Vector<S>; 2] {
         let (on_a, on_b) = (cross(f, self.b) * self.inverse_cross, cross(self.a, f) * self.inverse_cross);
         [(self.a - self.centre) * on_a, (self.b - self.centre) * on_b]
@@ -78,7 +85,7 @@ impl<S: Scalar> Corner<S> {
 ///
 /// A Voronoi side is perpendicular to the line between the centres. Its direction taken from the centres stays smooth
 /// where the side shrinks to nothing.
-#[inline]
-pub fn side_direction<S: Scalar>(d: Vector<S>) -> Vector<S> {
-    quarter_turn(d) * dot(d, d).sqrt().recip()
+#[inline(always)]
+pub fn side_direction<S: Arithmetic>(d: Vector<S>) -> Vector<S> {
+    quarter_turn(d) * dot(d, d).root().inverse()
 }

@@ -1,6 +1,6 @@
 //! One cell: its ring and its Voronoi polygon.
 
-use crate::{Corner, Scalar, Tessellation, Vector, cross, dot, quarter_turn, side_direction};
+use crate::{Arithmetic, Corner, Scalar, Tessellation, Vector, cross, dot, quarter_turn, side_direction};
 use rayon::prelude::*;
 
 /// The size and shape of a cell, as far as forces usually depend on it.
@@ -25,7 +25,7 @@ pub struct CellPolygon<S> {
     shape: Shape<S>,
 }
 
-impl<S: Scalar> Default for CellPolygon<S> {
+impl<S: Arithmetic> Default for CellPolygon<S> {
     fn default() -> Self {
         let zero = S::constant(0.0);
         Self {
@@ -42,28 +42,53 @@ impl<S: Scalar> CellPolygon<S> {
     pub fn fill(&mut self, tessellation: &Tessellation, positions: &[Vector<S>], cell: usize) {
         self.fill_ring(tessellation.displacements(positions, cell));
     }
+}
 
+impl<S: Arithmetic> CellPolygon<S> {
     /// Takes the positions of the neighbours relative to the cell, counter-clockwise, at least three.
     pub fn fill_ring(&mut self, displacements: impl Iterator<Item = Vector<S>>) {
         self.ring.clear();
         self.ring.extend(displacements);
-        let ring = self.ring.as_slice();
-        self.corners.clear();
-        self.directions.clear();
+        self.complete();
+    }
+
+    /// A ring of so many neighbours, to be written; [`CellPolygon::complete`] makes the polygon of it.
+    #[inline(always)]
+    pub fn ring_of(&mut self, sides: usize) -> &mut [Vector<S>] {
+        if self.ring.len() != sides {
+            let zero = S::constant(0.0);
+            self.ring.resize(sides, Vector::new(zero, zero));
+        }
+        &mut self.ring
+    }
+
+    /// The polygon of the ring.
+    #[inline(always)]
+    pub fn complete(&mut self) {
+        let sides = self.ring.len();
         let zero = S::constant(0.0);
         self.shape = Shape { area: zero, perimeter: zero };
-        let (Some(&first), Some(&last)) = (ring.first(), ring.last()) else {
+        if self.corners.len() != sides {
+            let nowhere = Vector::new(zero, zero);
+            self.corners.resize(sides, Corner::nowhere());
+            self.directions.resize(sides, nowhere);
+        }
+        // Slices of one length, and loops over indices: what is called must be compiled into the caller, for its processor.
+        let ring = &self.ring[..sides];
+        let (corners, directions) = (&mut self.corners[..sides], &mut self.directions[..sides]);
+        let Some(last) = sides.checked_sub(1) else {
             return;
         };
-        self.corners.extend(ring.windows(2).map(|pair| Corner::new(pair[0], pair[1])));
-        self.corners.push(Corner::new(last, first));
-        self.directions.extend(ring.iter().map(|&d| side_direction(d)));
+        for m in 0..sides {
+            corners[m] = Corner::new(ring[m], ring[if m == last { 0 } else { m + 1 }]);
+            directions[m] = side_direction(ring[m]);
+        }
         let (mut perimeter, mut twice_area) = (zero, zero);
-        let mut previous = self.corners[ring.len() - 1].centre;
-        for (corner, &direction) in self.corners.iter().zip(&self.directions) {
-            let c = corner.centre;
+        let mut previous = corners[last].centre;
+        for m in 0..sides {
+            let c = corners[m].centre;
             twice_area += cross(previous, c);
-            perimeter += dot(c - previous, direction);
+            perimeter += dot(c - previous, directions[m]);
             previous = c;
         }
         self.shape = Shape { area: twice_area * 0.5, perimeter };
@@ -80,7 +105,7 @@ impl<S: Scalar> CellPolygon<S> {
     }
 
     /// Area and perimeter.
-    #[inline]
+    #[inline(always)]
     pub fn shape(&self) -> Shape<S> {
         self.shape
     }
@@ -91,7 +116,7 @@ impl<S: Scalar> CellPolygon<S> {
     }
 
     /// The triangles of the cell with each two consecutive neighbours; their circumcentres are the Voronoi vertices.
-    #[inline]
+    #[inline(always)]
     pub fn corners(&self) -> &[Corner<S>] {
         &self.corners
     }
@@ -109,25 +134,25 @@ impl<S: Scalar> CellPolygon<S> {
             .map(|((corner, previous), &direction)| dot(corner.centre - previous.centre, direction))
     }
 
-    #[inline]
+    #[inline(always)]
     fn following(&self, m: usize) -> usize {
         if m + 1 == self.len() { 0 } else { m + 1 }
     }
 
-    #[inline]
+    #[inline(always)]
     fn preceding(&self, m: usize) -> usize {
         if m == 0 { self.len() - 1 } else { m - 1 }
     }
 
     /// Gradient of the area with respect to vertex `m`: `½ ẑ × (c_{m−1} − c_{m+1})`.
-    #[inline]
+    #[inline(always)]
     pub fn area_gradient(&self, m: usize) -> Vector<S> {
         let (previous, next) = (self.corners[self.preceding(m)], self.corners[self.following(m)]);
         quarter_turn(previous.centre - next.centre) * S::constant(0.5)
     }
 
     /// Gradient of the perimeter with respect to vertex `m`: `t_m − t_{m+1}` with unit vectors `t` along the sides.
-    #[inline]
+    #[inline(always)]
     pub fn perimeter_gradient(&self, m: usize) -> Vector<S> {
         self.directions[m] - self.directions[self.following(m)]
     }

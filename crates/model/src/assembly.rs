@@ -3,16 +3,17 @@
 //! Each element writes the forces on its ring into its own half-edges; each cell then gathers what its neighbours wrote
 //! about it, in the order of its ring. No two threads write to one place and no sum depends on their number.
 
+use crate::element_lanes::{elements_in_lanes, fit_lanes};
 use crate::response::respond;
 use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Domain, Scalar, Tessellation, Vector};
+use voronudge_geometry::{BySides, CellPolygon, Domain, Scalar, Tessellation, Vector};
 
 /// Cells per task.
-pub(crate) const CHUNK: usize = 1024;
+pub(crate) const CHUNK: usize = BySides::MOST_CELLS;
 
 /// Cuts an array of per-cell stretches into tasks of [`CHUNK`] cells; `start` gives the first entry of a cell.
 pub(crate) fn split_by_cells<T>(
@@ -140,7 +141,7 @@ impl<S: Scalar> HalfEdgeForces<S> {
     }
 }
 
-/// The elements of some cells under some models: for each cell the forces on its ring, one model after another, and those on the cell itself.
+/// The elements of some cells, a chunk at most, under some models: for each cell the forces on its ring, one model after another, and those on the cell itself.
 fn elements<S: Scalar>(
     tessellation: &Tessellation,
     positions: &[Vector<S>],
@@ -149,24 +150,39 @@ fn elements<S: Scalar>(
     forces: &mut [Vector<S>],
     on_cells: &mut [Vector<S>],
 ) {
+    if fit_lanes(models) {
+        return elements_in_lanes(tessellation, positions, models, cells, forces, on_cells);
+    }
     let mut polygon = CellPolygon::default();
-    let domain = tessellation.domain();
     let mut rest = forces;
     for (cell, on_cell) in cells.zip(on_cells.chunks_exact_mut(models.len())) {
-        let neighbours = tessellation.neighbours(cell);
-        let (own, after) = rest.split_at_mut(models.len() * neighbours.len());
+        let (own, after) = rest.split_at_mut(models.len() * tessellation.ring(cell).len());
         rest = after;
-        if tessellation.is_closed(cell) {
-            polygon.fill(tessellation, positions, cell);
-            let of_models = on_cell.iter_mut().zip(own.chunks_exact_mut(neighbours.len()));
-            for (model, (on_cell, on_ring)) in models.iter().zip(of_models) {
-                *on_cell = element(model, cell, neighbours, positions[cell], domain, &polygon, on_ring);
-            }
-        } else {
-            let nan = S::constant(f64::NAN);
-            on_cell.fill(Vector::new(nan, nan));
-            own.fill(Vector::new(nan, nan));
-        }
+        elements_of(cell, tessellation, positions, models, &mut polygon, own, on_cell);
+    }
+}
+
+/// The elements of one cell under some models.
+pub(crate) fn elements_of<S: Scalar>(
+    cell: usize,
+    tessellation: &Tessellation,
+    positions: &[Vector<S>],
+    models: &[Model<S>],
+    polygon: &mut CellPolygon<S>,
+    forces: &mut [Vector<S>],
+    on_cell: &mut [Vector<S>],
+) {
+    if !tessellation.is_closed(cell) {
+        let nan = S::constant(f64::NAN);
+        on_cell.fill(Vector::new(nan, nan));
+        forces.fill(Vector::new(nan, nan));
+        return;
+    }
+    let (neighbours, domain) = (tessellation.neighbours(cell), tessellation.domain());
+    polygon.fill(tessellation, positions, cell);
+    let of_models = on_cell.iter_mut().zip(forces.chunks_exact_mut(neighbours.len()));
+    for (model, (on_cell, on_ring)) in models.iter().zip(of_models) {
+        *on_cell = element(model, cell, neighbours, positions[cell], domain, polygon, on_ring);
     }
 }
 

@@ -1,7 +1,7 @@
 //! One cell's element: forces on its vertices, handed on to the centres of its neighbours.
 
 use crate::{Model, WeightedTerm};
-use voronudge_geometry::{CellPolygon, Scalar, Shape, Vector, quarter_turn};
+use voronudge_geometry::{Arithmetic, CellPolygon, Scalar, Shape, Vector, quarter_turn};
 
 /// The forces that a cell exerts on its vertices, as multiples of the gradients of its area and perimeter.
 #[derive(Debug, Clone, Copy)]
@@ -14,9 +14,9 @@ pub struct VertexForces<S> {
     pub turned_perimeter: S,
 }
 
-impl<S: Scalar> VertexForces<S> {
+impl<S: Arithmetic> VertexForces<S> {
     /// The sum over terms for a cell of the given shape.
-    #[inline]
+    #[inline(always)]
     pub fn of(terms: &[WeightedTerm<S>], shape: Shape<S>) -> Self {
         let zero = S::constant(0.0);
         let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
@@ -26,43 +26,26 @@ impl<S: Scalar> VertexForces<S> {
         forces
     }
 
-    /// The same for one cell of a model, with the parameters that are its own.
-    #[inline]
-    pub fn of_cell(model: &Model<S>, cell: usize, shape: Shape<S>) -> Self {
-        match model.environment.cells_differ() {
-            false => Self::of(&model.terms, shape),
-            true => {
-                let zero = S::constant(0.0);
-                let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
-                for weighted in &model.terms {
-                    let own = model.environment.cell_factors().term(weighted, cell);
-                    own.term.act_on_shape(shape, own.coefficient, &mut forces);
-                }
-                forces
-            }
-        }
-    }
-
     /// Adds `factor · ∂A/∂r_v` to every vertex.
-    #[inline]
+    #[inline(always)]
     pub fn along_area_gradient(&mut self, factor: S) {
         self.area += factor;
     }
 
     /// Adds `factor · ∂P/∂r_v` to every vertex.
-    #[inline]
+    #[inline(always)]
     pub fn along_perimeter_gradient(&mut self, factor: S) {
         self.perimeter += factor;
     }
 
     /// Adds `factor · ẑ × ∂P/∂r_v` to every vertex.
-    #[inline]
+    #[inline(always)]
     pub fn along_turned_perimeter_gradient(&mut self, factor: S) {
         self.turned_perimeter += factor;
     }
 
     /// The force on a vertex with the given gradients of the cell's area and perimeter.
-    #[inline]
+    #[inline(always)]
     pub fn on_vertex(&self, area_gradient: Vector<S>, perimeter_gradient: Vector<S>) -> Vector<S> {
         let turned = quarter_turn(perimeter_gradient);
         Vector::new(
@@ -77,14 +60,16 @@ impl<S: Scalar> VertexForces<S> {
 
     /// Writes the force on each neighbour of the cell, one for each side, and returns the force on the cell itself:
     /// minus their sum.
-    #[inline]
+    #[inline(always)]
     pub fn on_ring(&self, polygon: &CellPolygon<S>, ring_forces: &mut [Vector<S>]) -> Vector<S> {
         let zero = S::constant(0.0);
         let (mut carried, mut on_cell) = (Vector::new(zero, zero), Vector::new(zero, zero));
-        for (m, (corner, on_neighbour)) in polygon.corners().iter().zip(ring_forces.iter_mut()).enumerate() {
+        let corners = polygon.corners();
+        let ring_forces = &mut ring_forces[..corners.len()];
+        for m in 0..corners.len() {
             let force = self.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
-            let [on_this, on_next] = corner.transmit(force);
-            *on_neighbour = carried + on_this;
+            let [on_this, on_next] = corners[m].transmit(force);
+            ring_forces[m] = carried + on_this;
             carried = on_next;
             on_cell -= on_this + on_next;
         }
@@ -92,5 +77,24 @@ impl<S: Scalar> VertexForces<S> {
             *first += carried;
         }
         on_cell
+    }
+}
+
+impl<S: Scalar> VertexForces<S> {
+    /// The sum over terms for one cell of a model, with the parameters that are its own.
+    #[inline(always)]
+    pub fn of_cell(model: &Model<S>, cell: usize, shape: Shape<S>) -> Self {
+        match model.environment.cells_differ() {
+            false => Self::of(&model.terms, shape),
+            true => {
+                let zero = S::constant(0.0);
+                let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
+                for weighted in &model.terms {
+                    let own = model.environment.cell_factors().term(weighted, cell);
+                    own.term.act_on_shape(shape, own.coefficient, &mut forces);
+                }
+                forces
+            }
+        }
     }
 }

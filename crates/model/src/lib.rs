@@ -33,6 +33,7 @@ mod cell_parameters;
 pub mod effect;
 mod element;
 mod element_jacobian;
+mod element_lanes;
 mod environment;
 pub mod gradient_check;
 mod jacobian;

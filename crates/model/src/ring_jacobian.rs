@@ -8,7 +8,7 @@ use crate::assembly::ring_terms;
 use crate::element_jacobian::Block;
 use crate::{CellElement, Model, RingForces};
 use num_dual::DualSVec64;
-use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
+use voronudge_geometry::{Arithmetic, CellPolygon, Tessellation, Vector};
 
 /// Points of the plane by which forces are differentiated at once.
 const POINTS: usize = 4;

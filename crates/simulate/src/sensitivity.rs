@@ -5,7 +5,7 @@ use crate::{Direction, Error, Schedule, Simulation};
 use num_dual::DualSVec64;
 use rayon::prelude::*;
 use std::ops::ControlFlow;
-use voronudge_geometry::{Scalar, Vector};
+use voronudge_geometry::{Arithmetic, Vector};
 use voronudge_model::stress;
 
 /// How far the runs to either side are, as what this alone would move cells by over the whole time, in mean spacings.

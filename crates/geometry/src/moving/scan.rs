@@ -3,7 +3,8 @@
 use super::diagonal::Site;
 use super::split::CHUNK;
 use crate::builder::MOST_BOXES;
-use crate::{Domain, Tessellation, Vector, cross};
+use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector, cross, dot};
+use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
 
 /// Bounds of the rounding errors of a cross product and of the in-circle determinant, in units of
@@ -57,62 +58,184 @@ pub(super) fn scan(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Fi
     findings.map_or(Finding::Inverted, |lists| Finding::Suspects(lists.concat()))
 }
 
-/// A neighbour relative to the cell, and the square of its distance.
-type Lifted = (Vector<f64>, f64);
-
 fn scan_cells(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
     size: f64,
     cells: std::ops::Range<usize>,
 ) -> Option<Vec<Edge>> {
+    let by_sides = BySides::new(tessellation, cells);
+    let mut doubtful: Vec<usize> = by_sides.others().collect();
+    Arch::new().dispatch(Proof { by_sides: &by_sides, positions, size, doubtful: &mut doubtful });
+    doubtful.sort_unstable();
     let mut suspects = Vec::new();
-    let mut ring: Vec<Lifted> = Vec::with_capacity(16);
-    for cell in cells {
-        ring.clear();
-        ring.extend(tessellation.displacements(positions, cell).map(|d| (d, d.x * d.x + d.y * d.y)));
-        let sides = ring.len();
-        if sides < 3 {
-            return None;
-        }
-        let (farthest, total) =
-            ring.iter().fold((0.0f64, 0.0), |(most, sum), (_, square)| (most.max(*square), sum + square));
-        ring.extend_from_within(..2);
-        let (mut least_cross, mut least) = (f64::INFINITY, f64::INFINITY);
-        let mut first = cross(ring[0].0, ring[1].0);
-        for corner in ring.windows(3) {
-            let second = cross(corner[1].0, corner[2].0);
-            least_cross = least_cross.min(second);
-            least = least.min(determinant(corner[0], corner[1], corner[2], first, second));
-            first = second;
-        }
-        let length = farthest.sqrt();
-        // Extrema pass over NaN, sums do not.
-        if !(least_cross > CROSS_MARGIN * size * length && total < f64::INFINITY) {
-            return None;
-        }
-        let margin = DETERMINANT_MARGIN * size * length * farthest;
-        if least > margin {
-            continue;
-        }
-        for (m, corner) in ring.windows(3).enumerate() {
-            let (first, second) = (cross(corner[0].0, corner[1].0), cross(corner[1].0, corner[2].0));
-            if determinant(corner[0], corner[1], corner[2], first, second) <= margin {
-                let h = tessellation.half_edge_start(cell) + (m + 1) % sides;
-                let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);
-                // Each edge from one end only.
-                if (other, image) > (cell as u32, [0, 0]) {
-                    suspects.push(Edge { from: cell as u32, to: (other, image) });
-                }
-            }
-        }
+    for cell in doubtful {
+        scan_cell(tessellation, positions, size, cell, &mut suspects)?;
     }
     Some(suspects)
 }
 
+/// Proves cells, and leaves the others to [`scan_cell`].
+struct Proof<'a> {
+    by_sides: &'a BySides<'a>,
+    positions: &'a [Vector<f64>],
+    size: f64,
+    doubtful: &'a mut Vec<usize>,
+}
+
+impl WithSimd for Proof<'_> {
+    type Output = ();
+
+    #[inline(always)]
+    fn with_simd<A: Simd>(self, _: A) {
+        let zero = Lanes::constant(0.0);
+        let mut ring = [Vector::new(zero, zero); BySides::MOST_SIDES];
+        for sides in 3..=BySides::MOST_SIDES {
+            for batch in self.by_sides.batches(sides) {
+                batch.fill_ring(self.positions, &mut ring[..sides]);
+                let proven = Extremes::of(&ring[..sides]).prove(self.size);
+                for (lane, cell) in batch.cells().enumerate() {
+                    if !proven[lane] {
+                        self.doubtful.push(cell);
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// What proves a ring: the smallest cross product of consecutive neighbours, the smallest in-circle determinant and the largest square of a
+/// distance. Extrema pass over NaN, the sum of the squares does not.
+#[derive(Clone, Copy)]
+struct Extremes<S> {
+    cross: S,
+    determinant: S,
+    farthest: S,
+    total: S,
+}
+
+impl<S: Ordered> Extremes<S> {
+    #[inline(always)]
+    fn of(ring: &[Vector<S>]) -> Self {
+        let lifted = |m: usize| (ring[m], dot(ring[m], ring[m]));
+        let (far, zero) = (S::constant(f64::INFINITY), S::constant(0.0));
+        let mut extremes = Self { cross: far, determinant: far, farthest: zero, total: zero };
+        let (mut before, mut here) = (lifted(ring.len() - 1), lifted(0));
+        let mut first = cross(before.0, here.0);
+        for m in 0..ring.len() {
+            let after = lifted(if m + 1 == ring.len() { 0 } else { m + 1 });
+            let second = cross(here.0, after.0);
+            extremes.cross = second.least(extremes.cross);
+            extremes.determinant =
+                determinant(before, here, after, first, second).least(extremes.determinant);
+            extremes.farthest = here.1.most(extremes.farthest);
+            extremes.total += here.1;
+            (before, here, first) = (here, after, second);
+        }
+        extremes
+    }
+}
+
+impl Extremes<Lanes> {
+    #[inline(always)]
+    fn prove(&self, size: f64) -> [bool; Lanes::WIDTH] {
+        std::array::from_fn(|lane| {
+            let of = |lanes: Lanes| lanes.0[lane];
+            let [cross, determinant, farthest, total] =
+                [self.cross, self.determinant, self.farthest, self.total].map(of);
+            Extremes { cross, determinant, farthest, total }.is_proven(size)
+        })
+    }
+}
+
+impl Extremes<f64> {
+    fn is_turned(&self, size: f64) -> bool {
+        !(self.cross > CROSS_MARGIN * size * self.farthest.sqrt() && self.total < f64::INFINITY)
+    }
+
+    fn margin(&self, size: f64) -> f64 {
+        DETERMINANT_MARGIN * size * self.farthest.sqrt() * self.farthest
+    }
+
+    #[inline(always)]
+    fn is_proven(&self, size: f64) -> bool {
+        !self.is_turned(size) && self.determinant > self.margin(size)
+    }
+}
+
+/// Finds the suspects among the edges of one cell.
+fn scan_cell(
+    tessellation: &Tessellation,
+    positions: &[Vector<f64>],
+    size: f64,
+    cell: usize,
+    suspects: &mut Vec<Edge>,
+) -> Option<()> {
+    let ring: Vec<Vector<f64>> = tessellation.displacements(positions, cell).collect();
+    if ring.len() < 3 {
+        return None;
+    }
+    let extremes = Extremes::of(&ring);
+    if extremes.is_turned(size) {
+        return None;
+    }
+    let lifted = |m: usize| (ring[m % ring.len()], dot(ring[m % ring.len()], ring[m % ring.len()]));
+    for (m, h) in tessellation.ring(cell).enumerate() {
+        let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(lifted);
+        let (first, second) = (cross(before.0, here.0), cross(here.0, after.0));
+        if determinant(before, here, after, first, second) <= extremes.margin(size) {
+            let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);
+            // Each edge from one end only.
+            if (other, image) > (cell as u32, [0, 0]) {
+                suspects.push(Edge { from: cell as u32, to: (other, image) });
+            }
+        }
+    }
+    Some(())
+}
+
+/// A neighbour relative to the cell, and the square of its distance.
+type Lifted<S> = (Vector<S>, S);
+
 /// `a² (b × c) − b² (a × c) + c² (a × b)`, given the cross products of the two triangles (0, a, b) and (0, b, c): positive if
 /// the edge between them, from the cell at 0 to b, is a Delaunay edge. c then lies outside the circle through 0, a and b.
-#[inline]
-fn determinant((a, a2): Lifted, (_, b2): Lifted, (c, c2): Lifted, a_cross_b: f64, b_cross_c: f64) -> f64 {
+#[inline(always)]
+fn determinant<S: Arithmetic>(
+    (a, a2): Lifted<S>,
+    (_, b2): Lifted<S>,
+    (c, c2): Lifted<S>,
+    a_cross_b: S,
+    b_cross_c: S,
+) -> S {
     a2 * b_cross_c - b2 * cross(a, c) + c2 * a_cross_b
+}
+
+/// Numbers with a smaller and a larger one of two; that of a NaN and a number is the number if the NaN comes first.
+trait Ordered: Arithmetic {
+    fn least(self, other: Self) -> Self;
+    fn most(self, other: Self) -> Self;
+}
+
+impl Ordered for f64 {
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        if self < other { self } else { other }
+    }
+
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        if self > other { self } else { other }
+    }
+}
+
+impl Ordered for Lanes {
+    #[inline(always)]
+    fn least(self, other: Self) -> Self {
+        self.with(other, f64::least)
+    }
+
+    #[inline(always)]
+    fn most(self, other: Self) -> Self {
+        self.with(other, f64::most)
+    }
 }

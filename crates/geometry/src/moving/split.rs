@@ -1,7 +1,7 @@
 //! Arrays over cells and half-edges, cut into tasks.
 
 /// Cells per task.
-pub(super) const CHUNK: usize = 1024;
+pub(super) const CHUNK: usize = crate::BySides::MOST_CELLS;
 
 /// Cuts an array over half-edges into the stretches of [`CHUNK`] cells each.
 pub(super) fn by_cells<'a, T>(array: &'a mut [T], start: &[u32]) -> Vec<&'a mut [T]> {

@@ -2,7 +2,7 @@
 
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{ForceTerm, Parity, ShapeTerm, VertexForces};
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Shape};
 
 /// The adhesion turned by a quarter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -23,8 +23,8 @@ impl ForceTerm for AlphaAdhesion {
 }
 
 impl ShapeTerm for AlphaAdhesion {
-    #[inline]
-    fn act<S: Scalar>(&self, _shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, _shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_turned_perimeter_gradient(-coefficient);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::{Column, Effect, Kind, Unit};
 use crate::{ForceTerm, Parity, ShapeTerm, VertexForces};
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Shape};
 
 /// Cortical chirality of a strength that grows with the area of the cell beyond the mean.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -32,8 +32,8 @@ impl ForceTerm for AlphaArea {
 }
 
 impl ShapeTerm for AlphaArea {
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         let excess = shape.area - self.mean_area;
         forces.along_turned_perimeter_gradient(excess * shape.perimeter * coefficient);
     }

@@ -2,7 +2,7 @@
 
 use super::{Column, Effect, Kind, Unit};
 use crate::{ForceTerm, Parity, ShapeTerm, VertexForces};
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Scalar, Shape};
 
 /// The energy `⅓ (A − Ā)³`.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,8 +37,8 @@ impl ForceTerm for NonlinearArea {
 }
 
 impl ShapeTerm for NonlinearArea {
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         let excess = shape.area - self.mean_area;
         forces.along_area_gradient(-excess * excess * coefficient);
     }

@@ -2,7 +2,7 @@
 
 use super::{Column, Effect, Kind, Unit};
 use crate::{ForceTerm, Parity, ShapeTerm, VertexForces};
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Scalar, Shape};
 
 /// The energy `⅓ (P − P̄)³`. `P̄` is the perimeter of a regular hexagon; another choice only shifts adhesion and contractility.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -37,8 +37,8 @@ impl ForceTerm for NonlinearContractility {
 }
 
 impl ShapeTerm for NonlinearContractility {
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         let excess = shape.perimeter - self.mean_perimeter;
         forces.along_perimeter_gradient(-excess * excess * coefficient);
     }

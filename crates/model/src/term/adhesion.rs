@@ -1,6 +1,6 @@
 use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Scalar, Shape};
 
 /// Adhesion, coefficient `K_P P_0`: `E_B = −P`, so a vertex feels `+∂P/∂r_v`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,8 +25,8 @@ impl ForceTerm for Adhesion {
 }
 
 impl ShapeTerm for Adhesion {
-    #[inline]
-    fn act<S: Scalar>(&self, _shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, _shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_perimeter_gradient(coefficient);
     }
 }

@@ -1,6 +1,6 @@
 use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Scalar, Shape};
 
 /// Area elasticity, coefficient `K_A`: `E_A = ½ (A − A_0)²`, so a vertex feels `−(A − A_0) ∂A/∂r_v`.
 ///
@@ -37,8 +37,8 @@ impl ForceTerm for AreaElasticity {
 }
 
 impl ShapeTerm for AreaElasticity {
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_area_gradient((-shape.area + self.preferred_area) * coefficient);
     }
 }

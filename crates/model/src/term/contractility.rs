@@ -1,6 +1,6 @@
 use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Scalar, Shape};
 
 /// Contractility of the cortex, coefficient `K_P`: `E_C = ½ P²`, so a vertex feels `−P ∂P/∂r_v`.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -26,8 +26,8 @@ impl ForceTerm for Contractility {
 }
 
 impl ShapeTerm for Contractility {
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_perimeter_gradient(-shape.perimeter * coefficient);
     }
 }

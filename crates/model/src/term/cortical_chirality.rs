@@ -1,6 +1,6 @@
 use super::{ForceTerm, Parity, ShapeTerm};
 use crate::VertexForces;
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Shape};
 
 /// Cortical chirality, coefficient `K_P α`: the contraction turned by a quarter, `ẑ × ∂E_C/∂r_v = P ẑ × ∂P/∂r_v`.
 ///
@@ -23,8 +23,8 @@ impl ForceTerm for CorticalChirality {
 }
 
 impl ShapeTerm for CorticalChirality {
-    #[inline]
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
+    #[inline(always)]
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>) {
         forces.along_turned_perimeter_gradient(shape.perimeter * coefficient);
     }
 }

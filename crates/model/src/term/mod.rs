@@ -17,7 +17,7 @@ pub use cortical_chirality::CorticalChirality;
 
 use crate::effect::*;
 use crate::{CellElement, RingForces, VertexForces};
-use voronudge_geometry::{Scalar, Shape};
+use voronudge_geometry::{Arithmetic, Scalar, Shape};
 
 /// What a reflection does to the velocities of a term.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -58,7 +58,7 @@ pub trait ForceTerm {
 /// A term whose forces are multiples of the gradients of a cell's area and perimeter, by the cell's area and perimeter.
 pub trait ShapeTerm: ForceTerm {
     /// Adds `coefficient` times the forces that one cell exerts on its own vertices.
-    fn act<S: Scalar>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>);
+    fn act<S: Arithmetic>(&self, shape: Shape<S>, coefficient: S, forces: &mut VertexForces<S>);
 }
 
 /// A term with any forces of one cell on its vertices, its neighbours and itself, which may depend on the polygon, the
@@ -97,8 +97,8 @@ macro_rules! terms {
             }
 
             /// What a [`ShapeTerm`] does; a [`RingTerm`] adds nothing here.
-            #[inline]
-            pub(crate) fn act_on_shape<S: Scalar>(
+            #[inline(always)]
+            pub(crate) fn act_on_shape<S: Arithmetic>(
                 &self,
                 shape: Shape<S>,
                 coefficient: S,

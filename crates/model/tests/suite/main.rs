@@ -4,6 +4,7 @@ mod effects;
 mod gradients;
 mod honeycomb;
 mod jacobian;
+mod lanes;
 mod physics;
 mod samples;
 mod threads;

@@ -3,7 +3,7 @@
 use super::{Simulation, State};
 use crate::Error;
 use num_dual::DualSVec64;
-use voronudge_geometry::{Scalar, Vector};
+use voronudge_geometry::{Arithmetic, Vector};
 use voronudge_model::{Model, PARAMETER_NAMES, Parameters, WeightedResponse, WeightedTerm};
 
 /// What a run is differentiated by: a direction among the coefficients of its model and the positions that it starts from.

@@ -1,0 +1,110 @@
+//! Several numbers at once.
+//!
+//! Processors work on two, four or eight numbers with one instruction. A formula that has no branches does so for as many cells if it is
+//! given [`Lanes`] for numbers. Each lane is computed as a number of its own would be, operation by operation and without fusing any two, so the results are the
+//! same to the last bit on every processor.
+
+use crate::Arithmetic;
+use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// Numbers of several cells, one to a lane.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[repr(align(32))]
+pub struct Lanes(pub [f64; Lanes::WIDTH]);
+
+impl Lanes {
+    /// How many there are.
+    pub const WIDTH: usize = 4;
+
+    #[inline(always)]
+    fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
+        for lane in &mut self.0 {
+            *lane = f(*lane);
+        }
+        self
+    }
+
+    #[inline(always)]
+    pub(crate) fn with(mut self, other: Self, f: impl Fn(f64, f64) -> f64) -> Self {
+        for (lane, other) in self.0.iter_mut().zip(other.0) {
+            *lane = f(*lane, other);
+        }
+        self
+    }
+}
+
+impl Arithmetic for Lanes {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self([value; Self::WIDTH])
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        self.map(f64::recip)
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        self.map(f64::sqrt)
+    }
+}
+
+impl Neg for Lanes {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.map(|x| -x)
+    }
+}
+
+macro_rules! operator {
+    ($operator:ident, $method:ident, $assign:ident, $assign_method:ident) => {
+        impl $operator for Lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: Self) -> Self {
+                self.with(other, f64::$method)
+            }
+        }
+
+        impl $operator<f64> for Lanes {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.map(|x| x.$method(other))
+            }
+        }
+
+        impl $assign for Lanes {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+    };
+}
+
+operator!(Add, add, AddAssign, add_assign);
+operator!(Sub, sub, SubAssign, sub_assign);
+operator!(Mul, mul, MulAssign, mul_assign);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_lane_is_a_number() {
+        let (a, b) = ([1.0, -0.3, 4e200, 7.5], [0.1, 3.0, -2.0, f64::MIN_POSITIVE]);
+        let formula = |a: f64, b: f64| (-a * b - a + b * 2.0 - 0.5) * (b * b).sqrt().recip() + 1.0;
+        let lanes = {
+            let (a, b) = (Lanes(a), Lanes(b));
+            let mut sum = -a * b - a;
+            sum += b * 2.0;
+            sum -= Lanes::constant(0.5);
+            sum *= (b * b).root().inverse();
+            sum + 1.0
+        };
+        assert_eq!(lanes.0, std::array::from_fn(|lane| formula(a[lane], b[lane])));
+    }
+}
