@@ -1,14 +1,12 @@
 //! Cells that go through the same operations, because they have as many sides.
 
-use crate::{Lanes, Scalar, Tessellation, Vector};
-use std::ops::Range;
+use crate::{Arithmetic, Lanes, Scalar, Tessellation, Vector};
 
-/// At most [`BySides::MOST_CELLS`] consecutive cells in the order of their numbers of sides, to be worked on in [`Lanes`].
+/// At most [`BySides::MOST_CELLS`] cells in the order of their numbers of sides, to be worked on in [`Lanes`].
 #[derive(Debug)]
 pub struct BySides<'a> {
     tessellation: &'a Tessellation,
-    first: usize,
-    order: [u16; BySides::MOST_CELLS],
+    order: [u32; BySides::MOST_CELLS],
     /// Where the cells of each number of sides begin, the others at zero; and where all end.
     begin: [u16; BySides::MOST_SIDES + 2],
 }
@@ -21,7 +19,7 @@ impl<'a> BySides<'a> {
     pub const MOST_SIDES: usize = 15;
 
     /// Counts the sides of cells.
-    pub fn new(tessellation: &'a Tessellation, cells: Range<usize>) -> Self {
+    pub fn new(tessellation: &'a Tessellation, cells: impl Iterator<Item = usize> + Clone) -> Self {
         let sides = |cell: usize| {
             let sides = tessellation.ring(cell).len();
             if tessellation.is_closed(cell) && (3..=Self::MOST_SIDES).contains(&sides) { sides } else { 0 }
@@ -33,29 +31,29 @@ impl<'a> BySides<'a> {
         for sides in 0..=Self::MOST_SIDES {
             begin[sides + 1] += begin[sides];
         }
-        let (mut next, first) = (begin, cells.start);
-        for (number, cell) in (0..).zip(cells) {
+        let mut next = begin;
+        for cell in cells {
             let next = &mut next[sides(cell)];
-            order[usize::from(*next)] = number;
+            order[usize::from(*next)] = cell as u32;
             *next += 1;
         }
-        Self { tessellation, first, order, begin }
+        Self { tessellation, order, begin }
     }
 
     #[inline(always)]
-    fn with(&self, sides: usize) -> &[u16] {
+    fn with(&self, sides: usize) -> &[u32] {
         &self.order[usize::from(self.begin[sides])..usize::from(self.begin[sides + 1])]
     }
 
     /// The cells that are open or have too many sides, or too few.
     pub fn others(&self) -> impl Iterator<Item = usize> {
-        self.with(0).iter().map(|&number| self.first + usize::from(number))
+        self.with(0).iter().map(|&cell| cell as usize)
     }
 
     /// The cells of a number of sides, as many at once as there are lanes; fewer in the end.
     #[inline(always)]
     pub fn batches(&self, sides: usize) -> impl Iterator<Item = Batch<'_>> {
-        let batch = |numbers| Batch { tessellation: self.tessellation, first: self.first, numbers };
+        let batch = |cells| Batch { tessellation: self.tessellation, cells };
         self.with(sides).chunks(Lanes::WIDTH).map(batch)
     }
 }
@@ -64,26 +62,37 @@ impl<'a> BySides<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct Batch<'a> {
     tessellation: &'a Tessellation,
-    first: usize,
-    numbers: &'a [u16],
+    cells: &'a [u32],
 }
 
 impl Batch<'_> {
+    /// The cell of each lane.
+    #[inline(always)]
+    pub fn in_lanes(&self) -> [Option<usize>; Lanes::WIDTH] {
+        std::array::from_fn(|lane| self.cells.get(lane).map(|&cell| cell as usize))
+    }
+
     /// The cells of the lanes.
     #[inline(always)]
     pub fn cells(&self) -> impl ExactSizeIterator<Item = usize> {
-        self.numbers.iter().map(|&number| self.first + usize::from(number))
+        self.cells.iter().map(|&cell| cell as usize)
     }
 
-    /// Writes the real parts of displacements to the neighbours, one lane to a cell. Lanes that are left over repeat the first.
+    /// Writes displacements to the neighbours, a lane to a cell, by a function that puts a number into a lane. Lanes that are left over
+    /// repeat the first.
     #[inline(always)]
-    pub fn fill_ring<S: Scalar>(&self, positions: &[Vector<S>], ring: &mut [Vector<Lanes>]) {
+    pub fn fill_ring<S: Scalar, L: Arithmetic>(
+        &self,
+        positions: &[Vector<S>],
+        ring: &mut [Vector<L>],
+        put: impl Fn(&mut L, usize, S),
+    ) {
         for lane in 0..Lanes::WIDTH {
-            let number = self.numbers[if lane < self.numbers.len() { lane } else { 0 }];
-            let to = self.tessellation.displacements(positions, self.first + usize::from(number));
+            let cell = self.cells[if lane < self.cells.len() { lane } else { 0 }];
+            let to = self.tessellation.displacements(positions, cell as usize);
             for (point, d) in ring.iter_mut().zip(to) {
-                point.x.0[lane] = d.x.real();
-                point.y.0[lane] = d.y.real();
+                put(&mut point.x, lane, d.x);
+                put(&mut point.y, lane, d.y);
             }
         }
     }

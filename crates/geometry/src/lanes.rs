@@ -16,6 +16,12 @@ impl Lanes {
     /// How many there are.
     pub const WIDTH: usize = 4;
 
+    /// Writes one of them.
+    #[inline(always)]
+    pub fn put(&mut self, lane: usize, value: f64) {
+        self.0[lane] = value;
+    }
+
     #[inline(always)]
     fn map(mut self, f: impl Fn(f64) -> f64) -> Self {
         for lane in &mut self.0 {

@@ -50,6 +50,7 @@ mod raster;
 mod region;
 mod scalar;
 mod side;
+mod tangent;
 mod tessellation;
 mod transition;
 
@@ -69,11 +70,14 @@ pub use mask::{Mask, MaskedCell};
 pub use moving::{MovingTessellation, Renewal};
 pub use outline::{Outline, outline_contacts};
 pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
-pub use plane::{Corner, Vector, circumcentre, cross, dot, quarter_turn, side_direction};
+pub use plane::{
+    Corner, Outer, Vector, circumcentre, cross, dot, quarter_turn, side_direction, side_direction_slope,
+};
 pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons};
 pub use raster::{Edge, smooth};
 pub use region::Region;
 pub use scalar::{Arithmetic, Scalar, lift};
 pub use side::Side;
+pub use tangent::Tangent;
 pub use tessellation::{Tessellation, Triangle};
 pub use transition::Transition;

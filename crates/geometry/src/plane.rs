@@ -81,6 +81,76 @@ impl<S: Arithmetic> Corner<S> {
     }
 }
 
+/// A matrix `column ⊗ row`: what a change does, along one direction alone, in proportion to one component of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outer<S> {
+    /// The direction of what changes.
+    pub column: Vector<S>,
+    /// The component of the change that counts.
+    pub row: Vector<S>,
+}
+
+impl<S: Arithmetic> Corner<S> {
+    /// How the circumcentre moves with each of the two neighbours: `∂c/∂a` and `∂c/∂b`, see [`Corner::transmit`].
+    #[inline(always)]
+    pub fn centre_slopes(&self) -> [Outer<S>; 2] {
+        [
+            Outer { column: -quarter_turn(self.b) * self.inverse_cross, row: self.a - self.centre },
+            Outer { column: quarter_turn(self.a) * self.inverse_cross, row: self.b - self.centre },
+        ]
+    }
+
+    /// How the forces that [`Corner::transmit`] gives change with the two neighbours, if the force `f` on the vertex changes with each of them by
+    /// `slopes`: blocks `[xx, xy, yx, yy]` of the force on a by a, on a by b, on b by a, on b by b.
+    ///
+    /// With `k = 1/(a × b)` the forces are `g_a = s_a (a − c)` with `s_a = k f × b`, and `g_b = s_b (b − c)` with `s_b = k a × f`. From
+    /// `∂k/∂a = k² ẑ×b` and `∂k/∂b = −k² ẑ×a`, and for `∂f/∂a = u_a ⊗ w_a`, `∂f/∂b = u_b ⊗ w_b`,
+    ///
+    /// ```text
+    /// ∂s_a/∂a = k (u_a × b) w_a + s_a k ẑ×b             ∂s_a/∂b = k (u_b × b) w_b + k ẑ×f − s_a k ẑ×a
+    /// ∂s_b/∂a = k (a × u_a) w_a − k ẑ×f + s_b k ẑ×b     ∂s_b/∂b = k (a × u_b) w_b − s_b k ẑ×a
+    /// ```
+    #[inline(always)]
+    pub fn transmit_slopes(&self, f: Vector<S>, slopes: [Outer<S>; 2]) -> [[[S; 4]; 2]; 2] {
+        let (a, b, k) = (self.a, self.b, self.inverse_cross);
+        let [by_a, by_b] = slopes;
+        let (s_a, s_b) = (cross(f, b) * k, cross(a, f) * k);
+        let (turned_a, turned_b, turned_f) = (quarter_turn(a) * k, quarter_turn(b) * k, quarter_turn(f) * k);
+        let s_a_by = [
+            by_a.row * (cross(by_a.column, b) * k) + turned_b * s_a,
+            by_b.row * (cross(by_b.column, b) * k) + turned_f - turned_a * s_a,
+        ];
+        let s_b_by = [
+            by_a.row * (cross(a, by_a.column) * k) - turned_f + turned_b * s_b,
+            by_b.row * (cross(a, by_b.column) * k) - turned_a * s_b,
+        ];
+        let (from_a, from_b) = (a - self.centre, b - self.centre);
+        let [c_by_a, c_by_b] = self.centre_slopes();
+        let block = |from: Vector<S>, s_by: Vector<S>, c_by: Outer<S>, s: S| {
+            let back = c_by.column * s;
+            [
+                from.x * s_by.x - back.x * c_by.row.x,
+                from.x * s_by.y - back.x * c_by.row.y,
+                from.y * s_by.x - back.y * c_by.row.x,
+                from.y * s_by.y - back.y * c_by.row.y,
+            ]
+        };
+        let mut on_a = [block(from_a, s_a_by[0], c_by_a, s_a), block(from_a, s_a_by[1], c_by_b, s_a)];
+        let mut on_b = [block(from_b, s_b_by[0], c_by_a, s_b), block(from_b, s_b_by[1], c_by_b, s_b)];
+        for diagonal in [0, 3] {
+            on_a[0][diagonal] += s_a;
+            on_b[1][diagonal] += s_b;
+        }
+        [on_a, on_b]
+    }
+}
+
+/// How [`side_direction`] changes with the neighbour: `∂t/∂d = −(d/d²) ⊗ t`.
+#[inline(always)]
+pub fn side_direction_slope<S: Arithmetic>(d: Vector<S>, direction: Vector<S>) -> Outer<S> {
+    Outer { column: -d * dot(d, d).inverse(), row: direction }
+}
+
 /// Unit vector along the side that faces a neighbour at `d`, counter-clockwise about the cell: `ẑ × d / |d|`.
 ///
 /// A Voronoi side is perpendicular to the line between the centres. Its direction taken from the centres stays smooth

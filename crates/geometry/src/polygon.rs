@@ -126,6 +126,12 @@ impl<S: Arithmetic> CellPolygon<S> {
         self.corners.iter().map(|corner| corner.centre)
     }
 
+    /// Unit vectors along the sides, counter-clockwise.
+    #[inline(always)]
+    pub fn directions(&self) -> &[Vector<S>] {
+        &self.directions
+    }
+
     /// Signed lengths of the sides: negative only where the topology is not that of the positions.
     pub fn side_lengths(&self) -> impl Iterator<Item = S> {
         let previous = self.corners.iter().cycle().skip(self.len().max(1) - 1);

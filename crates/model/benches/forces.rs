@@ -8,7 +8,7 @@ use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{BlockMatrix, Effect, HalfEdgeForces, JacobianBuilder, Model, Parameters};
+use voronudge_model::{BlockMatrix, Effect, HalfEdgeForces, JacobianBuilder, Model, Parameters, jvp, vjp};
 
 fn main() {
     divan::main();
@@ -45,6 +45,24 @@ fn sparse_jacobian(bencher: Bencher, side: usize) {
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
         builder.build(&tessellation, divan::black_box(&positions), &model, &mut matrix);
     });
+}
+
+/// `J u`, beside `velocities`.
+#[divan::bench(args = [10, 100, 1000])]
+fn jacobian_times_vector(bencher: Bencher, side: usize) {
+    let (positions, tessellation, model) = tissue(side);
+    bencher
+        .counter(ItemsCount::new(positions.len()))
+        .bench_local(|| jvp(&tessellation, divan::black_box(&positions), &model, &positions));
+}
+
+/// `Jᵀ w`, beside `velocities`.
+#[divan::bench(args = [10, 100, 1000])]
+fn transposed_jacobian_times_vector(bencher: Bencher, side: usize) {
+    let (positions, tessellation, model) = tissue(side);
+    bencher
+        .counter(ItemsCount::new(positions.len()))
+        .bench_local(|| vjp(&tessellation, divan::black_box(&positions), &model, &positions));
 }
 
 /// The base model and one further effect.

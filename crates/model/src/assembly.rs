@@ -16,7 +16,7 @@ use voronudge_geometry::{BySides, CellPolygon, Domain, Scalar, Tessellation, Vec
 pub(crate) const CHUNK: usize = BySides::MOST_CELLS;
 
 /// Cuts an array of per-cell stretches into tasks of [`CHUNK`] cells; `start` gives the first entry of a cell.
-pub(crate) fn split_by_cells<T>(
+fn split_by_cells<T>(
     array: &mut [T],
     cells: usize,
     start: impl Fn(usize) -> usize,
@@ -68,30 +68,10 @@ impl<S: Scalar> HalfEdgeForces<S> {
         model: &Model<S>,
         velocities: &mut Vec<Vector<S>>,
     ) {
-        let nan = Vector::new(S::constant(f64::NAN), S::constant(f64::NAN));
-        let cells = tessellation.len();
-        self.forces.resize(tessellation.half_edges(), nan);
-        velocities.resize(cells, nan);
-        if cells <= CHUNK {
-            elements(tessellation, positions, from_ref(model), 0..cells, &mut self.forces, velocities);
-        } else {
-            split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
-                .into_par_iter()
-                .zip(velocities.par_chunks_mut(CHUNK))
-                .for_each(|((range, forces), velocities)| {
-                    elements(tessellation, positions, from_ref(model), range, forces, velocities);
-                });
-        }
-        let gather = |(cell, v): (usize, &mut Vector<S>)| {
-            for h in tessellation.ring(cell) {
-                *v += self.forces[tessellation.twin(h)];
-            }
+        let evaluate = |cells: Range<usize>, forces: &mut [Vector<S>], velocities: &mut [Vector<S>]| {
+            elements(tessellation, positions, from_ref(model), cells, forces, velocities);
         };
-        if cells <= CHUNK {
-            velocities.iter_mut().enumerate().for_each(gather);
-        } else {
-            velocities.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(gather);
-        }
+        assemble_half_edges(tessellation, &mut self.forces, velocities, evaluate);
     }
 
     /// Velocities of the first cells of a tessellation, as many as `velocities` has, of which the others are mirror images: as many
@@ -138,6 +118,37 @@ impl<S: Scalar> HalfEdgeForces<S> {
     #[inline]
     pub fn on_neighbour(&self, half_edge: usize) -> Vector<S> {
         self.forces[half_edge]
+    }
+}
+
+/// Lets elements write what they have for their rings and for their cells, chunk by chunk, and adds up what there is for each cell.
+pub(crate) fn assemble_half_edges<S: Scalar>(
+    tessellation: &Tessellation,
+    on_rings: &mut Vec<Vector<S>>,
+    sums: &mut Vec<Vector<S>>,
+    elements: impl Fn(Range<usize>, &mut [Vector<S>], &mut [Vector<S>]) + Sync,
+) {
+    let nan = Vector::new(S::constant(f64::NAN), S::constant(f64::NAN));
+    let cells = tessellation.len();
+    on_rings.resize(tessellation.half_edges(), nan);
+    sums.resize(cells, nan);
+    if cells <= CHUNK {
+        elements(0..cells, on_rings, sums);
+    } else {
+        split_by_cells(on_rings, cells, |cell| tessellation.half_edge_start(cell))
+            .into_par_iter()
+            .zip(sums.par_chunks_mut(CHUNK))
+            .for_each(|((range, on_rings), sums)| elements(range, on_rings, sums));
+    }
+    let gather = |(cell, sum): (usize, &mut Vector<S>)| {
+        for h in tessellation.ring(cell) {
+            *sum += on_rings[tessellation.twin(h)];
+        }
+    };
+    if cells <= CHUNK {
+        sums.iter_mut().enumerate().for_each(gather);
+    } else {
+        sums.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(gather);
     }
 }
 

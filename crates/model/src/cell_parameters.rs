@@ -3,7 +3,7 @@
 use crate::assembly::element;
 use crate::{AreaElasticity, Environment, EnvironmentError, Model, Term, WeightedTerm};
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
+use voronudge_geometry::{Arithmetic, CellPolygon, Scalar, Tessellation, Vector};
 
 /// A parameter of the base model that cells may have of their own.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -78,7 +78,7 @@ impl CellFactors {
 
     /// A term as one cell has it.
     #[inline]
-    pub fn term<S: Scalar>(&self, weighted: &WeightedTerm<S>, cell: usize) -> WeightedTerm<S> {
+    pub fn term<S: Arithmetic>(&self, weighted: &WeightedTerm<S>, cell: usize) -> WeightedTerm<S> {
         let WeightedTerm { term, coefficient } = *weighted;
         let factor = |parameter| self.factor(parameter, cell);
         match term {

@@ -1,7 +1,7 @@
 //! One cell's element: forces on its vertices, handed on to the centres of its neighbours.
 
 use crate::{Model, WeightedTerm};
-use voronudge_geometry::{Arithmetic, CellPolygon, Scalar, Shape, Vector, quarter_turn};
+use voronudge_geometry::{Arithmetic, CellPolygon, Shape, Vector, quarter_turn};
 
 /// The forces that a cell exerts on its vertices, as multiples of the gradients of its area and perimeter.
 #[derive(Debug, Clone, Copy)]
@@ -24,6 +24,23 @@ impl<S: Arithmetic> VertexForces<S> {
             weighted.term.act_on_shape(shape, weighted.coefficient, &mut forces);
         }
         forces
+    }
+
+    /// The sum over terms for one cell of a model, with the parameters that are its own.
+    #[inline(always)]
+    pub fn of_cell(model: &Model<S>, cell: usize, shape: Shape<S>) -> Self {
+        match model.environment.cells_differ() {
+            false => Self::of(&model.terms, shape),
+            true => {
+                let zero = S::constant(0.0);
+                let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
+                for weighted in &model.terms {
+                    let own = model.environment.cell_factors().term(weighted, cell);
+                    own.term.act_on_shape(shape, own.coefficient, &mut forces);
+                }
+                forces
+            }
+        }
     }
 
     /// Adds `factor · ∂A/∂r_v` to every vertex.
@@ -77,24 +94,5 @@ impl<S: Arithmetic> VertexForces<S> {
             *first += carried;
         }
         on_cell
-    }
-}
-
-impl<S: Scalar> VertexForces<S> {
-    /// The sum over terms for one cell of a model, with the parameters that are its own.
-    #[inline(always)]
-    pub fn of_cell(model: &Model<S>, cell: usize, shape: Shape<S>) -> Self {
-        match model.environment.cells_differ() {
-            false => Self::of(&model.terms, shape),
-            true => {
-                let zero = S::constant(0.0);
-                let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
-                for weighted in &model.terms {
-                    let own = model.environment.cell_factors().term(weighted, cell);
-                    own.term.act_on_shape(shape, own.coefficient, &mut forces);
-                }
-                forces
-            }
-        }
     }
 }

@@ -8,101 +8,97 @@
 //! ∂g/∂d = ∂g/∂d |_q  +  Σ_{s ∈ {A, P}} ( ∂g/∂q · ∂q/∂s ) ⊗ ∂s/∂d
 //! ```
 //!
-//! needs four dual directions for each corner and two for the terms, whatever the number of sides, through the very
-//! formulas that give the forces.
+//! needs dual numbers along two directions for the terms, whatever the number of sides; the derivatives of the geometry at a corner are
+//! [`Corner::transmit_slopes`]. All of it is generic, so it works on several cells at once.
 
-use crate::{Model, VertexForces};
-use num_dual::DualSVec64;
-use voronudge_geometry::{CellPolygon, Corner, Shape, Vector, quarter_turn, side_direction};
-
-type CornerDual = DualSVec64<4>;
-type ShapeDual = DualSVec64<2>;
+use crate::VertexForces;
+use voronudge_geometry::{
+    Arithmetic, CellPolygon, Outer, Shape, Tangent, Vector, quarter_turn, side_direction_slope,
+};
 
 /// A block `[xx, xy, yx, yy]`, row = component of the force.
-pub(crate) type Block = [f64; 4];
+pub(crate) type BlockOf<S> = [S; 4];
+
+/// By area and perimeter.
+pub(crate) type ByShape<S> = Tangent<S, 2>;
+
+/// Area and perimeter, as what is differentiated by.
+#[inline(always)]
+pub(crate) fn seeded<S: Arithmetic>(shape: Shape<S>) -> Shape<ByShape<S>> {
+    Shape { area: Tangent::along(shape.area, 0), perimeter: Tangent::along(shape.perimeter, 1) }
+}
 
 /// Buffers for the derivative of one element after another.
-pub(crate) struct ElementJacobian {
-    model: Model<ShapeDual>,
-    polygon: CellPolygon<f64>,
+pub(crate) struct ElementJacobian<S> {
+    /// How the unit vectors along the sides change with the neighbours that these face.
+    turns: Vec<Outer<S>>,
     /// ∂c_m/∂d_m and ∂c_m/∂d_{m+1}
-    vertex: Vec<[Block; 2]>,
-    /// What a unit force along x, and along y, on vertex m transmits to neighbours m and m + 1, as ∂g/∂f.
-    transmitted: Vec<[Block; 2]>,
-    by_area: Gradient,
-    by_perimeter: Gradient,
+    vertices: Vec<[Outer<S>; 2]>,
+    /// The forces on the ring for one as the multiple of the area's gradient, of the perimeter's, and of the turned one.
+    units: [Vec<Vector<S>>; 3],
 }
 
-/// A shape's gradient `∂s/∂d`, and the derivative `∂g/∂q · ∂q/∂s` of the ring's forces by the shape.
-#[derive(Default)]
-struct Gradient {
-    of_shape: Vec<Vector<f64>>,
-    of_forces: Vec<Vector<f64>>,
-}
-
-impl Gradient {
-    fn fill(&mut self, polygon: &CellPolygon<f64>, shape: &VertexForces<f64>, forces: &VertexForces<f64>) {
-        self.of_shape.resize(polygon.len(), Vector::zeros());
-        self.of_forces.resize(polygon.len(), Vector::zeros());
-        shape.on_ring(polygon, &mut self.of_shape);
-        forces.on_ring(polygon, &mut self.of_forces);
+impl<S: Arithmetic> Default for ElementJacobian<S> {
+    fn default() -> Self {
+        let units = [Vec::new(), Vec::new(), Vec::new()];
+        Self { turns: Vec::new(), vertices: Vec::new(), units }
     }
 }
 
-fn derivative<const W: usize>(dual: &DualSVec64<W>, direction: usize) -> f64 {
-    dual.eps.0.map_or(0.0, |eps| eps[direction])
-}
-
-impl ElementJacobian {
-    pub(crate) fn new(model: &Model<f64>) -> Self {
-        Self {
-            model: model.lift(),
-            polygon: CellPolygon::default(),
-            vertex: Vec::new(),
-            transmitted: Vec::new(),
-            by_area: Gradient::default(),
-            by_perimeter: Gradient::default(),
-        }
-    }
-
-    /// Fills `∂g_a/∂d_b`, row-major in (a, b), for a cell and its ring of relative positions.
+impl<S: Arithmetic> ElementJacobian<S> {
+    /// Fills `∂g_a/∂d_b`, row-major in (a, b), for the ring of a polygon and the multiples of its vertex forces.
+    #[inline(always)]
     pub(crate) fn fill(
         &mut self,
-        cell: usize,
-        ring: impl Iterator<Item = Vector<f64>>,
-        blocks: &mut [Block],
+        polygon: &CellPolygon<S>,
+        multiples: &VertexForces<ByShape<S>>,
+        blocks: &mut [BlockOf<S>],
     ) {
-        self.polygon.fill_ring(ring);
-        let Shape { area, perimeter } = self.polygon.shape();
-        let forces = VertexForces::of_cell(
-            &self.model,
-            cell,
-            Shape {
-                area: ShapeDual::from_re(area).derivative(0),
-                perimeter: ShapeDual::from_re(perimeter).derivative(1),
-            },
-        );
-        let part = |pick: fn(&ShapeDual) -> f64| VertexForces {
-            area: pick(&forces.area),
-            perimeter: pick(&forces.perimeter),
-            turned_perimeter: pick(&forces.turned_perimeter),
-        };
-        let unit = |area, perimeter| VertexForces { area, perimeter, turned_perimeter: 0.0 };
-        self.by_area.fill(&self.polygon, &unit(1.0, 0.0), &part(|q| derivative(q, 0)));
-        self.by_perimeter.fill(&self.polygon, &unit(0.0, 1.0), &part(|q| derivative(q, 1)));
-        self.fill_by_shape(blocks);
-        let held = part(|q| q.re);
-        self.fill_corners(&held, blocks);
-        self.fill_neighbouring_vertices(held.area, blocks);
+        self.reserve(polygon.len());
+        self.fill_by_shape(polygon, multiples, blocks);
+        self.fill_corners(polygon, multiples, blocks);
+        self.fill_neighbouring_vertices(polygon, multiples.area.value, blocks);
     }
 
-    fn fill_by_shape(&self, blocks: &mut [Block]) {
-        let sides = self.polygon.len();
-        for (a, row) in blocks.chunks_exact_mut(sides).enumerate() {
-            let (by_area, by_perimeter) = (self.by_area.of_forces[a], self.by_perimeter.of_forces[a]);
-            let gradients = self.by_area.of_shape.iter().zip(&self.by_perimeter.of_shape);
-            for (block, (area, perimeter)) in row.iter_mut().zip(gradients) {
-                *block = [
+    #[inline(always)]
+    fn reserve(&mut self, sides: usize) {
+        if self.vertices.len() == sides {
+            return;
+        }
+        let zero = S::constant(0.0);
+        let nowhere = Vector::new(zero, zero);
+        let still = Outer { column: nowhere, row: nowhere };
+        self.turns.resize(sides, still);
+        self.vertices.resize(sides, [still; 2]);
+        self.units.iter_mut().for_each(|unit| unit.resize(sides, nowhere));
+    }
+
+    #[inline(always)]
+    fn fill_by_shape(
+        &mut self,
+        polygon: &CellPolygon<S>,
+        multiples: &VertexForces<ByShape<S>>,
+        blocks: &mut [BlockOf<S>],
+    ) {
+        let sides = polygon.len();
+        let (zero, one) = (S::constant(0.0), S::constant(1.0));
+        let [of_area, of_perimeter, turned] = &mut self.units;
+        let unit = |area, perimeter, turned_perimeter| VertexForces { area, perimeter, turned_perimeter };
+        unit(one, zero, zero).on_ring(polygon, of_area);
+        unit(zero, one, zero).on_ring(polygon, of_perimeter);
+        unit(zero, zero, one).on_ring(polygon, turned);
+        let (of_area, of_perimeter, turned) = (&of_area[..sides], &of_perimeter[..sides], &turned[..sides]);
+        for a in 0..sides {
+            let [by_area, by_perimeter] = [0, 1].map(|by| {
+                of_area[a] * multiples.area.slopes[by]
+                    + of_perimeter[a] * multiples.perimeter.slopes[by]
+                    + turned[a] * multiples.turned_perimeter.slopes[by]
+            });
+            let row = &mut blocks[a * sides..][..sides];
+            // The unit forces are the gradients of area and perimeter by the ring.
+            for b in 0..sides {
+                let (area, perimeter) = (of_area[b], of_perimeter[b]);
+                row[b] = [
                     by_area.x * area.x + by_perimeter.x * perimeter.x,
                     by_area.x * area.y + by_perimeter.x * perimeter.y,
                     by_area.y * area.x + by_perimeter.y * perimeter.x,
@@ -113,53 +109,55 @@ impl ElementJacobian {
     }
 
     /// The dependence of each corner on its own two neighbours, with the vertices beside it held.
-    fn fill_corners(&mut self, held: &VertexForces<f64>, blocks: &mut [Block]) {
-        let sides = self.polygon.len();
-        self.vertex.clear();
-        self.transmitted.clear();
-        let constant = |v: Vector<f64>| Vector::new(CornerDual::from_re(v.x), CornerDual::from_re(v.y));
-        let multiples = VertexForces {
-            area: CornerDual::from_re(held.area),
-            perimeter: CornerDual::from_re(held.perimeter),
-            turned_perimeter: CornerDual::from_re(held.turned_perimeter),
+    #[inline(always)]
+    fn fill_corners(
+        &mut self,
+        polygon: &CellPolygon<S>,
+        multiples: &VertexForces<ByShape<S>>,
+        blocks: &mut [BlockOf<S>],
+    ) {
+        let sides = polygon.len();
+        let (corners, directions) = (&polygon.corners()[..sides], &polygon.directions()[..sides]);
+        let (turns, vertices) = (&mut self.turns[..sides], &mut self.vertices[..sides]);
+        let held = VertexForces {
+            area: multiples.area.value,
+            perimeter: multiples.perimeter.value,
+            turned_perimeter: multiples.turned_perimeter.value,
         };
-        for m in 0..sides {
+        // What a change of the perimeter's gradient does to the force on a vertex.
+        let act = |v: Vector<S>| v * held.perimeter + quarter_turn(v) * held.turned_perimeter;
+        for ((turn, corner), &direction) in turns.iter_mut().zip(corners).zip(directions) {
+            let of_direction = side_direction_slope(corner.a, direction);
+            *turn = Outer { column: act(of_direction.column), row: of_direction.row };
+        }
+        for (m, corner) in corners.iter().enumerate() {
             let next = if m + 1 == sides { 0 } else { m + 1 };
-            let plain = self.polygon.corners()[m];
-            let seed = |v: Vector<f64>, first: usize| {
-                Vector::new(
-                    CornerDual::from_re(v.x).derivative(first),
-                    CornerDual::from_re(v.y).derivative(first + 1),
-                )
-            };
-            let corner = Corner::new(seed(plain.a, 0), seed(plain.b, 2));
-            let perimeter_gradient = side_direction(corner.a) - side_direction(corner.b);
-            let force = multiples.on_vertex(constant(self.polygon.area_gradient(m)), perimeter_gradient);
-            let on = corner.transmit(force);
-            for (force, at) in on.iter().zip([m, next]) {
-                for (seeded, b) in [(0, m), (2, next)] {
-                    add(&mut blocks[at * sides + b], &block_of(force, seeded));
-                }
+            let force = held.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
+            let by_next = Outer { column: -turns[next].column, row: turns[next].row };
+            let [on_this, on_next] = corner.transmit_slopes(force, [turns[m], by_next]);
+            for (on, at) in [(on_this, m), (on_next, next)] {
+                add(&mut blocks[at * sides + m], &on[0]);
+                add(&mut blocks[at * sides + next], &on[1]);
             }
-            self.vertex.push([block_of(&corner.centre, 0), block_of(&corner.centre, 2)]);
-            let ([xa, xb], [ya, yb]) =
-                (plain.transmit(Vector::new(1.0, 0.0)), plain.transmit(Vector::new(0.0, 1.0)));
-            self.transmitted.push([[xa.x, ya.x, xa.y, ya.y], [xb.x, yb.x, xb.y, yb.y]]);
+            vertices[m] = corner.centre_slopes();
         }
     }
 
     /// The dependence of each corner on the vertices beside it, through `∂A/∂c_m = ½ ẑ × (c_{m−1} − c_{m+1})`.
-    fn fill_neighbouring_vertices(&self, pressure: f64, blocks: &mut [Block]) {
-        let sides = self.polygon.len();
+    #[inline(always)]
+    fn fill_neighbouring_vertices(&self, polygon: &CellPolygon<S>, pressure: S, blocks: &mut [BlockOf<S>]) {
+        let sides = polygon.len();
         let step = |m: usize, by: usize| if m + by >= sides { m + by - sides } else { m + by };
-        for m in 0..sides {
+        let (corners, vertices) = (&polygon.corners()[..sides], &self.vertices[..sides]);
+        let half = pressure * 0.5;
+        for (m, corner) in corners.iter().enumerate() {
             let next = step(m, 1);
-            let (before, after) = (step(m, sides - 1), next);
-            for (transmitted, at) in self.transmitted[m].iter().zip([m, next]) {
-                for (vertex, weight) in [(before, 0.5 * pressure), (after, -0.5 * pressure)] {
-                    let turned = turned_columns(transmitted, weight);
-                    for (moved, b) in self.vertex[vertex].iter().zip([vertex, step(vertex, 1)]) {
-                        add(&mut blocks[at * sides + b], &product(&turned, moved));
+            for (beside, weight) in [(step(m, sides - 1), half), (next, -half)] {
+                for (moved, b) in vertices[beside].iter().zip([beside, step(beside, 1)]) {
+                    let [on_this, on_next] = corner.transmit(quarter_turn(moved.column) * weight);
+                    for (on, at) in [(on_this, m), (on_next, next)] {
+                        let (x, y) = (moved.row.x, moved.row.y);
+                        add(&mut blocks[at * sides + b], &[on.x * x, on.x * y, on.y * x, on.y * y]);
                     }
                 }
             }
@@ -167,22 +165,8 @@ impl ElementJacobian {
     }
 }
 
-fn block_of(v: &Vector<CornerDual>, first: usize) -> Block {
-    [
-        derivative(&v.x, first),
-        derivative(&v.x, first + 1),
-        derivative(&v.y, first),
-        derivative(&v.y, first + 1),
-    ]
-}
-
-/// `weight · m · (ẑ ×)`
-fn turned_columns(m: &Block, weight: f64) -> Block {
-    let [x, y] = [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)].map(quarter_turn);
-    product(m, &[x.x, y.x, x.y, y.y]).map(|entry| weight * entry)
-}
-
-pub(crate) fn product(a: &Block, b: &Block) -> Block {
+#[inline(always)]
+pub(crate) fn product<S: Arithmetic>(a: &BlockOf<S>, b: &BlockOf<S>) -> BlockOf<S> {
     [
         a[0] * b[0] + a[1] * b[2],
         a[0] * b[1] + a[1] * b[3],
@@ -191,8 +175,9 @@ pub(crate) fn product(a: &Block, b: &Block) -> Block {
     ]
 }
 
-fn add(to: &mut Block, block: &Block) {
+#[inline(always)]
+fn add<S: Arithmetic>(to: &mut BlockOf<S>, block: &BlockOf<S>) {
     for (total, entry) in to.iter_mut().zip(block) {
-        *total += entry;
+        *total += *entry;
     }
 }

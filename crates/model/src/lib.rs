@@ -28,16 +28,19 @@
 
 mod assembly;
 mod axis;
+mod block_matrix;
 mod cell_element;
 mod cell_parameters;
 pub mod effect;
 mod element;
+mod element_blocks;
 mod element_jacobian;
 mod element_lanes;
 mod environment;
 pub mod gradient_check;
 mod jacobian;
 mod parameters;
+mod products;
 mod response;
 mod ring_jacobian;
 mod row_assembly;
@@ -48,13 +51,15 @@ mod transition;
 
 pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use axis::Axis;
+pub use block_matrix::BlockMatrix;
 pub use cell_element::{CellElement, RingForces};
 pub use cell_parameters::{CellDerivatives, CellFactors, CellParameter, cell_derivatives};
 pub use effect::{Column, Effect, EffectError};
 pub use element::VertexForces;
 pub use environment::{Environment, EnvironmentError, VectorMap};
-pub use jacobian::{BlockMatrix, JacobianBuilder, jacobian};
+pub use jacobian::{JacobianBuilder, jacobian};
 pub use parameters::{PARAMETER_NAMES, Parameters, parameter_derivatives};
+pub use products::{jvp, vjp};
 pub use response::{Exactness, Flow, FlowResponse, Linearisation, Response, Stage};
 pub use row_assembly::{RowAssembly, assemble};
 pub use stress::stress;

@@ -5,7 +5,7 @@
 //! momentum nor translation is taken for granted.
 
 use crate::assembly::ring_terms;
-use crate::element_jacobian::Block;
+use crate::block_matrix::Block;
 use crate::{CellElement, Model, RingForces};
 use num_dual::DualSVec64;
 use voronudge_geometry::{Arithmetic, CellPolygon, Tessellation, Vector};
@@ -29,9 +29,9 @@ impl RingJacobian {
         Self { model, ring: Vec::new(), polygon: CellPolygon::default(), forces: Vec::new() }
     }
 
-    /// Fills the derivative of each force on the ring, and of that on the cell in the last row, by each displacement of
-    /// the ring, and by the position of the cell in the last column: (n + 1)² blocks, row-major.
-    pub(crate) fn fill(
+    /// Adds the derivatives of the force on the cell, and then on each of its ring, by the position of the cell, and then of each of its ring:
+    /// (n + 1)² blocks, row-major.
+    pub(crate) fn add(
         &mut self,
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
@@ -64,10 +64,21 @@ impl RingJacobian {
             if let Some((on_cell, on_ring)) = self.forces.split_last_mut() {
                 ring_terms(&self.model, &element, &mut RingForces { on_ring, on_cell });
             }
-            for (row, force) in blocks.chunks_exact_mut(points).zip(&self.forces) {
-                for (k, block) in row.iter_mut().skip(first).take(POINTS).enumerate() {
+            // The cell comes last among the points here, and first among the blocks.
+            let (on_cell, on_ring) = blocks.split_at_mut(points);
+            let rows = on_ring.chunks_exact_mut(points).chain(std::iter::once(on_cell));
+            for (row, force) in rows.zip(&self.forces) {
+                for (k, point) in (first..points).take(POINTS).enumerate() {
                     let slope = |x: &Dual, along: usize| x.eps.0.map_or(0.0, |eps| eps[2 * k + along]);
-                    *block = [slope(&force.x, 0), slope(&force.x, 1), slope(&force.y, 0), slope(&force.y, 1)];
+                    let block =
+                        [slope(&force.x, 0), slope(&force.x, 1), slope(&force.y, 0), slope(&force.y, 1)];
+                    if point + 1 == points {
+                        row[0].iter_mut().zip(block).for_each(|(total, entry)| *total += entry);
+                    } else if tessellation.neighbours(cell)[point] as usize != cell {
+                        // A displacement of the ring grows with its neighbour's position and falls with the cell's; that of an image of the cell stays.
+                        row[point + 1].iter_mut().zip(block).for_each(|(total, entry)| *total += entry);
+                        row[0].iter_mut().zip(block).for_each(|(total, entry)| *total -= entry);
+                    }
                 }
             }
         }

@@ -6,7 +6,7 @@ use crate::{
 };
 use num_dual::{Dual64, DualSVec64};
 use std::sync::Arc;
-use voronudge_geometry::{Scalar, Tessellation, Vector, lift};
+use voronudge_geometry::{Arithmetic, Scalar, Tessellation, Vector, lift};
 
 /// A term and its coefficient.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -74,7 +74,7 @@ impl<S: Scalar> Model<S> {
     }
 
     /// The same model with every coefficient mapped.
-    pub(crate) fn map<D: Scalar>(&self, map: impl Fn(S) -> D) -> Model<D> {
+    pub(crate) fn map<D: Arithmetic>(&self, map: impl Fn(S) -> D) -> Model<D> {
         let term = |w: &WeightedTerm<S>| WeightedTerm { term: w.term, coefficient: map(w.coefficient) };
         let response = |w: &WeightedResponse<S>| WeightedResponse {
             response: w.response,

@@ -3,10 +3,11 @@
 //! The forces along the gradients of perimeters depend on the directions of the sides that end at a vertex, also of one that has no length.
 //! Where a side vanishes and another appears, the velocities of the four cells there jump; all others are continuous.
 
-use crate::Model;
 use crate::assembly::element;
-use crate::element_jacobian::{Block, ElementJacobian};
-use voronudge_geometry::{CellPolygon, Tessellation, Vector};
+use crate::block_matrix::Block;
+use crate::element_jacobian::{ElementJacobian, seeded};
+use crate::{Model, VertexForces};
+use voronudge_geometry::{CellPolygon, Tangent, Tessellation, Vector};
 
 /// What a side and the one that would follow it mean to four cells: the two that it separates, then the two that it would join,
 /// clockwise and counter-clockwise of it as seen from the first (the order of [`voronudge_geometry::Side::cells`]).
@@ -126,14 +127,17 @@ impl Exchange {
     /// more than functions of areas and perimeters are left out.
     pub fn slopes(&self, model: &Model<f64>) -> JumpSlopes {
         let mut slopes = JumpSlopes::default();
-        let mut jacobian = ElementJacobian::new(model);
+        let model = model.map(Tangent::held);
+        let (mut polygon, mut jacobian) = (CellPolygon::default(), ElementJacobian::default());
         let mut blocks = Vec::new();
         for (number, (cell, rings)) in self.cells.iter().zip(&self.rings).enumerate() {
             for (ring, sign) in rings.iter().zip([-1.0, 1.0]) {
                 let sides = ring.displacements.len();
                 blocks.clear();
                 blocks.resize(sides * sides, [0.0; 4]);
-                jacobian.fill(*cell, ring.displacements.iter().copied(), &mut blocks);
+                polygon.fill_ring(ring.displacements.iter().copied());
+                let multiples = VertexForces::of_cell(&model, *cell, seeded(polygon.shape()));
+                jacobian.fill(&polygon, &multiples, &mut blocks);
                 // What acts on the cell itself is minus the sum of what acts on its ring.
                 let on_cell = (0..sides).map(|slot| (slot, number, -sign));
                 for (slot, of, sign) in on_cell.chain(ring.own.iter().map(|(slot, of)| (*slot, *of, sign))) {

@@ -8,7 +8,7 @@ use numpy::{IntoPyArray, PyArray1, PyArray2, PyArray3, PyReadonlyArray2};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 use voronudge::geometry::{FieldOfView, areas, perimeters, polygons};
-use voronudge::model::{jacobian, stress, velocities};
+use voronudge::model::{jacobian, jvp, stress, velocities, vjp};
 use voronudge::{Domain, Model, PeriodicBox, Tessellation, Vector};
 
 /// Cells at given positions and their Voronoi tessellation.
@@ -138,6 +138,19 @@ impl Tissue {
         Ok((data.into_pyarray(py), matrix.column.into_pyarray(py), starts.into_pyarray(py)))
     }
 
+    /// The change of the velocities (N, 2) for displacements.
+    #[pyo3(signature = (displacements, **parameters))]
+    fn jvp<'py>(
+        &self,
+        py: Python<'py>,
+        displacements: PyReadonlyArray2<'py, f64>,
+        parameters: Option<&Bound<'py, PyDict>>,
+    ) -> PyResult<Bound<'py, PyArray2<f64>>> {
+        let u = field(py, "displacements", &displacements, self.positions.len())?;
+        let (_, model) = self.model(py, parameters)?;
+        Ok(array(py, py.detach(|| jvp(&self.tessellation, &self.positions, &model, &u))))
+    }
+
     /// The derivative of Σ w·v by positions, and by parameters and coefficients of effects.
     #[pyo3(signature = (w, **parameters))]
     fn vjp<'py>(
@@ -149,9 +162,8 @@ impl Tissue {
         let w = field(py, "w", &w, self.positions.len())?;
         let (given, model) = self.model(py, parameters)?;
         let (by_position, by_parameter) = py.detach(|| {
-            let matrix = jacobian(&self.tessellation, &self.positions, &model);
             let slopes = given.slopes(&self.tessellation, &self.positions, &model, &w);
-            (matrix.apply_transposed(&w), slopes)
+            (vjp(&self.tessellation, &self.positions, &model, &w), slopes)
         });
         let named = PyDict::new(py);
         for (name, values) in by_parameter {

@@ -92,7 +92,7 @@ impl WithSimd for Proof<'_> {
         let mut ring = [Vector::new(zero, zero); BySides::MOST_SIDES];
         for sides in 3..=BySides::MOST_SIDES {
             for batch in self.by_sides.batches(sides) {
-                batch.fill_ring(self.positions, &mut ring[..sides]);
+                batch.fill_ring(self.positions, &mut ring[..sides], Lanes::put);
                 let proven = Extremes::of(&ring[..sides]).prove(self.size);
                 for (lane, cell) in batch.cells().enumerate() {
                     if !proven[lane] {

@@ -111,7 +111,7 @@ class Tissue:
 
     def jvp(self, displacements, **parameters) -> np.ndarray:
         """Change of the velocities (N, 2) for displacements (N, 2) of the cells, to first order."""
-        return self.jacobian(**parameters) @ _floats("displacements", displacements)
+        return self._native.jvp(_floats("displacements", displacements), **parameters)
 
     def vjp(self, w, **parameters) -> tuple[np.ndarray, dict]:
         """The derivative of ``Σ_i w_i·v_i``, for a loss of one's own: ``w`` is the derivative of the loss by the velocities.

@@ -1,0 +1,154 @@
+//! Dual numbers over any arithmetic.
+
+use crate::Arithmetic;
+use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
+
+/// A number with its slopes along `D` directions.
+///
+/// What num-dual's numbers are over `f64`, over whatever else has [`Arithmetic`]: [`Lanes`](crate::Lanes) of several cells above all.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Tangent<S, const D: usize> {
+    /// The number.
+    pub value: S,
+    /// Its derivatives along the directions.
+    pub slopes: [S; D],
+}
+
+impl<S: Arithmetic, const D: usize> Tangent<S, D> {
+    /// A number that does not change.
+    #[inline(always)]
+    pub fn held(value: S) -> Self {
+        Self { value, slopes: [S::constant(0.0); D] }
+    }
+
+    /// The coordinate of a direction.
+    #[inline(always)]
+    pub fn along(value: S, direction: usize) -> Self {
+        let mut seeded = Self::held(value);
+        seeded.slopes[direction] = S::constant(1.0);
+        seeded
+    }
+
+    #[inline(always)]
+    fn slopes(self, value: S, f: impl Fn(S) -> S) -> Self {
+        Self { value, slopes: self.slopes.map(f) }
+    }
+
+    #[inline(always)]
+    fn with(self, other: Self, value: S, f: impl Fn(S, S) -> S) -> Self {
+        let mut slopes = self.slopes;
+        for (slope, other) in slopes.iter_mut().zip(other.slopes) {
+            *slope = f(*slope, other);
+        }
+        Self { value, slopes }
+    }
+}
+
+impl<S: Arithmetic, const D: usize> Arithmetic for Tangent<S, D> {
+    #[inline(always)]
+    fn constant(value: f64) -> Self {
+        Self::held(S::constant(value))
+    }
+
+    #[inline(always)]
+    fn inverse(self) -> Self {
+        let inverse = self.value.inverse();
+        let change = -(inverse * inverse);
+        self.slopes(inverse, |slope| slope * change)
+    }
+
+    #[inline(always)]
+    fn root(self) -> Self {
+        let root = self.value.root();
+        let change = root.inverse() * 0.5;
+        self.slopes(root, |slope| slope * change)
+    }
+}
+
+impl<S: Arithmetic, const D: usize> Neg for Tangent<S, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn neg(self) -> Self {
+        self.slopes(-self.value, |slope| -slope)
+    }
+}
+
+impl<S: Arithmetic, const D: usize> Add for Tangent<S, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn add(self, other: Self) -> Self {
+        self.with(other, self.value + other.value, |a, b| a + b)
+    }
+}
+
+impl<S: Arithmetic, const D: usize> Sub for Tangent<S, D> {
+    type Output = Self;
+    #[inline(always)]
+    fn sub(self, other: Self) -> Self {
+        self.with(other, self.value - other.value, |a, b| a - b)
+    }
+}
+
+impl<S: Arithmetic, const D: usize> Mul for Tangent<S, D> {
+    type Output = Self;
+    #[allow(clippy::suspicious_arithmetic_impl, reason = "the rule of the product")]
+    #[inline(always)]
+    fn mul(self, other: Self) -> Self {
+        let (a, b) = (self.value, other.value);
+        self.with(other, a * b, |of_a, of_b| of_a * b + of_b * a)
+    }
+}
+
+macro_rules! with_constants_and_assigning {
+    ($operator:ident, $method:ident, $assign:ident, $assign_method:ident, $slopes:expr) => {
+        impl<S: Arithmetic, const D: usize> $operator<f64> for Tangent<S, D> {
+            type Output = Self;
+            #[inline(always)]
+            fn $method(self, other: f64) -> Self {
+                self.slopes(self.value.$method(other), |slope| $slopes(slope, other))
+            }
+        }
+
+        impl<S: Arithmetic, const D: usize> $assign for Tangent<S, D> {
+            #[inline(always)]
+            fn $assign_method(&mut self, other: Self) {
+                *self = self.$method(other);
+            }
+        }
+    };
+}
+
+with_constants_and_assigning!(Add, add, AddAssign, add_assign, |slope, _| slope);
+with_constants_and_assigning!(Sub, sub, SubAssign, sub_assign, |slope, _| slope);
+with_constants_and_assigning!(Mul, mul, MulAssign, mul_assign, |slope, by| slope * by);
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::Lanes;
+    use num_dual::DualSVec64;
+
+    fn formula<S: Arithmetic>(a: S, b: S) -> S {
+        let mut sum = -a * b - a + b * 2.0;
+        sum += (a * a + b * b + 1.0).root().inverse();
+        sum -= b - 0.25;
+        sum *= a;
+        sum
+    }
+
+    #[test]
+    fn slopes_are_those_of_dual_numbers() {
+        let [a, b] = [[1.0, -0.3, 4e20, 7.5], [0.1, 3.0, -2.0, 1e-3]];
+        let lanes = formula(Tangent::<_, 2>::along(Lanes(a), 0), Tangent::along(Lanes(b), 1));
+        for lane in 0..Lanes::WIDTH {
+            let dual = |x: f64, k| DualSVec64::<2>::from_re(x).derivative(k);
+            let expected = formula(dual(a[lane], 0), dual(b[lane], 1));
+            let eps = expected.eps.0.unwrap();
+            assert_eq!(lanes.value.0[lane], expected.re);
+            for direction in 0..2 {
+                let (found, expected) = (lanes.slopes[direction].0[lane], eps[direction]);
+                assert!((found - expected).abs() <= 1e-15 * expected.abs(), "{found} {expected}");
+            }
+        }
+    }
+}
