@@ -1,5 +1,6 @@
 //! Automation of this repository: `cargo xtask <command>`.
 
+mod bench;
 mod check;
 mod figures;
 mod fixtures;
@@ -24,6 +25,8 @@ struct Arguments {
 
 #[derive(Subcommand)]
 enum Command {
+    /// Time hot formulas against the number of cells and of threads, with memory, and compare with the record.
+    Bench(bench::Arguments),
     /// Run the checks that every change must pass, in order, and stop at the first failure.
     Check {
         /// Run these only.
@@ -54,6 +57,7 @@ type Outcome = Result<(), Box<dyn std::error::Error>>;
 fn main() -> ExitCode {
     let root = root();
     let outcome = match Arguments::parse().command {
+        Command::Bench(arguments) => bench::run(&root, &arguments),
         Command::Check { only } => check::run(&root, &only),
         Command::Figures(arguments) => figures::run(&root, &arguments),
         Command::Fuzz(arguments) => fuzz::run(&root, &arguments),

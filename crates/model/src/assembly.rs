@@ -134,22 +134,49 @@ pub(crate) fn assemble_half_edges<S: Scalar>(
     sums.resize(cells, nan);
     if cells <= CHUNK {
         elements(0..cells, on_rings, sums);
-    } else {
-        split_by_cells(on_rings, cells, |cell| tessellation.half_edge_start(cell))
-            .into_par_iter()
-            .zip(sums.par_chunks_mut(CHUNK))
-            .for_each(|((range, on_rings), sums)| elements(range, on_rings, sums));
+        gather(tessellation, 0..cells, on_rings, 0, sums);
+        return;
     }
-    let gather = |(cell, sum): (usize, &mut Vector<S>)| {
-        for h in tessellation.ring(cell) {
-            *sum += on_rings[tessellation.twin(h)];
+    // What a chunk wrote is still in the cache when its own cells gather it; the others wait until all have written.
+    let waiting: Vec<Vec<u32>> = split_by_cells(on_rings, cells, |cell| tessellation.half_edge_start(cell))
+        .into_par_iter()
+        .zip(sums.par_chunks_mut(CHUNK))
+        .map(|((range, on_rings), sums)| {
+            elements(range.clone(), on_rings, sums);
+            gather(tessellation, range.clone(), on_rings, tessellation.half_edge_start(range.start), sums)
+        })
+        .collect();
+    let on_rings = &*on_rings;
+    sums.par_chunks_mut(CHUNK).zip(waiting).enumerate().for_each(|(chunk, (sums, waiting))| {
+        for cell in waiting {
+            let sum = &mut sums[cell as usize - chunk * CHUNK];
+            tessellation.ring(cell as usize).for_each(|h| *sum += on_rings[tessellation.twin(h)]);
         }
-    };
-    if cells <= CHUNK {
-        sums.iter_mut().enumerate().for_each(gather);
-    } else {
-        sums.par_iter_mut().with_min_len(CHUNK).enumerate().for_each(gather);
+    });
+}
+
+/// Adds what the neighbours of cells wrote for them, if all of it stands in a stretch of half-edges from `first` on; returns the cells for which it
+/// does not.
+fn gather<S: Scalar>(
+    tessellation: &Tessellation,
+    cells: Range<usize>,
+    on_rings: &[Vector<S>],
+    first: usize,
+    sums: &mut [Vector<S>],
+) -> Vec<u32> {
+    let mut waiting = Vec::new();
+    for (cell, sum) in cells.zip(sums) {
+        let mut total = *sum;
+        // Twins before the stretch are far beyond its end.
+        let written = |h: usize| on_rings.get(tessellation.twin(h).wrapping_sub(first));
+        let complete = tessellation.ring(cell).all(|h| written(h).inspect(|of| total += **of).is_some());
+        if complete {
+            *sum = total;
+        } else {
+            waiting.push(cell as u32);
+        }
     }
+    waiting
 }
 
 /// The elements of some cells, a chunk at most, under some models: for each cell the forces on its ring, one model after another, and those on the cell itself.
