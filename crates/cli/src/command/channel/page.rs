@@ -153,10 +153,10 @@ fn setting(report: &ChannelReport) -> String {
         significant(report.length, 3),
         boundary(report),
         significant(report.time, 3),
-        report.units.time,
+        report.units.time_text(),
         report.samples,
         significant(report.relaxation, 3),
-        report.units.time
+        report.units.time_text()
     )
 }
 
