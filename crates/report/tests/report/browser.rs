@@ -1,6 +1,7 @@
 //! Pages in a browser, where there is one: nothing is wider than the window, no script fails, and movies play.
 
 use crate::{discover_sample, movies, sample};
+use std::error::Error;
 use std::path::Path;
 use std::process::Command;
 use voronudge_report::page::Figure;
@@ -27,7 +28,7 @@ fn pages_fit_their_window_and_movies_play() {
         return;
     };
     let folder = tempfile::tempdir().unwrap();
-    let pages = pages();
+    let pages = pages().unwrap();
     for (name, html) in &pages {
         std::fs::write(folder.path().join(name), html.replacen("<head>", WATCH, 1)).unwrap();
     }
@@ -36,13 +37,13 @@ fn pages_fit_their_window_and_movies_play() {
     let harness = folder.path().join("harness.html");
     std::fs::write(&harness, format!("<!DOCTYPE html><body><script>{script}</script></body>")).unwrap();
     for scheme in SCHEMES {
-        let found = found(browser, &harness, scheme, &folder.path().join("profile"));
+        let found = found(browser, &harness, scheme, &folder.path().join("profile")).unwrap();
         assert_eq!(found, format!("{} windows, none with a fault", 3 * pages.len()), "{scheme}");
     }
 }
 
 /// What the harness says in the end.
-fn found(browser: &str, harness: &Path, scheme: &str, profile: &Path) -> String {
+fn found(browser: &str, harness: &Path, scheme: &str, profile: &Path) -> std::io::Result<String> {
     let output = Command::new(browser)
         .args([
             "--headless",
@@ -54,19 +55,18 @@ fn found(browser: &str, harness: &Path, scheme: &str, profile: &Path) -> String 
         .args(["--allow-file-access-from-files", "--virtual-time-budget=60000", "--dump-dom", scheme])
         .arg(format!("--user-data-dir={}", profile.display()))
         .arg(format!("file://{}", harness.display()))
-        .output()
-        .unwrap();
+        .output()?;
     let dom = String::from_utf8_lossy(&output.stdout).into_owned();
     let told = dom.split_once("<pre id=\"faults\">").and_then(|(_, after)| after.split_once("</pre>"));
-    told.map_or_else(|| format!("no answer: {dom}"), |(told, _)| told.to_owned())
+    Ok(told.map_or_else(|| format!("no answer: {dom}"), |(told, _)| told.to_owned()))
 }
 
 /// Pages of all kinds: a movie of a fit, one frame, unknown numbers, a search, a simulation.
-fn pages() -> Vec<(&'static str, String)> {
+fn pages() -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
     let uncertainty = Uncertainty::default();
     let (report, bad) = (sample::report(), sample::degenerate_report());
     let (frames, degenerate) = (movies::frames(2, 10), [sample::degenerate_frame()]);
-    let (movie, single) = (movies::movie(5, 10), movies::movie(1, 10));
+    let (movie, single) = (movies::movie(5, 10)?, movies::movie(1, 10)?);
     let infer = sample::page(&report, &frames, &uncertainty);
     let doubtful: &[FrameView] = &degenerate;
     let before_after = [discover_sample::frames("frame 6", 10)];
@@ -74,7 +74,7 @@ fn pages() -> Vec<(&'static str, String)> {
     let mut after = movies::frames(5, 10);
     let cells = after.iter_mut().flat_map(|frame| &mut frame.cells);
     cells.for_each(|cell| cell.predicted = cell.predicted.map(|[x, y]| [0.9 * x, y + 0.1]));
-    let movie_of_both = movies::movie(5, 10).with_residuals(["residual before", "residual after"], after);
+    let movie_of_both = movies::movie(5, 10)?.with_residuals(["residual before", "residual after"], after);
     let figures = DiscoverFigures { movie: Some(movie_of_both), ..discover_sample::figures() };
     let discover = DiscoverPage {
         title: "embryo",
@@ -95,11 +95,11 @@ fn pages() -> Vec<(&'static str, String)> {
         structure: std::slice::from_ref(&figure),
         run: &report.run,
     };
-    vec![
-        ("infer.html", InferPage { movie: Some(&movie), ..infer }.render().unwrap()),
-        ("one-frame.html", InferPage { movie: Some(&single), ..infer }.render().unwrap()),
-        ("degenerate.html", sample::page(&bad, doubtful, &uncertainty).render().unwrap()),
-        ("discover.html", discover.render().unwrap()),
-        ("simulate.html", simulate.render().unwrap()),
-    ]
+    Ok(vec![
+        ("infer.html", InferPage { movie: Some(&movie), ..infer }.render()?),
+        ("one-frame.html", InferPage { movie: Some(&single), ..infer }.render()?),
+        ("degenerate.html", sample::page(&bad, doubtful, &uncertainty).render()?),
+        ("discover.html", discover.render()?),
+        ("simulate.html", simulate.render()?),
+    ])
 }
