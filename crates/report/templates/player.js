@@ -118,10 +118,13 @@ for (const figure of document.querySelectorAll("figure.player")) {
     context.fill();
   };
 
+  // Dark arrows are to be seen on all colours.
+  const pale = () => (movie.arrows[chosen("arrows")] ? 0.62 : 1);
   const drawCells = (frame) => {
     const quantity = movie.quantities[chosen("colour")];
     const steps = frame.values[chosen("colour")];
     const unused = context.createPattern(hatch, "repeat");
+    context.globalAlpha = pale();
     frame.polygons.forEach((polygon, cell) => {
       if (!polygon.length) return;
       const status = frame.status[cell];
@@ -143,6 +146,7 @@ for (const figure of document.querySelectorAll("figure.player")) {
         context.fill();
       }
     });
+    context.globalAlpha = 1;
     if (shown("outlines")) {
       context.beginPath();
       frame.polygons.forEach((polygon) => polygon.length && trace(polygon));
@@ -202,9 +206,10 @@ for (const figure of document.querySelectorAll("figure.player")) {
     if (!quantity) return;
     const [left, right, bar] = [0.08 * across, 0.92 * across, top + 14];
     const step = (right - left) / quantity.colours.length;
+    context.globalAlpha = pale();
     quantity.colours.forEach((colour, level) => {
       context.fillStyle = colour;
-      context.fillRect(left + level * step, bar, Math.min(step + 0.5, right - left - level * step), 11);
+      context.fillRect(left + level * step, bar, Math.min(step + (pale() < 1 ? 0 : 0.5), right - left - level * step), 11);
     });
     [[left, -9, 0], [right, 9, quantity.colours.length - 1]].forEach(([x, tip, level], side) => {
       if (!quantity.extended[side]) return;
@@ -215,6 +220,7 @@ for (const figure of document.querySelectorAll("figure.player")) {
       context.lineTo(x, bar + 11);
       context.fill();
     });
+    context.globalAlpha = 1;
     context.fillStyle = "#222";
     for (const [position, label] of quantity.ticks) {
       const x = left + ((position - quantity.limits[0]) / (quantity.limits[1] - quantity.limits[0])) * (right - left);

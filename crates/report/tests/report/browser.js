@@ -86,7 +86,7 @@ const look = async (name, width) => {
 (async () => {
   let windows = 0;
   for (const name of PAGES) {
-    for (const width of [400, 800, 1400]) {
+    for (const width of WIDTHS) {
       await look(name, width);
       windows += 1;
     }
