@@ -137,12 +137,20 @@ impl Canvas<'_> {
             return;
         }
         let (mask, placed) = Mask::new(path).format(Format::Alpha).style(style).render();
-        for (index, &coverage) in mask.iter().enumerate().filter(|(_, coverage)| **coverage > 0) {
-            let x = i64::from(placed.left) + (index % placed.width as usize) as i64;
-            let y = i64::from(placed.top) + (index / placed.width as usize) as i64;
-            let within = |at: i64, size: usize| usize::try_from(at).ok().filter(|&at| at < size);
-            if let (Some(x), Some(y)) = (within(x, self.size[0]), within(y, self.size[1])) {
-                pixel(y * self.size[0] + x, coverage);
+        let [across, down] = self.size;
+        for (y, row) in mask.chunks((placed.width as usize).max(1)).enumerate() {
+            let Ok(y) = usize::try_from(i64::from(placed.top) + y as i64) else { continue };
+            if y >= down {
+                break;
+            }
+            for (x, &coverage) in row.iter().enumerate() {
+                if coverage == 0 {
+                    continue;
+                }
+                let x = i64::from(placed.left) + x as i64;
+                if (0..across as i64).contains(&x) {
+                    pixel(y * across + x as usize, coverage);
+                }
             }
         }
     }
