@@ -94,12 +94,11 @@ pub fn degenerate_frame() -> FrameView {
         nudge: [nudge, 0.0],
     };
     FrameView {
-        time: None,
         label: "frame <0>".to_owned(),
         cells: vec![cell(0.0, f64::NAN), cell(2.0, 0.0), cell(f64::NAN, 1.0)],
         changed_edges: ChangedEdges { lost: vec![[[0.0, f64::NAN], [1.0, 1.0]]], gained: vec![] },
-        outline: None,
         region: vec![vec![[0.0, f64::NAN], [1.0, 0.0], [0.0, 1.0]]],
+        ..FrameView::default()
     }
 }
 
