@@ -23,6 +23,7 @@ mod structure_factor;
 mod tests;
 mod transitions;
 mod velocity;
+mod vorticity;
 mod window;
 
 pub use block_average::BlockAverage;
@@ -38,3 +39,4 @@ pub use shape::shape_indices;
 pub use structure_factor::{StructureFactor, structure_factor};
 pub use transitions::TransitionCounter;
 pub use velocity::mean_square_velocity;
+pub use vorticity::vorticities;

@@ -12,6 +12,9 @@ pub enum ReportError {
         #[source]
         source: minijinja::Error,
     },
+    /// An animated image could not be written.
+    #[error("the movie could not be written as GIF")]
+    Image(#[from] gif::EncodingError),
     /// A report could not be written as JSON.
     #[error("report could not be written as JSON")]
     Json(#[from] serde_json::Error),

@@ -38,6 +38,12 @@ impl Histogram {
         (histogram.total() > 0.0).then_some(histogram)
     }
 
+    /// Bins at which bars of `values` values stand for some of them each, at most `most`: of few values they are few, and wide.
+    #[must_use]
+    pub fn bins(values: usize, most: usize) -> usize {
+        ((1.6 * (values as f64).cbrt()) as usize).clamp(4.min(most), most)
+    }
+
     /// Number of finite values, also outside the bins.
     #[must_use]
     pub fn total(&self) -> f64 {
@@ -85,6 +91,12 @@ mod tests {
         assert_eq!(histogram.outside, [1, 2]);
         assert_eq!(histogram.total(), 8.0);
         assert_eq!(histogram.range(), [-1.0, 1.0]);
+    }
+
+    #[test]
+    fn few_values_have_few_bins() {
+        assert_eq!([0, 34, 200, 100_000].map(|values| Histogram::bins(values, 36)), [4, 5, 9, 36]);
+        assert_eq!(Histogram::bins(10, 2), 2);
     }
 
     #[test]

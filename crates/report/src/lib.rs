@@ -6,6 +6,7 @@
 //! - [`figure`]: one function per figure, each a stand-alone SVG. Charts stand on [`chart::Chart`]
 //!   (axes by plotters), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
 //! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
+//! - [`movie`]: cells of many frames, for the player of a page and as an animated image.
 //! - [`infer_report`], [`discover_report`], [`spectrum_report`]: what `report.json` holds, described by [`INFER_SCHEMA`],
 //!   [`DISCOVER_SCHEMA`] and [`SPECTRUM_SCHEMA`].
 //!
@@ -34,6 +35,7 @@ pub mod key;
 pub mod map;
 pub mod markers;
 pub mod moduli_report;
+pub mod movie;
 pub mod numbers;
 pub mod observe_report;
 pub mod page;

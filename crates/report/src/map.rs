@@ -62,6 +62,22 @@ impl Viewport {
         Some(Self { corner, scale, size: [width * scale, height * scale], spacing })
     }
 
+    /// The viewport that shows the cells of all frames; `None` without cells.
+    #[must_use]
+    pub fn around_all(frames: &[FrameView]) -> Option<Self> {
+        let (first, others) = frames.split_first()?;
+        let centres = others.iter().flat_map(|frame| &frame.cells).map(|cell| cell.centre);
+        Self::around_with(first, &centres.collect::<Vec<_>>())
+    }
+
+    /// Lower left and upper right corner in the plane.
+    #[must_use]
+    pub fn corners(&self) -> [[f64; 2]; 2] {
+        let [width, height] = self.size.map(|pixels| pixels / self.scale);
+        let [left, top] = self.corner;
+        [[left, top - height], [left + width, top]]
+    }
+
     /// Place in the picture of a point of the plane.
     #[must_use]
     pub fn place(&self, point: [f64; 2]) -> [f64; 2] {

@@ -24,7 +24,7 @@ impl Units {
     pub fn powers(&self, length: i32, time: i32) -> String {
         let factors = [(&self.length, length), (&self.time, time)];
         let printed = factors.into_iter().filter(|(_, exponent)| *exponent != 0);
-        printed.map(|(unit, exponent)| power(&unit_text(unit), exponent)).collect::<Vec<_>>().join(" ")
+        printed.map(|(unit, exponent)| raised(unit, exponent)).collect::<Vec<_>>().join(" ")
     }
 
     /// The unit of length, for example `µm`.
@@ -57,10 +57,15 @@ impl Units {
 /// ```
 #[must_use]
 pub fn unit_text(unit: &str) -> String {
+    raised(unit, 1)
+}
+
+/// A unit as it is typed, to a power.
+fn raised(unit: &str, exponent: i32) -> String {
     let (above, below) = unit.split_once('/').unwrap_or((unit, ""));
-    match (factors(above, 1), factors(below, -1)) {
+    match (factors(above, exponent), factors(below, -exponent)) {
         (Some(above), Some(below)) => [above, below].concat().join(" "),
-        _ => unit.to_owned(),
+        _ => power(unit, exponent),
     }
 }
 
@@ -76,7 +81,7 @@ pub fn label_with_unit(label: &str, unit: &str) -> String {
     if unit.is_empty() { label.to_owned() } else { format!("{label} ({})", unit_text(unit)) }
 }
 
-/// The factors of a product such as `um^2*h` or `(um^2*h)`, each to a further power of 1 or −1.
+/// The factors of a product such as `um^2*h` or `(um^2*h)`, each to a further power.
 fn factors(product: &str, sign: i32) -> Option<Vec<String>> {
     let inner = match product.strip_prefix('(') {
         Some(rest) => rest.strip_suffix(')')?,
@@ -150,5 +155,13 @@ mod tests {
         }
         let units = Units { length: "um".into(), time: "5 min".into() };
         assert_eq!(units.powers(1, -1), "µm (5 min)⁻¹");
+    }
+
+    #[test]
+    fn powers_of_quotients_are_powers() {
+        let units = Units { length: "ℓ₀".into(), time: "1/K_P".into() };
+        assert_eq!(units.time_text(), "K_P⁻¹");
+        assert_eq!(units.velocity_text(), "ℓ₀ K_P");
+        assert_eq!(units.powers(2, -2), "ℓ₀² K_P²");
     }
 }

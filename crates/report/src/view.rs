@@ -19,6 +19,8 @@ pub enum CellStatus {
 /// One cell of one frame.
 #[derive(Debug, Clone, PartialEq)]
 pub struct CellView {
+    /// Number of the cell in the data; `None` of one that is not among them.
+    pub number: Option<usize>,
     /// Position of the cell centre.
     pub centre: [f64; 2],
     /// Voronoi vertices in order, next to the centre (not wrapped by a periodic box); empty where
@@ -32,6 +34,8 @@ pub struct CellView {
     pub status: CellStatus,
     /// Measured velocity.
     pub measured: Option<[f64; 2]>,
+    /// Vorticity of the measured velocities around the cell, in 1/time.
+    pub vorticity: Option<f64>,
     /// Velocity that the fitted model gives.
     pub predicted: Option<[f64; 2]>,
     /// Polarity: the velocity that the cell has of itself, where cells crawl.
@@ -79,6 +83,8 @@ pub struct ChangedEdges {
 pub struct FrameView {
     /// Name of the frame in headings, for example `frame 6`.
     pub label: String,
+    /// Its time, if it is one of a movie.
+    pub time: Option<f64>,
     /// Its cells.
     pub cells: Vec<CellView>,
     /// Contacts changed by the nudges.

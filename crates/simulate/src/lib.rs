@@ -67,4 +67,4 @@ pub use simulation::{Bond, Direction, Simulation, State, derivatives};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
 pub use turnover::{EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Proliferation, Turnover};
-pub use walls::Walls;
+pub use walls::{CellsAndImages, Walls};

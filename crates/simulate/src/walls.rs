@@ -38,11 +38,48 @@ impl Walls {
         1 << self.mirrors().len()
     }
 
+    /// Cells in front of the walls of a box at positions (N) with velocities (N): the tessellation of them and their mirror images, and
+    /// the positions and velocities of all, the cells themselves first.
+    ///
+    /// # Errors
+    /// As [`Tessellation::new`].
+    pub fn with_images(
+        self,
+        cell_box: &PeriodicBox,
+        positions: &[Vector<f64>],
+        velocities: &[Vector<f64>],
+    ) -> Result<CellsAndImages, voronudge_geometry::Error> {
+        let mut front = positions.to_vec();
+        let (mirrored, tessellation) = Mirrored::of(self, cell_box, &mut front)?;
+        let mut all = velocities.to_vec();
+        mirrored.unfold(&mut all);
+        for &axis in self.mirrors() {
+            for index in 0..all.len() {
+                let mut image = all[index];
+                image[axis] = -image[axis];
+                all.push(image);
+            }
+        }
+        let tessellation = tessellation.tessellation().clone();
+        Ok(CellsAndImages { tessellation, positions: mirrored.positions, velocities: all })
+    }
+
     /// The periodic box of cells and images.
     fn doubled(self, mut lengths: [f64; 2]) -> Result<PeriodicBox, voronudge_geometry::Error> {
         self.mirrors().iter().for_each(|&axis| lengths[axis] *= 2.0);
         PeriodicBox::new(lengths)
     }
+}
+
+/// Cells between walls and their mirror images at one time.
+#[derive(Debug, Clone)]
+pub struct CellsAndImages {
+    /// Of all, in a box twice as large in each walled direction.
+    pub tessellation: Tessellation,
+    /// Positions, the cells themselves first.
+    pub positions: Vec<Vector<f64>>,
+    /// Velocities, in the same order.
+    pub velocities: Vec<Vector<f64>>,
 }
 
 /// Cells between walls, with their mirror images.

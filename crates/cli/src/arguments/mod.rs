@@ -3,12 +3,14 @@
 mod dataset;
 mod effects;
 mod export;
+mod movie;
 mod parameters;
 mod shard;
 
 pub(crate) use dataset::DataSetArguments;
 pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
 pub(crate) use export::{ExportArguments, cell_frame};
+pub(crate) use movie::MovieArguments;
 pub(crate) use parameters::{LARGEST_PARAMETER, ParameterArguments};
 pub(crate) use shard::Shard;
 

@@ -1,7 +1,18 @@
 //! Cells of a tessellation as figures show them.
 
 use voronudge_geometry::{CellPolygon, Domain, Region, Tessellation, Vector};
-use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView};
+use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, Units};
+
+/// What lengths and times of a simulation are shown in: ℓ₀ and 1/K_P, where these are 1 and nobody named units.
+pub(crate) fn units_of_model(named: &Units, cell_size: f64, perimeter_elasticity: f64) -> Units {
+    let own = |unit: &str, none: &str, scale: f64, own: &str| {
+        if unit == none && (scale - 1.0).abs() < 1e-9 { own.to_owned() } else { unit.to_owned() }
+    };
+    Units {
+        length: own(&named.length, "length", cell_size, "ℓ₀"),
+        time: own(&named.time, "time", perimeter_elasticity, "1/K_P"),
+    }
+}
 
 /// The border of a field of view in another unit of length, `1/unit` times as large.
 pub(crate) fn borders(region: Option<&Region>, unit: f64) -> Vec<Vec<[f64; 2]>> {
@@ -25,6 +36,7 @@ pub(crate) fn cells_view(
         .collect();
     FrameView {
         label,
+        time: None,
         cells,
         changed_edges: ChangedEdges::default(),
         outline: match tessellation.domain() {
@@ -48,12 +60,14 @@ pub(crate) fn cell_view(
     };
     let place = |r: Vector<f64>| [r.x, r.y];
     let mut view = CellView {
+        number: Some(cell),
         centre: place(centre),
         polygon: Vec::new(),
         area: f64::NAN,
         perimeter: f64::NAN,
         status: CellStatus::Used,
         measured: None,
+        vorticity: None,
         predicted: None,
         polarity: None,
         held_out: None,

@@ -30,6 +30,7 @@ mod limits;
 mod measured_sets;
 mod measurements;
 mod moduli;
+mod movies;
 mod observations;
 mod phase_diagrams;
 mod phase_diffusions;

@@ -19,7 +19,8 @@ pub fn density_of_states(title: &str, quantity: &str, unit: &str, values: &[f64]
         return no_data(title);
     };
     let width = (high - low).max(1e-6 * high.abs().max(low.abs())).max(1e-12);
-    let Some(mut bars) = Histogram::new(values.iter().copied(), [low, low + 1.0001 * width], 36) else {
+    let bins = Histogram::bins(values.len(), 36);
+    let Some(mut bars) = Histogram::new(values.iter().copied(), [low, low + 1.0001 * width], bins) else {
         return no_data(title);
     };
     let total = bars.total() * bars.width();

@@ -31,7 +31,7 @@ pub fn distribution(title: &str, label: &str, values: &[f64], landmark: Option<&
         return no_data(title);
     };
     let width = (high - low).max(1e-6 * high.abs().max(low.abs())).max(1e-12);
-    let bins = if few { 12 } else { 28 };
+    let bins = Histogram::bins(values.len(), 28);
     let Some(mut bars) = Histogram::new(values.iter().copied(), [low, low + 1.0001 * width], bins) else {
         return no_data(title);
     };

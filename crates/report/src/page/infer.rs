@@ -3,6 +3,7 @@
 use serde::Serialize;
 
 use super::parameter_table::{TableRow, activity_rows, parameter_rows};
+use super::player::Player;
 use super::prospects::ProspectsView;
 use super::spreads::SpreadView;
 use super::uncertainty::{Known, Uncertainty};
@@ -16,12 +17,17 @@ use crate::figure::{
     predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
+use crate::movie::CellMovie;
 use crate::numbers::{NO_VALUE, significant};
 use crate::units::unit_text;
 use crate::view::FrameView;
 
 const TEMPLATE: Template =
     Template { name: "infer.html", source: include_str!("../../templates/infer.html") };
+
+/// The caption of the cells of all frames.
+const CELLS: &str = "Cells where they were seen, with what the fit makes of them. The residual is what the model leaves of the \
+                     measured velocity.";
 
 /// Everything the page of `infer` shows.
 #[derive(Debug, Clone, Copy)]
@@ -34,7 +40,9 @@ pub struct InferPage<'a> {
     pub report: &'a InferReport,
     /// The frames to draw; each adds about 0.5 kB per cell to the page.
     pub frames: &'a [FrameView],
-    /// Their velocities, one map for each frame, where these are on a grid; empty otherwise.
+    /// The cells of all frames, if there are any.
+    pub movie: Option<&'a CellMovie>,
+    /// Velocities of the frames to draw, one map for each frame, where these are on a grid; empty otherwise.
     pub flows: &'a [FlowMap<'a>],
     /// Deviations of the cells in each parameter in which they may differ; empty if they may not.
     pub spreads: &'a [SpreadView],
@@ -89,6 +97,7 @@ impl InferPage<'_> {
                  determine only part of it.",
             ),
             spread_figures: self.spreads.iter().map(SpreadView::histogram).collect(),
+            player: self.movie.map(|movie| Player::new(movie, movie.still(), CELLS)).transpose()?,
             panels: self.panels(),
         };
         render(TEMPLATE, &context)
@@ -201,6 +210,7 @@ struct Context<'a> {
     scatter_figure: Figure,
     nudge_figure: Figure,
     spread_figures: Vec<Figure>,
+    player: Option<Player>,
     panels: Vec<Panel>,
 }
 

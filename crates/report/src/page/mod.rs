@@ -9,6 +9,7 @@ mod infer;
 mod moduli;
 mod parameter_table;
 mod phase_diagram;
+mod player;
 mod prospects;
 mod sections;
 mod simulate;

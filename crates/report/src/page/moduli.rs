@@ -57,13 +57,16 @@ impl ModuliPage<'_> {
     pub fn render(&self) -> Result<String, ReportError> {
         let report = self.report;
         let unit = report.units.powers(0, -1);
-        let cards = report.moduli.iter().chain(&report.viscosities).map(|record| Card {
+        let moduli_in_units = report.moduli.iter().map(|record| (record, &*unit));
+        let viscosities = report.viscosities.iter().map(|record| (record, ""));
+        let cards = moduli_in_units.chain(viscosities).map(|(record, unit)| Card {
             label: record.symbol.into(),
-            value: significant(record.value, 3),
+            value: format!("{} {unit}", significant(record.value, 3)).trim_end().to_owned(),
             note: format!("± {}", significant(record.error, 1)),
         });
+        let cards = cards.collect();
         let context = Context {
-            head: PageHead::sound([self.title, self.headline], self.summary, cards.collect(), &report.run),
+            head: PageHead::sound([self.title, self.headline], self.summary, cards, &report.run),
             report,
             figure: Figure::new(
                 moduli(&report.moduli, &unit),

@@ -2,9 +2,11 @@
 
 use serde::Serialize;
 
+use super::player::Player;
 use super::{Card, Figure, PageHead, Template, render};
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
+use crate::movie::CellMovie;
 
 const TEMPLATE: Template =
     Template { name: "simulate.html", source: include_str!("../../templates/simulate.html") };
@@ -22,6 +24,8 @@ pub struct SimulatePage<'a> {
     pub cards: &'a [Card],
     /// The cells at the end of the run.
     pub configuration: &'a Figure,
+    /// The cells of all frames, if there are any.
+    pub movie: Option<&'a CellMovie>,
     /// What happened in time.
     pub course: &'a [Figure],
     /// What the tissue is like at the end.
@@ -34,6 +38,7 @@ pub struct SimulatePage<'a> {
 struct Context<'a> {
     head: PageHead<'a>,
     configuration: &'a Figure,
+    player: Option<Player>,
     course: &'a [Figure],
     structure: &'a [Figure],
 }
@@ -46,7 +51,9 @@ impl SimulatePage<'_> {
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
         let head = PageHead::sound([self.title, self.headline], self.summary, self.cards.to_vec(), self.run);
-        let Self { configuration, course, structure, .. } = *self;
-        render(TEMPLATE, &Context { head, configuration, course, structure })
+        let Self { configuration, movie, course, structure, .. } = *self;
+        let player = |movie| Player::new(movie, configuration.svg.clone(), &configuration.caption);
+        let player = movie.map(player).transpose()?;
+        render(TEMPLATE, &Context { head, configuration, player, course, structure })
     }
 }

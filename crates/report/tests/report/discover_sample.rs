@@ -57,6 +57,7 @@ pub fn figures() -> DiscoverFigures {
     };
     let deviation = |cell: usize| 0.04 * noise(cell, 61);
     DiscoverFigures {
+        movie: None,
         spreads: vec![SpreadView { symbol: "P_0".into(), drawn: vec![(0..400).map(deviation).collect(); 2] }],
         correlations: vec![
             function(Correlation::Longitudinal, 0.7, 0.2, 40),

@@ -47,6 +47,7 @@ pub fn frame(label: &str, side: usize) -> FrameView {
         let measured = [predicted[0] + 0.35 * noise(index, 5), predicted[1] + 0.35 * noise(index, 6)];
         let centre = [centre[0] + noise(index, 1), centre[1] + noise(index, 2)];
         CellView {
+            number: Some(index),
             centre,
             area: area(&polygon),
             perimeter: perimeter(&polygon),
@@ -57,6 +58,7 @@ pub fn frame(label: &str, side: usize) -> FrameView {
                 (false, _) => CellStatus::Used,
             },
             measured: (index % 41 != 7).then_some(measured),
+            vorticity: (!rim).then_some(2.0 / 90.0),
             predicted: (!rim).then_some(predicted),
             polarity: Some([0.2, -0.1]),
             held_out: (!rim).then_some([0.9 * predicted[0], 0.9 * predicted[1]]),
@@ -72,18 +74,20 @@ pub fn frame(label: &str, side: usize) -> FrameView {
     };
     let end = side as f64 * SPACING;
     let region = vec![vec![[-4.0, -6.0], [end, -6.0], [end, 0.88 * end], [-4.0, 0.88 * end]]];
-    FrameView { label: label.to_owned(), cells, changed_edges, outline: None, region }
+    FrameView { label: label.to_owned(), time: None, cells, changed_edges, outline: None, region }
 }
 
 /// A few cells with everything that can be unknown unknown.
 pub fn degenerate_frame() -> FrameView {
     let cell = |x: f64, nudge: f64| CellView {
+        number: None,
         centre: [x, 0.5 * x],
         polygon: vec![[x, 0.0], [f64::NAN, 1.0], [x + 1.0, f64::INFINITY]],
         area: f64::NAN,
         perimeter: 4.0,
         status: CellStatus::Used,
         measured: Some([f64::NAN, 0.1]),
+        vorticity: Some(f64::NAN),
         predicted: Some([0.1, f64::INFINITY]),
         polarity: None,
         held_out: Some([f64::NAN, 0.1]),
@@ -93,8 +97,8 @@ pub fn degenerate_frame() -> FrameView {
         label: "frame <0>".to_owned(),
         cells: vec![cell(0.0, f64::NAN), cell(2.0, 0.0), cell(f64::NAN, 1.0)],
         changed_edges: ChangedEdges { lost: vec![[[0.0, f64::NAN], [1.0, 1.0]]], gained: vec![] },
-        outline: None,
         region: vec![vec![[0.0, f64::NAN], [1.0, 0.0], [0.0, 1.0]]],
+        ..FrameView::default()
     }
 }
 
@@ -104,7 +108,16 @@ pub fn page<'a>(
     frames: &'a [FrameView],
     uncertainty: &'a Uncertainty,
 ) -> InferPage<'a> {
-    InferPage { title: "embryo <3>", summary: &[], report, frames, flows: &[], spreads: &[], uncertainty }
+    InferPage {
+        title: "embryo <3>",
+        summary: &[],
+        report,
+        frames,
+        movie: None,
+        flows: &[],
+        spreads: &[],
+        uncertainty,
+    }
 }
 
 /// A filled report.

@@ -61,6 +61,7 @@ fn frame(cells: usize) -> FrameView {
     let cell = |k: usize| {
         let centre = [(k % 50) as f64, (k / 50) as f64];
         CellView {
+            number: Some(k),
             centre,
             polygon: vec![
                 [centre[0] - 0.5, centre[1] - 0.5],
@@ -72,6 +73,7 @@ fn frame(cells: usize) -> FrameView {
             perimeter: 4.0,
             status: CellStatus::Used,
             measured: None,
+            vorticity: None,
             predicted: None,
             polarity: None,
             held_out: None,

@@ -94,7 +94,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     });
     let findings = report::findings(&run, &request, (&tissue, &outcome), &folded, record)?;
     arrays::write(&mut out, &full, &folded)?;
-    frames.write(&mut out, &tissue, &request.units)?;
+    frames.write(&mut out, &tissue, &request.named)?;
     if let Some([vertex, division]) = &disturbance {
         let both = Array2::from_shape_fn((DRAWS, 2), |(draw, way)| [vertex, division][way][draw]);
         out.write_array("birth_disturbance.npy", both.view())?;

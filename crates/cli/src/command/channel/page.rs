@@ -35,7 +35,7 @@ const GUIDE: [[&str; 2]; 5] = [
     ],
     [
         "Continuum",
-        "The steady state of conservation of cells and of ζ v_x = −(B + μ) ∂_x ρ/ρ_0, v_y/v_x = (A − K^o)/(B + μ), with the moduli of the \
+        "The steady state of conservation of cells and of ζ v_x = −(B + μ) ∂_x ρ/ρ_0, v_y/v_x = (A − Kᵒ)/(B + μ), with the moduli of the \
          honeycomb and no viscosity. Nothing is fitted.",
     ],
     [
@@ -153,10 +153,10 @@ fn setting(report: &ChannelReport) -> String {
         significant(report.length, 3),
         boundary(report),
         significant(report.time, 3),
-        report.units.time,
+        report.units.time_text(),
         report.samples,
         significant(report.relaxation, 3),
-        report.units.time
+        report.units.time_text()
     )
 }
 

@@ -1,6 +1,7 @@
 //! What a channel is asked to be, in the units of its preset or of the user.
 
 use crate::arguments::ParameterArguments;
+use crate::command::drawing::units_of_model;
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
@@ -95,7 +96,10 @@ enum InjectionName {
 
 /// A checked request.
 pub(super) struct ChannelRequest {
+    /// Units as they are shown.
     pub units: Units,
+    /// Units as data sets name them.
+    pub named: Units,
     pub cell_size: f64,
     pub cell_box: PeriodicBox,
     pub walls: Option<Walls>,
@@ -198,11 +202,13 @@ impl ChannelArguments {
         let unit = |given: &Option<String>, of_preset: &str, own: &str| {
             given.clone().unwrap_or_else(|| if ht1080 { of_preset } else { own }.to_owned())
         };
+        let named = Units {
+            length: unit(&self.length_unit, "um", "length"),
+            time: unit(&self.time_unit, "h", "time"),
+        };
         Ok(ChannelRequest {
-            units: Units {
-                length: unit(&self.length_unit, "um", "length"),
-                time: unit(&self.time_unit, "h", "time"),
-            },
+            units: units_of_model(&named, cell_size, parameters.perimeter_elasticity),
+            named,
             cell_size,
             cell_box: PeriodicBox::new([width, length])?,
             walls: self.walls.map(|WallsName::X| Walls::X),

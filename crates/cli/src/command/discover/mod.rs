@@ -22,7 +22,7 @@ use super::fit::{
     measurement, outcome, spreads, tracks, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
-use crate::arguments::{CommonArguments, ExportArguments};
+use crate::arguments::{CommonArguments, ExportArguments, MovieArguments};
 use crate::failure::Failure;
 use crate::problem::{Measured, Problem};
 use crate::program::Answer;
@@ -62,6 +62,8 @@ pub(crate) struct Arguments {
     given_difference: Option<GivenDifference>,
     #[command(flatten)]
     export: ExportArguments,
+    #[command(flatten)]
+    movie: MovieArguments,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -161,6 +163,8 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     spreads::write(&mut out, "after_", &data, &prepared, last)?;
     latent::write(&mut out, &data, &prepared, last)?;
     arguments.export.write(&mut out, &data, || export::frames(&prepared, last))?;
+    let movie = page::movie(&prepared, &discovery, &data);
+    arguments.movie.write(&mut out, movie.as_ref(), &mut run)?;
     let predictions =
         others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
     let followed = prepared.tracks.as_ref().zip(discovery.after.tracked.as_ref());
@@ -179,7 +183,7 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     let report = report::report(&run, &found, &discovery);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report)?)?;
+    out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report, movie)?)?;
     progress.heed().map_err(|failure| kept.failed(failure))?;
     out.end_run();
     run.finish(Some(out), &json, &summary::summary(&report, &folder))?;

@@ -7,10 +7,12 @@ use crate::problem::Problem;
 use voronudge_geometry::Vector;
 use voronudge_infer::diagnostics::{Bin, Cause, Correlation as Measured, Diagnostics};
 use voronudge_infer::discover::{Discovery, Selected};
+use voronudge_io::DataSet;
 use voronudge_report::figure::{
     Correlation, CorrelationFunction, CorrelationPoint, FlowMap, Outlier, PartialPoint, PartialRegression,
     Suspicion,
 };
+use voronudge_report::movie::CellMovie;
 use voronudge_report::{BeforeAfter, DiscoverFigures, DiscoverPage, DiscoverReport, FrameView};
 
 pub(super) fn page(
@@ -18,6 +20,7 @@ pub(super) fn page(
     found: &Found<'_>,
     discovery: &Discovery,
     report: &DiscoverReport,
+    movie: Option<CellMovie>,
 ) -> Result<String, Failure> {
     let prepared = found.prepared;
     let drawn = views::drawn(prepared);
@@ -40,6 +43,7 @@ pub(super) fn page(
         })
         .collect();
     let figures = DiscoverFigures {
+        movie,
         correlations: correlations(discovery),
         regressions: discovery
             .selected
@@ -56,6 +60,16 @@ pub(super) fn page(
     };
     let page = DiscoverPage { title, report, frames: &frames, flows: &flows, figures: &figures };
     Ok(page.render()?)
+}
+
+/// The cells of all frames, with their residuals before and after.
+pub(super) fn movie(prepared: &Problem, discovery: &Discovery, data: &DataSet) -> Option<CellMovie> {
+    let movie = views::movie(prepared, &discovery.before.inference, data)?;
+    if discovery.selected.is_empty() {
+        return Some(movie);
+    }
+    let after = views::movie_frames(prepared, &discovery.after.inference, data);
+    Some(movie.with_residuals(["residual before", "residual after"], after))
 }
 
 /// The correlation functions of the residual.

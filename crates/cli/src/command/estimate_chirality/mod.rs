@@ -14,6 +14,7 @@ use serde_json::Value;
 use std::path::{Path, PathBuf};
 use voronudge_infer::{Intercept, LinePoint};
 use voronudge_io::{FlowProfile, read_flow_profile};
+use voronudge_report::Units;
 use voronudge_report::channel_report::ChiralityReport;
 use voronudge_simulate::measure::Estimate;
 
@@ -58,6 +59,7 @@ struct Known {
     shape_index: Option<f64>,
     area_elasticity: Option<f64>,
     from: Option<f64>,
+    units: Option<Units>,
 }
 
 /// Share of the flow along the channel below which there is none across.
@@ -123,7 +125,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     let title = arguments.profiles.display().to_string();
-    out.write_text("report.html", &page::page(&title, &points, &report)?)?;
+    out.write_text("report.html", &page::page(&title, &points, &report, known.units.as_ref())?)?;
     let summary = page::summary(&report, out.path());
     run.finish(Some(out), &json, &summary)?;
     Ok(Answer::Positive)
@@ -153,6 +155,7 @@ fn known(report: &Path) -> Known {
         return Known::default();
     };
     let number = |pointer: &str| json.pointer(pointer).and_then(Value::as_f64);
+    let text = |pointer: &str| Some(json.pointer(pointer)?.as_str()?.to_owned());
     let size = number("/cell_size");
     let per = |value: Option<f64>, unit: Option<f64>| value.zip(unit).map(|(value, unit)| value / unit);
     let square = size.map(|size| size * size);
@@ -162,5 +165,6 @@ fn known(report: &Path) -> Known {
             .zip(square)
             .map(|(ratio, square)| ratio * square),
         from: number("/chirality_from_flow/range/0"),
+        units: text("/units/length").zip(text("/units/time")).map(|(length, time)| Units { length, time }),
     }
 }

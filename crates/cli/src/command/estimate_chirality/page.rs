@@ -3,7 +3,6 @@
 use crate::failure::Failure;
 use std::path::Path;
 use voronudge_infer::LinePoint;
-use voronudge_report::ChiralityReport;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::{BLUE, GREY};
 use voronudge_report::figure::{
@@ -12,6 +11,7 @@ use voronudge_report::figure::{
 use voronudge_report::markers::Marker;
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
+use voronudge_report::{ChiralityReport, Units};
 
 const GUIDE: [[&str; 2]; 2] = [
     [
@@ -30,6 +30,7 @@ pub(super) fn page(
     title: &str,
     points: &[(f64, LinePoint)],
     report: &ChiralityReport,
+    units: Option<&Units>,
 ) -> Result<String, Failure> {
     let line = &report.line;
     let [from, to] = line.range;
@@ -63,9 +64,11 @@ pub(super) fn page(
         curve("95 % interval of the slope", Stroke::Dotted, along(line.slope_ci95[0], line.intercept)),
         curve("", Stroke::Dotted, along(line.slope_ci95[1], line.intercept)),
     ];
+    let unit = units.map_or_else(|| "unit of the table".to_owned(), Units::velocity_text);
+    let label = |name: &str| format!("{name} ({unit})");
     let svg = points_and_curves(&PointsAndCurves {
         title: "v_y against v_x",
-        labels: ["v_x (unit of the data)", "v_y (unit of the data)"],
+        labels: [&label("v_x"), &label("v_y")],
         scales: [AxisScale::Linear; 2],
         series: &series,
         curves: &curves,

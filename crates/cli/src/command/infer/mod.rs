@@ -13,10 +13,10 @@ mod verdict;
 use super::fit::measured::{frames, measured};
 use super::fit::{
     ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, export, latent, measurement, place,
-    tracks, words,
+    tracks, views, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
-use crate::arguments::{CommonArguments, ExportArguments};
+use crate::arguments::{CommonArguments, ExportArguments, MovieArguments};
 use crate::failure::Failure;
 use crate::problem::Measured;
 use crate::program::Answer;
@@ -59,6 +59,8 @@ pub(crate) struct Arguments {
     vary: Vec<CellParameter>,
     #[command(flatten)]
     export: ExportArguments,
+    #[command(flatten)]
+    movie: MovieArguments,
     /// Open report.html when done.
     #[arg(long)]
     open_report: bool,
@@ -179,6 +181,8 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
     latent::write(&mut out, &data, &prepared, &result)?;
     arguments.export.write(&mut out, &data, || export::frames(&prepared, &result))?;
+    let movie = views::movie(&prepared, &result, &data);
+    arguments.movie.write(&mut out, movie.as_ref(), &mut run)?;
     let followed = prepared.tracks.as_ref().zip(tracked.as_ref());
     if let Some((movie, tracked)) = followed {
         tracks::write(&mut out, "", &data, (&prepared, movie), tracked)?;
@@ -199,7 +203,8 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     );
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page::page(&arguments, &data, &prepared, &result, &report, &answers)?)?;
+    let page = page::page(&arguments, &data, (&prepared, &result), &report, &answers, movie.as_ref())?;
+    out.write_text("report.html", &page)?;
     let summary = summary::summary(&report, &folder);
     progress.heed().map_err(|failure| kept.failed(failure))?;
     out.end_run();

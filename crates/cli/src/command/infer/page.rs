@@ -12,16 +12,17 @@ use voronudge_infer::{Inference, Quantity};
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
+use voronudge_report::movie::CellMovie;
 use voronudge_report::numbers::{as_given, significant};
 use voronudge_report::{FrameView, InferPage};
 
 pub(super) fn page(
     arguments: &Arguments,
     data: &DataSet,
-    prepared: &Problem,
-    result: &Inference,
+    (prepared, result): (&Problem, &Inference),
     report: &InferReport,
     answers: &Answers,
+    movie: Option<&CellMovie>,
 ) -> Result<String, Failure> {
     let drawn = views::drawn(prepared);
     let frames: Vec<FrameView> =
@@ -36,6 +37,7 @@ pub(super) fn page(
         summary: &paragraphs(data, prepared, report),
         report,
         frames: &frames,
+        movie,
         flows: &flows,
         spreads: &spreads::views(prepared, result, &drawn),
         uncertainty: &answers::figures(answers, result, &prepared.scale, &report.units),

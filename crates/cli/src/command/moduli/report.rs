@@ -3,6 +3,7 @@
 use super::Arguments;
 use super::measure::Measured;
 use super::protocol::Protocol;
+use crate::command::drawing::units_of_model;
 use crate::command::simulate::Start;
 use crate::command::spectrum::{mean_field, named};
 use crate::run::Run;
@@ -60,7 +61,11 @@ pub(super) fn report(
     let first = &starts[0].1;
     ModuliReport {
         run: run.record(None),
-        units: Units { length: first.length_unit.clone(), time: first.time_unit.clone() },
+        units: units_of_model(
+            &Units { length: first.length_unit.clone(), time: first.time_unit.clone() },
+            length,
+            parameters.perimeter_elasticity,
+        ),
         cells: first.positions.len(),
         parameters: named(parameters),
         settings: settings(protocol),

@@ -4,6 +4,7 @@ mod cells;
 mod chaos;
 mod driving;
 mod measurements;
+mod movie;
 mod outcome;
 mod page;
 mod recorder;
@@ -12,7 +13,7 @@ mod sensitivity;
 mod start;
 mod surroundings;
 
-use crate::arguments::{CommonArguments, EffectArguments, ParameterArguments, environment};
+use crate::arguments::{CommonArguments, EffectArguments, MovieArguments, ParameterArguments, environment};
 use crate::failure::Failure;
 use crate::program::Answer;
 use crate::progress::Progress;
@@ -65,6 +66,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     sensitivity: Vec<String>,
     #[command(flatten)]
+    movie: MovieArguments,
+    #[command(flatten)]
     surroundings: SurroundingsArguments,
     /// Go on with the run that was interrupted in --out.
     #[arg(long)]
@@ -100,6 +103,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", arguments.checkpoint))
             .with_hint("leave --checkpoint out for 30 seconds")
     })?;
+    arguments.movie.check_without_fit()?;
     let start = Start::of(&arguments.start, arguments.common.seed, arguments.frames)?;
     let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
     let (of_cells, factors) = OfCells::read(&arguments.cell_parameter, cells, &mut parameters)?;
@@ -223,7 +227,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let finished =
         Finished { simulation: &simulation, schedule, summary, lyapunov, differentiated, steps_per_second };
     let units = Units { length: start.length_unit, time: start.time_unit };
-    outcome::finish(&run, recorder, (request, start.cell_box, units), finished)?;
+    outcome::finish(&mut run, recorder, (request, start.cell_box, units), finished, arguments.movie)?;
     Ok(Answer::Positive)
 }
 

@@ -1,11 +1,14 @@
 //! A run as files and a summary.
 
 use super::measurements::{Measurements, Spectra};
+use super::movie::movie;
 use super::page::{cell_box, page};
 use super::recorder::Recorder;
 use super::report::{Displacement, Exponent, Report, Request, Spread, Structure};
 use super::sensitivity::Differentiated;
 use super::surroundings::describe;
+use crate::arguments::MovieArguments;
+use crate::command::drawing::units_of_model;
 use crate::failure::Failure;
 use crate::run::Run;
 use ndarray::Array3;
@@ -29,10 +32,11 @@ pub(super) struct Finished<'a> {
 
 /// Measures what the frames tell, writes all results and prints the summary.
 pub(super) fn finish(
-    run: &Run,
+    run: &mut Run,
     mut recorder: Recorder,
     (request, start, units): (Request, PeriodicBox, Units),
     finished: Finished<'_>,
+    asked: MovieArguments,
 ) -> Result<(), Failure> {
     let Finished { simulation, schedule, summary, lyapunov, differentiated, steps_per_second } = finished;
     if summary.mean_square_velocity.is_some_and(|square| !square.is_finite()) {
@@ -45,7 +49,12 @@ pub(super) fn finish(
     };
     let measurements =
         Measurements::new(&mut recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
+    let [width, height] = request.box_lengths;
+    let cell_size = (width * height / request.cells as f64).sqrt();
+    let shown = units_of_model(&units, cell_size, request.parameters.perimeter_elasticity());
+    let movie = movie(&mut recorder, (&request, start), schedule.frame_interval(), &shown)?;
     let mut results = recorder.results()?;
+    asked.write(&mut results, movie.as_ref(), run)?;
     let mut settings = settings(simulation, &request, &schedule, &units);
     describe(&mut settings, &request, start, schedule.frame_interval())?;
     settings.save_settings(&mut results)?;
@@ -87,7 +96,7 @@ pub(super) fn finish(
     results.write_text("report.json", &json)?;
     results.write_text(
         "report.html",
-        &page(&report, &measurements, (simulation, differentiated.as_ref()), &units)?,
+        &page(&report, &measurements, (simulation, differentiated.as_ref(), movie.as_ref()), &shown)?,
     )?;
     let error = |error: Option<f64>| error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
     let mut text = format!(

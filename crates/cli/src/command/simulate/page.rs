@@ -15,6 +15,7 @@ use voronudge_report::figure::{
     distribution, points_and_curves,
 };
 use voronudge_report::markers::Marker;
+use voronudge_report::movie::CellMovie;
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure};
 use voronudge_report::units::label_with_unit;
@@ -32,7 +33,7 @@ const AT_REST: f64 = 1e-4;
 pub(super) fn page(
     report: &Report,
     measurements: &Measurements,
-    (simulation, differentiated): (&Simulation, Option<&Differentiated>),
+    (simulation, differentiated, movie): (&Simulation, Option<&Differentiated>, Option<&CellMovie>),
     units: &Units,
 ) -> Result<String, Failure> {
     let mut in_time = course(report, measurements, units);
@@ -43,6 +44,7 @@ pub(super) fn page(
         summary: &paragraphs(report, measurements),
         cards: &cards(report, units),
         configuration: &configuration(simulation, &cell_box(simulation, &report.request)?, units),
+        movie,
         course: &in_time,
         structure: &structure(measurements, simulation, units),
         run: &report.run,
@@ -141,6 +143,7 @@ fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units)
     let whole = share == 1.0;
     let frame = FrameView {
         label: "the end of the run".into(),
+        time: None,
         cells,
         changed_edges: ChangedEdges::default(),
         outline: whole.then_some([[0.0; 2], [width, height]]),

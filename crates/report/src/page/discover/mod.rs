@@ -18,6 +18,7 @@ use self::effects::{EffectView, coefficient_figure};
 use self::forecast::ForecastView;
 use self::remainder::Remainder;
 use super::directions::{Directions, directions};
+use super::player::Player;
 use super::prospects::ProspectsView;
 use super::spreads::SpreadView;
 use super::words::{self, listed, percent};
@@ -30,6 +31,7 @@ use crate::figure::{
     CorrelationFunction, FlowMap, Outlier, PartialRegression, noise_budget, outlier_map, polarity_map,
     residual_flow_maps, residual_maps,
 };
+use crate::movie::CellMovie;
 use crate::numbers::significant;
 use crate::view::FrameView;
 
@@ -52,8 +54,10 @@ pub struct DiscoverPage<'a> {
 }
 
 /// What the figures of the page show beyond the report. What is empty is not drawn.
-#[derive(Debug, Clone, Default, PartialEq)]
+#[derive(Debug, Clone, Default)]
 pub struct DiscoverFigures {
+    /// The cells of all frames, with their residuals before and after, if there are any.
+    pub movie: Option<CellMovie>,
     /// Correlation functions of the residual.
     pub correlations: Vec<CorrelationFunction>,
     /// Partial regression plots of selected effects.
@@ -80,6 +84,7 @@ struct Context<'a> {
     comparison: Comparison,
     forecast: Option<ForecastView>,
     check: Option<CheckView>,
+    player: Option<Player>,
     panels: Vec<Panel>,
     effects: Vec<EffectView>,
     spreads: Vec<Figure>,
@@ -131,6 +136,7 @@ impl DiscoverPage<'_> {
             comparison: Comparison::new(report),
             forecast: report.forecast.as_ref().map(ForecastView::new),
             check: report.check.as_ref().map(|check| CheckView::new(check, self.figures.trails.as_ref())),
+            player: self.player()?,
             panels: self.panels(),
             effects: effects::views(report, &self.figures.regressions),
             spreads: self.figures.spreads.iter().map(SpreadView::histogram).collect(),
@@ -159,6 +165,18 @@ impl DiscoverPage<'_> {
     /// The selected effects in words.
     fn added(&self) -> String {
         listed(self.report.selected.iter().map(|effect| &effect.effect), "and")
+    }
+
+    fn player(&self) -> Result<Option<Player>, ReportError> {
+        let caption = match self.report.is_extended() {
+            true => format!(
+                "Cells where they were seen, and what the base model leaves of their velocities, before and after adding {}.",
+                self.added()
+            ),
+            false => "Cells where they were seen, and what the base model leaves of their velocities.".into(),
+        };
+        let player = |movie: &CellMovie| Player::new(movie, movie.still(), &caption);
+        self.figures.movie.as_ref().map(player).transpose()
     }
 
     /// One panel of maps for each frame: residuals before and after, and suspicious cells.
