@@ -28,6 +28,23 @@ pub(crate) fn seeded<S: Arithmetic>(shape: Shape<S>) -> Shape<ByShape<S>> {
     Shape { area: Tangent::along(shape.area, 0), perimeter: Tangent::along(shape.perimeter, 1) }
 }
 
+/// Multiples as they are at the shape by which they are differentiated.
+#[inline(always)]
+pub(crate) fn held<S: Arithmetic>(multiples: &VertexForces<ByShape<S>>) -> VertexForces<S> {
+    VertexForces {
+        area: multiples.area.value,
+        perimeter: multiples.perimeter.value,
+        turned_perimeter: multiples.turned_perimeter.value,
+    }
+}
+
+/// How the force on the vertex at the beginning of side `m` (and, reversed, on that at its end) changes with neighbour `m` by the direction of the side.
+#[inline(always)]
+pub(crate) fn turn<S: Arithmetic>(polygon: &CellPolygon<S>, m: usize, held: &VertexForces<S>) -> Outer<S> {
+    let Outer { column, row } = side_direction_slope(polygon.ring()[m], polygon.directions()[m]);
+    Outer { column: column * held.perimeter + quarter_turn(column) * held.turned_perimeter, row }
+}
+
 /// Buffers for the derivative of one element after another.
 pub(crate) struct ElementJacobian<S> {
     /// How the unit vectors along the sides change with the neighbours that these face.
@@ -117,18 +134,11 @@ impl<S: Arithmetic> ElementJacobian<S> {
         blocks: &mut [BlockOf<S>],
     ) {
         let sides = polygon.len();
-        let (corners, directions) = (&polygon.corners()[..sides], &polygon.directions()[..sides]);
+        let corners = &polygon.corners()[..sides];
         let (turns, vertices) = (&mut self.turns[..sides], &mut self.vertices[..sides]);
-        let held = VertexForces {
-            area: multiples.area.value,
-            perimeter: multiples.perimeter.value,
-            turned_perimeter: multiples.turned_perimeter.value,
-        };
-        // What a change of the perimeter's gradient does to the force on a vertex.
-        let act = |v: Vector<S>| v * held.perimeter + quarter_turn(v) * held.turned_perimeter;
-        for ((turn, corner), &direction) in turns.iter_mut().zip(corners).zip(directions) {
-            let of_direction = side_direction_slope(corner.a, direction);
-            *turn = Outer { column: act(of_direction.column), row: of_direction.row };
+        let held = held(multiples);
+        for (m, of_side) in turns.iter_mut().enumerate() {
+            *of_side = turn(polygon, m, &held);
         }
         for (m, corner) in corners.iter().enumerate() {
             let next = if m + 1 == sides { 0 } else { m + 1 };

@@ -1,7 +1,7 @@
 //! Products with the Jacobian, without the matrix.
 
 use crate::assembly::{HalfEdgeForces, assemble_half_edges};
-use crate::element_jacobian::{ByShape, seeded};
+use crate::element_jacobian::{ByShape, held, seeded, turn};
 use crate::jacobian::has_velocity;
 use crate::{Model, VertexForces, WeightedTerm, jacobian};
 use num_dual::Dual64;
@@ -9,7 +9,6 @@ use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
 use voronudge_geometry::{
     Arithmetic, BySides, CellPolygon, Lanes, Outer, Tangent, Tessellation, Vector, dot, quarter_turn,
-    side_direction_slope,
 };
 
 /// `J u`: how velocities change (N) when all cells are displaced along `u` (N), exact to rounding for every model. Zero for cells without a velocity.
@@ -189,14 +188,10 @@ impl<S: Arithmetic> Backwards<S> {
     #[inline(always)]
     fn differentiate(&mut self, polygon: &CellPolygon<S>, multiples: &VertexForces<ByShape<S>>) -> Vector<S> {
         let sides = polygon.len();
-        let (corners, directions) = (&polygon.corners()[..sides], &polygon.directions()[..sides]);
+        let corners = &polygon.corners()[..sides];
         let (u, moved) = (&self.u[..sides], &mut self.moved[..sides]);
         let (turns, on_ring) = (&mut self.turns[..sides], &mut self.on_ring[..sides]);
-        let held = VertexForces {
-            area: multiples.area.value,
-            perimeter: multiples.perimeter.value,
-            turned_perimeter: multiples.turned_perimeter.value,
-        };
+        let held = held(multiples);
         let next = |m: usize| if m + 1 == sides { 0 } else { m + 1 };
         let zero = S::constant(0.0);
         let (mut of_area, mut of_perimeter, mut turned) = (zero, zero, zero);
@@ -207,9 +202,7 @@ impl<S: Arithmetic> Backwards<S> {
             of_area += dot(polygon.area_gradient(m), moved[m]);
             of_perimeter += dot(by_perimeter, moved[m]);
             turned += dot(quarter_turn(by_perimeter), moved[m]);
-            let turn = side_direction_slope(corners[m].a, directions[m]);
-            let column = turn.column * held.perimeter + quarter_turn(turn.column) * held.turned_perimeter;
-            turns[m] = Outer { column, row: turn.row };
+            turns[m] = turn(polygon, m, &held);
             on_ring[m] = Vector::new(zero, zero);
         }
         let [by_area, by_perimeter] = [0, 1].map(|by| {
