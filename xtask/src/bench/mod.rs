@@ -169,7 +169,7 @@ fn peak_memory() -> Option<f64> {
 }
 
 /// Fails where something became slower by more than what machines and hours differ.
-fn compare(timings: &[Timing], record: &Vec<Timing>) -> Outcome {
+fn compare(timings: &[Timing], record: &[Timing]) -> Outcome {
     let mut slower = Vec::new();
     for now in timings {
         let same = |then: &&Timing| {
