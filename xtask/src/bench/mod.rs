@@ -119,7 +119,7 @@ pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
         std::fs::write(root.join(PICTURE), drawn(&timings))?;
     }
     if arguments.check {
-        compare(&timings, &serde_json::from_slice(&std::fs::read(record)?)?)
+        compare(&timings, &serde_json::from_slice::<Vec<Timing>>(&std::fs::read(record)?)?)
     } else {
         Ok(())
     }
