@@ -66,16 +66,14 @@ pub struct Batch<'a> {
 }
 
 impl Batch<'_> {
-    /// The cell of each lane.
+    /// Gives each lane that has a cell to a function, with the cell. The loop is unrolled, so that lanes are known when it is compiled.
     #[inline(always)]
-    pub fn in_lanes(&self) -> [Option<usize>; Lanes::WIDTH] {
-        std::array::from_fn(|lane| self.cells.get(lane).map(|&cell| cell as usize))
-    }
-
-    /// The cells of the lanes.
-    #[inline(always)]
-    pub fn cells(&self) -> impl ExactSizeIterator<Item = usize> {
-        self.cells.iter().map(|&cell| cell as usize)
+    pub fn each(&self, mut work: impl FnMut(usize, usize)) {
+        for lane in 0..Lanes::WIDTH {
+            if let Some(&cell) = self.cells.get(lane) {
+                work(lane, cell as usize);
+            }
+        }
     }
 
     /// Writes displacements to the neighbours, a lane to a cell, by a function that puts a number into a lane. Lanes that are left over

@@ -39,6 +39,15 @@ pub fn circumcentre<S: Arithmetic>(a: Vector<S>, b: Vector<S>) -> Vector<S> {
     Corner::new(a, b).centre
 }
 
+/// A matrix `column ⊗ row`: what a change does, along one direction alone, in proportion to one component of it.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Outer<S> {
+    /// The direction of what changes.
+    pub column: Vector<S>,
+    /// The component of the change that counts.
+    pub row: Vector<S>,
+}
+
 /// The triangle (0, a, b) of a cell and two consecutive neighbours, counter-clockwise, with its circumcentre.
 #[derive(Debug, Clone, Copy)]
 pub struct Corner<S> {
@@ -79,18 +88,7 @@ impl<S: Arithmetic> Corner<S> {
         let (on_a, on_b) = (cross(f, self.b) * self.inverse_cross, cross(self.a, f) * self.inverse_cross);
         [(self.a - self.centre) * on_a, (self.b - self.centre) * on_b]
     }
-}
 
-/// A matrix `column ⊗ row`: what a change does, along one direction alone, in proportion to one component of it.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Outer<S> {
-    /// The direction of what changes.
-    pub column: Vector<S>,
-    /// The component of the change that counts.
-    pub row: Vector<S>,
-}
-
-impl<S: Arithmetic> Corner<S> {
     /// How the circumcentre moves with each of the two neighbours: `∂c/∂a` and `∂c/∂b`, see [`Corner::transmit`].
     #[inline(always)]
     pub fn centre_slopes(&self) -> [Outer<S>; 2] {

@@ -34,6 +34,8 @@ pub struct Sites {
     pub positions: Vec<Vector<f64>>,
     /// Standard deviation of each coordinate (N).
     pub errors: Vec<f64>,
+    /// Standard deviation of each coordinate of the centroids (N) as those of Voronoi polygons; NaN for a cell that touches none.
+    pub centroid_errors: Vec<f64>,
     /// Root mean square distance of the outlines from the bisectors of the centroids, over the length where cells touch.
     pub misfit_of_centroids: f64,
     /// The same with the sites.
@@ -87,7 +89,7 @@ pub fn sites(cells: &[Outlined], lines: &[Interface]) -> Result<Sites, Error> {
     let misfit_of_centroids = misfit(&fit);
     let mut offset = FIRST_OFFSET * size;
     let mut variance = fit.variance(0.0);
-    let mut deviations = Vec::new();
+    let mut errors = Vec::new();
     for _ in 0..ROUNDS {
         let springs: Vec<f64> = cells
             .iter()
@@ -98,10 +100,16 @@ pub fn sites(cells: &[Outlined], lines: &[Interface]) -> Result<Sites, Error> {
         // Directions that lines rather than springs determine.
         let determined: f64 = curvatures.iter().zip(&springs).map(|(c, k)| 2.0 - k * c).sum();
         variance = fit.variance(determined);
-        deviations = fit.deviations(variance, &curvatures);
-        offset = fit.offset(&deviations).max(LEAST_OFFSET * size);
+        errors = fit.deviations(variance, &curvatures);
+        offset = fit.offset(&errors).max(LEAST_OFFSET * size);
     }
-    Ok(Sites { misfit_of_centroids, misfit: misfit(&fit), errors: deviations, positions: fit.positions })
+    Ok(Sites {
+        misfit_of_centroids,
+        misfit: misfit(&fit),
+        centroid_errors: fit.deviations(variance, &fit.curvatures_of_centroids()),
+        errors,
+        positions: fit.positions,
+    })
 }
 
 /// Sites on their way.
@@ -221,6 +229,19 @@ impl Fit<'_> {
             unit[2 * cell] + unit[order + 2 * cell + 1]
         });
         Ok(traces.collect())
+    }
+
+    /// The trace of each centroid's variance, in units of that of a residual: a line of length L that is off by g moves the centroid of an area A by
+    /// L g/A times its distance.
+    fn curvatures_of_centroids(&self) -> Vec<f64> {
+        let mut sums = vec![0.0; self.cells.len()];
+        for line in self.lines {
+            for cell in line.cells {
+                let own = &self.cells[cell];
+                sums[cell] += line.length * (line.middle - own.centroid).norm_squared() / own.area.powi(2);
+            }
+        }
+        sums.into_iter().map(|sum| if sum > 0.0 { sum } else { f64::NAN }).collect()
     }
 
     /// Standard deviation of each cell's coordinates; its scale is that of the lines around the cell and of all together.

@@ -7,12 +7,13 @@ use crate::error::{Error, SettingFault};
 
 /// The size of measurement noise: one standard deviation per component.
 ///
-/// As text: a number is [`Noise::Absolute`], a number with `%` is [`Noise::Relative`].
+/// As text: a number is [`Noise::Absolute`], a number with `%` is [`Noise::Relative`]; `estimated` says that it is not known.
 ///
 /// ```
 /// use voronudge_io::Noise;
 /// assert_eq!("0.3".parse::<Noise>()?, Noise::Absolute(0.3));
 /// assert_eq!("2 %".parse::<Noise>()?, Noise::Relative(0.02));
+/// assert_eq!("estimated".parse::<Noise>()?, Noise::Estimated);
 /// # Ok::<(), voronudge_io::Error>(())
 /// ```
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -22,27 +23,33 @@ pub enum Noise {
     /// As a fraction (0.02 for 2 %) of the typical cell spacing l0 for positions, of the root
     /// mean square velocity for velocities.
     Relative(f64),
+    /// Not known. Errors that single cells have count by their ratios.
+    Estimated,
 }
 
 impl Noise {
+    /// The word for noise that is not known.
+    const ESTIMATED: &str = "estimated";
+
     /// Reads a number, or a number with a per cent sign; `key` names the setting in errors.
     pub(crate) fn parse(key: &'static str, text: &str) -> Result<Self, SettingFault> {
         let trimmed = text.trim();
         let noise = match trimmed.strip_suffix('%') {
+            None if trimmed == Self::ESTIMATED => Some(Self::Estimated),
             Some(number) => hundredth(number.trim()).map(Self::Relative),
             None => trimmed.parse().ok().map(Self::Absolute),
         };
         let noise = noise.ok_or_else(|| SettingFault::Unknown {
             key,
             found: text.to_owned(),
-            expected: "a number in data units, or a percentage such as \"2 %\"",
+            expected: "a number in data units, a percentage such as \"2 %\", or \"estimated\"",
         })?;
         noise.check(key)?;
         Ok(noise)
     }
 
     pub(crate) fn check(self, key: &'static str) -> Result<(), SettingFault> {
-        let (Self::Absolute(value) | Self::Relative(value)) = self;
+        let (Self::Absolute(value) | Self::Relative(value)) = self else { return Ok(()) };
         if value.is_finite() && value >= 0.0 { Ok(()) } else { Err(SettingFault::Negative { key, value }) }
     }
 }
@@ -61,6 +68,7 @@ impl fmt::Display for Noise {
         match *self {
             Self::Absolute(value) => write!(f, "{value}"),
             Self::Relative(fraction) => write!(f, "{} %", percent(fraction)),
+            Self::Estimated => f.write_str(Self::ESTIMATED),
         }
     }
 }

@@ -115,7 +115,7 @@ impl DataSet {
             Some(Noise::Relative(share)) => {
                 FieldOfView { seen, margin: usual.margin.max(MARGIN * share), ..usual }
             }
-            None => FieldOfView { seen, ..usual },
+            Some(Noise::Estimated) | None => FieldOfView { seen, ..usual },
         })
     }
 

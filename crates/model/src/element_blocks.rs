@@ -194,14 +194,12 @@ impl<F: Fn(usize) -> usize> WithSimd for Several<'_, F> {
                 polygon.complete();
                 let multiples = VertexForces::of(self.terms, seeded(polygon.shape()));
                 let all = self.work.fill(&polygon, &multiples);
-                let first = batch.in_lanes().map(|cell| cell.map(self.start));
-                for (place, lanes) in all.iter().enumerate() {
-                    for lane in 0..Lanes::WIDTH {
-                        if let Some(first) = first[lane] {
-                            self.blocks[first + place] = std::array::from_fn(|entry| lanes[entry].0[lane]);
-                        }
+                batch.each(|lane, cell| {
+                    let blocks = &mut self.blocks[(self.start)(cell)..][..all.len()];
+                    for (block, lanes) in blocks.iter_mut().zip(all) {
+                        *block = std::array::from_fn(|entry| lanes[entry].0[lane]);
                     }
-                }
+                });
             }
         }
     }

@@ -132,16 +132,14 @@ impl<S: Scalar> Chunk<'_, S> {
         let sides = on_ring.len();
         for (model, terms) in terms.iter().enumerate() {
             let on_cells = VertexForces::of(terms, polygon.shape()).on_ring(polygon, on_ring);
-            for (lane, cell) in batch.in_lanes().into_iter().enumerate() {
-                if let Some(cell) = cell {
-                    let one = |v: &Vector<L>| Vector::new(v.x.take(lane), v.y.take(lane));
-                    let (on_cell, forces) = self.of(cell);
-                    on_cell[model] = one(&on_cells);
-                    for (force, lanes) in forces[model * sides..][..sides].iter_mut().zip(&*on_ring) {
-                        *force = one(lanes);
-                    }
+            batch.each(|lane, cell| {
+                let one = |v: &Vector<L>| Vector::new(v.x.take(lane), v.y.take(lane));
+                let (on_cell, forces) = self.of(cell);
+                on_cell[model] = one(&on_cells);
+                for (force, lanes) in forces[model * sides..][..sides].iter_mut().zip(&*on_ring) {
+                    *force = one(lanes);
                 }
-            }
+            });
         }
     }
 }

@@ -130,25 +130,21 @@ impl WithSimd for Closed<'_, '_> {
                 batch.fill_ring(self.chunk.positions, polygon.ring_of(sides), Lanes::put);
                 polygon.complete();
                 element.reserve(sides);
-                for (lane, cell) in batch.in_lanes().into_iter().enumerate() {
-                    if let Some(cell) = cell {
-                        let own = self.chunk.w[cell];
-                        let others = self.chunk.tessellation.neighbours(cell);
-                        for (u, &other) in element.u.iter_mut().zip(others) {
-                            let other = self.chunk.w[other as usize];
-                            u.x.put(lane, other.x - own.x);
-                            u.y.put(lane, other.y - own.y);
-                        }
+                batch.each(|lane, cell| {
+                    let own = self.chunk.w[cell];
+                    let others = self.chunk.tessellation.neighbours(cell);
+                    for (u, &other) in element.u.iter_mut().zip(others) {
+                        let other = self.chunk.w[other as usize];
+                        u.x.put(lane, other.x - own.x);
+                        u.y.put(lane, other.y - own.y);
                     }
-                }
+                });
                 let on_cells =
                     element.differentiate(&polygon, &VertexForces::of(self.terms, seeded(polygon.shape())));
-                for (lane, cell) in batch.in_lanes().into_iter().enumerate() {
-                    if let Some(cell) = cell {
-                        let one = |v: &Vector<Lanes>| Vector::new(v.x.0[lane], v.y.0[lane]);
-                        self.chunk.write(cell, one(&on_cells), |m| one(&element.on_ring[m]));
-                    }
-                }
+                batch.each(|lane, cell| {
+                    let one = |v: &Vector<Lanes>| Vector::new(v.x.0[lane], v.y.0[lane]);
+                    self.chunk.write(cell, one(&on_cells), |m| one(&element.on_ring[m]));
+                });
             }
         }
     }

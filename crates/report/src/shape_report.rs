@@ -35,10 +35,10 @@ pub struct ShapeReport {
     pub in_pieces: usize,
     /// Pixels of background across which cells touch; `null` for outlines.
     pub gap: Option<usize>,
-    /// As `all`, had the positions been the centroids of the outlines.
+    /// As `all`, of Voronoi polygons of the centroids of the outlines.
     pub of_centroids: AgreementRecord,
-    /// How the positions were found; `null` where they are centroids.
-    pub sites: Option<SiteRecord>,
+    /// How the sites were found.
+    pub sites: SiteRecord,
     /// What was read, guessed and doubted of the files.
     pub notes: Vec<NoteRecord>,
 }

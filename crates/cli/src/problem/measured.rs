@@ -171,8 +171,9 @@ impl Measured {
     }
 }
 
-/// The root mean square of errors.
+/// The median of errors: those of a few cells, at the border of an image for one, may be far larger.
 pub(super) fn typical<'a>(errors: impl Iterator<Item = &'a f64>) -> Option<f64> {
-    let (sum, count) = errors.fold((0.0, 0.0), |(sum, count), error| (sum + error * error, count + 1.0));
-    (count > 0.0).then(|| (sum / count).sqrt())
+    let mut errors: Vec<f64> = errors.copied().collect();
+    let middle = errors.len() / 2;
+    (middle < errors.len()).then(|| *errors.select_nth_unstable_by(middle, f64::total_cmp).1)
 }

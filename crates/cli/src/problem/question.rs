@@ -83,10 +83,11 @@ impl Question {
     /// then they say how it is shared out.
     pub(super) fn request(&self, data: &DataSet, scale: &Scale, typical_error: Option<f64>) -> Request {
         let level = |noise: Option<Noise>, unit: f64| {
-            noise.map(|noise| match noise {
-                Noise::Absolute(value) => value / unit,
+            noise.and_then(|noise| match noise {
+                Noise::Absolute(value) => Some(value / unit),
                 // Relative to ℓ₀ and to the root mean square velocity, which are one here.
-                Noise::Relative(share) => share,
+                Noise::Relative(share) => Some(share),
+                Noise::Estimated => None,
             })
         };
         Request {

@@ -94,11 +94,11 @@ impl WithSimd for Proof<'_> {
             for batch in self.by_sides.batches(sides) {
                 batch.fill_ring(self.positions, &mut ring[..sides], Lanes::put);
                 let proven = Extremes::of(&ring[..sides]).prove(self.size);
-                for (lane, cell) in batch.cells().enumerate() {
+                batch.each(|lane, cell| {
                     if !proven[lane] {
                         self.doubtful.push(cell);
                     }
-                }
+                });
             }
         }
     }

@@ -2,7 +2,7 @@
 //!
 //! It is asked last. The noise levels of every fit have it already, so that it stands in the place of nothing; and whatever else is missing
 //! scatters too as long as it has no name. It is not asked of cells that crawl: their polarities turn within an interval, and where they
-//! push each other through changes of contacts a fit ends with a scatter that is of the fit.
+//! push each other through changes of contacts a fit ends with a scatter that is of the fit. Nor is it asked of centroids, whose errors neighbours share.
 
 use super::crawling::p;
 use super::ranking::{by_evidence, untested};
@@ -24,6 +24,9 @@ const NUMERICAL: &str =
 const BESIDE_POLARITY: &str =
     "beside a polarity it cannot be told from what turns and changes of contacts within an interval leave";
 
+/// Why it is no question of centroids.
+const OF_CENTROIDS: &str = "centroids of cells that have a side in common share its errors, which look like this and which no fit knows";
+
 /// What a fit says of random motion.
 pub(super) struct RandomMotion {
     pub ranked: Ranked,
@@ -37,8 +40,10 @@ impl RandomMotion {
         let is_it = |k: &usize| setting.candidates[*k].effect.is_random_motion();
         let Some(candidate) = setting.named(&model.added).into_iter().find(is_it) else { return Ok(None) };
         let effect = setting.candidates[candidate].effect;
-        if model.request.activity != Activity::None {
-            let ranked = untested(effect, Fate::NotTestable(BESIDE_POLARITY));
+        let of_centroids = setting.movie.is_some_and(|movie| movie.share() > 0.0).then_some(OF_CENTROIDS);
+        let beside_polarity = (model.request.activity != Activity::None).then_some(BESIDE_POLARITY);
+        if let Some(reason) = beside_polarity.or(of_centroids) {
+            let ranked = untested(effect, Fate::NotTestable(reason));
             return Ok(Some(Self { ranked, selected: None }));
         }
         let Some(Scatter { diffusion, interval, evidence }) = setting.scatter(model)? else {

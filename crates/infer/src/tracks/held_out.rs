@@ -39,7 +39,7 @@ pub(super) struct AsMeasured<'a> {
     objective: MovieObjective<'a>,
     /// Displacements: none but the translations.
     displacements: Vec<f64>,
-    /// Mean velocities of the motions of cells that were seen at both frames, translations removed.
+    /// Mean velocities of the motions of cells that were seen at both frames, between where they were seen, translations removed.
     pub velocities: Vec<Option<Vector<f64>>>,
 }
 
@@ -53,10 +53,11 @@ impl<'a> AsMeasured<'a> {
         let MovieObjective { movie, states, .. } = objective;
         let velocity = |motion: &Motion| {
             let track = &movie.tracks[motion.track as usize];
-            // Where the site would have been seen, of a cell that was.
             let at = |end: usize| {
                 let (frame, cell) = (motion.interval + end, motion.cells[end] as usize);
-                track.at(frame).map(|_| states.position(frame, cell, &displacements))
+                let seen =
+                    states.position(frame, cell, &displacements) + states.instants[frame].cells.aim(cell);
+                track.at(frame).map(|_| seen)
             };
             let drift = objective.drift(motion.interval, &displacements);
             Some((at(1)? - at(0)? - drift) / objective.span(motion.interval))
@@ -84,12 +85,9 @@ impl<'a> AsMeasured<'a> {
     pub fn missed(&self, free: &[f64], rule: Rule) -> Result<f64, Error> {
         let objective = MovieObjective { rule, ..self.objective };
         let placed = objective.place(&self.with(free))?;
-        let missed = objective.states.motions.iter().zip(&self.velocities).filter_map(|(motion, seen)| {
-            Some(
-                (seen.as_ref()? - objective.mean_velocity(&placed, motion, &self.displacements))
-                    .norm_squared(),
-            )
-        });
+        let means = objective.seen_velocities(&placed, &self.displacements)?;
+        let missed = self.velocities.iter().zip(means);
+        let missed = missed.filter_map(|(seen, mean)| Some((seen.as_ref()? - mean).norm_squared()));
         Ok(missed.sum())
     }
 
@@ -123,7 +121,8 @@ pub(super) type MeanVelocities = Vec<BTreeMap<u32, Vector<f64>>>;
 /// coefficients and places, is one Gauss–Newton step from the fit to all. An error of a measured position must not pose as a prediction, as it
 /// does where cells are followed from where they were seen. Cells that hardly relax from frame to frame are predicted by the mean of the
 /// forces at both ends as measured, in which such an error has one sign and in the displacement two; others are followed from their places in
-/// the fit without the fold, because forces at measured positions are mostly error.
+/// the fit without the fold, because forces at measured positions are mostly error. So are cells that were not measured at their sites: little of
+/// where neighbours stand along the line between them is left in their centroids.
 pub(super) fn cross_validate(
     measured: &AsMeasured<'_>,
     at: &[f64],
@@ -148,18 +147,19 @@ pub(super) fn cross_validate(
         let states = States { motions, integrated, ..all.clone() };
         let mut without = fitted_to(&MovieObjective { states: &states, ..*objective }, at, &known)?;
         forget_unseen(all, &states.motions, &mut without[p..]);
-        let (rule, point) = match objective.rule.steps() > FEW_STEPS {
+        let (rule, point) = match objective.rule.steps() > FEW_STEPS || objective.movie.share() > 0.0 {
             true => (objective.rule, without),
             false => (Rule::Trapezoid, measured.at(&without)),
         };
         let objective = MovieObjective { rule, ..*objective };
         let placed = objective.place(&point)?;
-        let displacements = objective.split(&point).1;
+        let means = objective.seen_velocities(&placed, objective.split(&point).1)?;
         let (mut squares, mut predicted) = (vec![(0.0, 0.0); regions.count()], Vec::new());
-        for (motion, seen) in all.motions.iter().zip(&measured.velocities).filter(|(motion, _)| !left(motion))
-        {
+        for ((motion, seen), mean) in all.motions.iter().zip(&measured.velocities).zip(means) {
+            if left(motion) {
+                continue;
+            }
             let Some(seen) = seen else { continue };
-            let mean = objective.mean_velocity(&placed, motion, displacements);
             // Without a polygon nothing is predicted.
             let mean = if mean.norm_squared().is_finite() { mean } else { Vector::zeros() };
             let (error, total) = &mut squares[regions.of(all, motion)];

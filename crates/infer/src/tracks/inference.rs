@@ -112,7 +112,7 @@ pub(crate) fn follow(
     let stray = tails(&strays(&objective, &placed, displacements)).map(Doubt::Tails);
     let mut tracked = tracked(&objective, &found);
     let coefficients = space.coefficients(free);
-    let means = mean_velocities(&objective, &placed, displacements);
+    let means = mean_velocities(&objective, &placed, displacements)?;
     let components = objective.explained_components(&placed, &found.parameters);
     let weights = motion_weights(states, objective.weights(&placed, &found.parameters));
     let missed = velocities.iter().zip(&states.motions).filter_map(|(seen, motion)| {
@@ -188,18 +188,18 @@ fn strays(objective: &MovieObjective<'_>, placed: &Placed<'_>, displacements: &[
     all.into_iter().filter(|_| !is_exact).map(|square| square[1]).collect()
 }
 
-/// Mean velocities of the model along the trajectories.
+/// Mean velocities of the model along the trajectories, as they would be measured.
 fn mean_velocities(
     objective: &MovieObjective<'_>,
     placed: &Placed<'_>,
     displacements: &[f64],
-) -> MeanVelocities {
+) -> Result<MeanVelocities, Error> {
     let mut means = vec![BTreeMap::new(); objective.movie.frames() - 1];
-    for motion in &objective.states.motions {
-        let mean = objective.mean_velocity(placed, motion, displacements);
+    let seen = objective.seen_velocities(placed, displacements)?;
+    for (motion, mean) in objective.states.motions.iter().zip(seen) {
         means[motion.interval].insert(motion.track, mean);
     }
-    means
+    Ok(means)
 }
 
 /// How much the motion of each cell of a frame to the next one counts; one where none is explained.

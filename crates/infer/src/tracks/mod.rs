@@ -48,6 +48,7 @@ mod rule;
 #[cfg(test)]
 pub(crate) mod sample;
 mod scatter;
+mod seen_motions;
 mod settling;
 mod states;
 mod surface;

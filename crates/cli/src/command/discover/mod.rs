@@ -38,7 +38,7 @@ use predictions::PredictionArguments;
 use report::Found;
 use surroundings::FieldArguments;
 use voronudge_infer::{Constraints, Part, Scale};
-use voronudge_io::{DataSet, Difference};
+use voronudge_io::{DataSet, Difference, Noise};
 use voronudge_model::Effect;
 
 /// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
@@ -301,11 +301,12 @@ fn shared_errors(velocities: &Measured) -> Option<String> {
 
 /// What an estimate of the noise contains.
 fn unknown_noise(data: &DataSet) -> Option<String> {
-    let what = match (data.position_noise, data.velocity_noise) {
-        (Some(_), Some(_)) => return None,
-        (None, Some(_)) => "position noise",
-        (Some(_), None) => "velocity noise",
-        (None, None) => "noise of positions and velocities",
+    let is_known = |noise: Option<Noise>| noise.is_some_and(|noise| noise != Noise::Estimated);
+    let what = match [data.position_noise, data.velocity_noise].map(is_known) {
+        [true, true] => return None,
+        [false, true] => "position noise",
+        [true, false] => "velocity noise",
+        [false, false] => "noise of positions and velocities",
     };
     Some(format!(
         "the {what} is not given, so it is estimated from what the fit leaves: an effect that is missing inflates the estimate, \

@@ -29,7 +29,7 @@ pub(super) struct Arguments {
     #[arg(long, value_enum, default_value_t = Border::Keep)]
     border: Border,
     /// What the positions of the data set are.
-    #[arg(long, value_enum, default_value_t = Positions::Sites)]
+    #[arg(long, value_enum, default_value_t = Positions::Centroids)]
     positions: Positions,
     #[command(flatten)]
     common: CommonArguments,

@@ -11,7 +11,7 @@ use std::path::Path;
 use voronudge_geometry::{
     Domain, FieldOfView, MeasuredShape, Seen, Tessellation, agreement, areas, comparable, perimeters,
 };
-use voronudge_io::{OutputDirectory, PositionsAre, ShapeImport, Snapshot};
+use voronudge_io::{OutputDirectory, ShapeImport, Snapshot};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
@@ -58,19 +58,12 @@ pub(super) fn finish(
     source: &Source<'_>,
     mut import: ShapeImport,
 ) -> Result<Answer, Failure> {
-    let mut compared = compare_all(&import, source.file)?;
-    let of_centroids = pooled(&compared);
-    let sites = match source.positions {
-        Positions::Sites => {
-            let found = place_at_sites(&mut import)?;
-            compared = compare_all(&import, source.file)?;
-            Some(found)
-        }
-        Positions::Centroids => {
-            import.dataset.positions_are = Some(PositionsAre::CENTROIDS);
-            None
-        }
-    };
+    let of_centroids = pooled(&compare_all(&import, source.file)?);
+    let (sites, centroids) = place_at_sites(&mut import)?;
+    let compared = compare_all(&import, source.file)?;
+    if source.positions == Positions::Centroids {
+        centroids.place(&mut import.dataset);
+    }
     let import = &import;
     let all = pooled(&compared);
     if all.cells == 0 {
@@ -106,17 +99,15 @@ pub(super) fn finish(
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page(source, import, &compared, &report)?)?;
-    let described = sites.map_or(String::new(), |found| {
-        format!(
-            "sites {} {unit} from centroids; outlines {} {unit} from the sides of their polygons, {} with centroids\n",
-            significant(found.offset, 2),
-            significant(found.misfit, 2),
-            significant(found.misfit_of_centroids, 2),
-            unit = data.length_unit
-        )
-    });
+    let length = |x: f64| format!("{} {}", significant(x, 2), data.length_unit);
+    let described = format!(
+        "sites {} from centroids; outlines {} from the sides of their polygons, {} with centroids",
+        length(sites.offset),
+        length(sites.misfit),
+        length(sites.misfit_of_centroids)
+    );
     let text = format!(
-        "{} outlines in {} frames, {} cells\n{described}\
+        "{} outlines in {} frames, {} cells\n{described}\n\
          Voronoi polygons of {} cells against their outlines: precision {}, recall {} of {} contacts; correlation of areas {}, of \
          perimeters {}\n{understood}written to {}\n",
         report.outlines,
@@ -202,9 +193,8 @@ fn page(
     let all = &report.all;
     let percent = |share: f64| format!("{} %", significant(100.0 * share, 3));
     let headline = format!(
-        "The Voronoi polygons of the {} have {} of the true contacts, and {} of theirs are true; their areas correlate with the \
+        "The Voronoi polygons of the sites have {} of the true contacts, and {} of theirs are true; their areas correlate with the \
          true ones by {}.",
-        if report.sites.is_some() { "sites" } else { "centroids" },
         percent(all.recall),
         percent(all.precision),
         significant(all.area_correlation, 2)
@@ -217,16 +207,14 @@ fn page(
         report.at_border,
         report.in_pieces
     )];
-    if let Some(found) = report.sites {
-        let length = |x: f64| format!("{} {}", significant(x, 2), report.units.length);
-        summary.push(format!(
-            "Sites are the points whose Voronoi polygons follow the outlines best. They lie {} from the centroids (root mean square), and \
-             outlines {} from the sides of their polygons; with centroids it would be {}.",
-            length(found.offset),
-            length(found.misfit),
-            length(found.misfit_of_centroids)
-        ));
-    }
+    let (found, length) = (report.sites, |x: f64| format!("{} {}", significant(x, 2), report.units.length));
+    summary.push(format!(
+        "Sites are the points whose Voronoi polygons follow the outlines best. They lie {} from the centroids (root mean square), and \
+         outlines {} from the sides of their polygons; with centroids it would be {}.",
+        length(found.offset),
+        length(found.misfit),
+        length(found.misfit_of_centroids)
+    ));
     if let Some(gap) = report.gap {
         summary.push(format!(
             "Cells touch if the way from one to the other, from side to side of pixels, crosses at most {gap} pixels of background. \
@@ -262,9 +250,7 @@ fn page(
         .map(|one| row(format!("frame {}", one.frame), one.present.to_string(), &one.agreement))
         .collect();
     rows.push(row("all".into(), report.frames.iter().map(|one| one.present).sum::<usize>().to_string(), all));
-    if report.sites.is_some() {
-        rows.push(row("all, with centroids".into(), String::new(), &report.of_centroids));
-    }
+    rows.push(row("all, with centroids".into(), String::new(), &report.of_centroids));
     let header = "|cells|compared|contacts|precision|recall|corr. of areas|corr. of perimeters|area ratio|perimeter ratio";
     let mut figures = Vec::new();
     if let (Some(first), Some(known)) = (compared.first(), import.frames.first()) {

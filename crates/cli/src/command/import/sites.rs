@@ -1,27 +1,74 @@
-//! Sites instead of centroids, from where outlines touch.
+//! Sites and centroids of cells, from where outlines touch.
 
 use crate::failure::Failure;
 use clap::ValueEnum;
-use ndarray::Array2;
-use std::collections::BTreeMap;
-use voronudge_geometry::{Interface, Vector};
+use ndarray::{Array2, Array3};
+use std::collections::{BTreeMap, BTreeSet};
+use voronudge_geometry::{Domain, FieldOfView, Interface, Seen, Tessellation, Vector, Visibility};
 use voronudge_infer::{Outlined, sites};
-use voronudge_io::{PositionsAre, ShapeImport};
+use voronudge_io::{DataSet, Noise, PositionsAre, ShapeImport, Snapshot};
 use voronudge_report::shape_report::SiteRecord;
 
-/// What of a cell its position is to be.
+/// What of a cell its position is to be, with its error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Positions {
-    /// The sites whose Voronoi polygons follow the outlines best, with their errors.
-    Sites,
-    /// Centroids of the outlines.
+    /// Centroids of the outlines, whose errors are small and hardly depend on each other.
     Centroids,
+    /// The sites whose Voronoi polygons follow the outlines best. Errors of neighbours are of opposite sign, which no fit knows.
+    Sites,
 }
 
-/// Puts positions at the sites and writes down their errors.
-pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<SiteRecord, Failure> {
+/// Where cells were seen as a whole.
+pub(super) struct Centroids {
+    positions: Array3<f64>,
+    /// NaN for cells that go on beyond the image or touch no other.
+    errors: Array2<f64>,
+}
+
+impl Centroids {
+    /// Puts positions at the centroids. Cells whose centroid is not known, or whose Voronoi polygon may be another because of cells beyond the image,
+    /// stay at their sites: a fit has nothing to compare a centroid with there.
+    pub fn place(&self, dataset: &mut DataSet) {
+        let of_centroids = DataSet { positions: self.positions.clone(), ..dataset.clone() };
+        let certain = [&*dataset, &of_centroids].map(certain_cells);
+        for (at, error) in self.errors.indexed_iter().filter(|(_, error)| error.is_finite()) {
+            if !certain.iter().all(|cells| cells.contains(&at)) {
+                continue;
+            }
+            for axis in 0..2 {
+                dataset.positions[(at.0, at.1, axis)] = self.positions[(at.0, at.1, axis)];
+            }
+            if let Some(errors) = &mut dataset.position_errors {
+                errors[at] = *error;
+            }
+        }
+        dataset.positions_are = Some(PositionsAre::CENTROIDS);
+    }
+}
+
+/// Frame and track of the cells whose Voronoi polygon is certain.
+fn certain_cells(dataset: &DataSet) -> BTreeSet<(usize, usize)> {
+    let region = dataset.field_of_view.as_ref().and_then(|area| area.region().ok());
+    let view = FieldOfView { seen: region.map_or(Seen::Hull, Seen::Within), ..FieldOfView::default() };
+    let mut certain = BTreeSet::new();
+    for frame in 0..dataset.frames() {
+        let snapshot = Snapshot::new(dataset, frame);
+        let Ok(tessellation) = Tessellation::new(&snapshot.positions, Domain::Open) else { continue };
+        let judged = view.judge(&tessellation, &snapshot.positions);
+        for (cell, visibility) in snapshot.cells.iter().zip(judged.visibility()) {
+            if matches!(visibility, Visibility::Counted | Visibility::NextToUncertain) {
+                certain.insert((frame, *cell));
+            }
+        }
+    }
+    certain
+}
+
+/// Puts positions at the sites and writes down their errors; returns the centroids where they were.
+pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<(SiteRecord, Centroids), Failure> {
     let seen = import.dataset.field_of_view.as_ref().and_then(|area| area.region().ok());
     let mut errors = Array2::from_elem(import.areas.dim(), f64::NAN);
+    let mut centroids = Centroids { positions: import.dataset.positions.clone(), errors: errors.clone() };
     let (mut length, mut before, mut after, mut offset, mut count) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for (frame, known) in import.frames.iter().enumerate() {
         let tracks: Vec<usize> =
@@ -52,9 +99,8 @@ pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<SiteRecord, Fai
         length += own;
         before += own * found.misfit_of_centroids.powi(2);
         after += own * found.misfit.powi(2);
-        for ((&track, (site, error)), cell) in
-            tracks.iter().zip(found.positions.iter().zip(&found.errors)).zip(&cells)
-        {
+        let places = found.positions.iter().zip(&found.errors).zip(&found.centroid_errors);
+        for ((&track, cell), ((site, error), centroid_error)) in tracks.iter().zip(&cells).zip(places) {
             // A cell whose site is beyond the image stays where it is seen.
             let (site, error) = match &seen {
                 Some(region) if !region.holds(*site) => {
@@ -68,6 +114,7 @@ pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<SiteRecord, Fai
                 import.dataset.positions[(frame, track, axis)] = site[axis];
             }
             if !cell.is_cut {
+                centroids.errors[(frame, track)] = *centroid_error;
                 offset += (site - cell.centroid).norm_squared();
                 count += 1.0;
             }
@@ -76,11 +123,14 @@ pub(super) fn place_at_sites(import: &mut ShapeImport) -> Result<SiteRecord, Fai
     let mut sorted: Vec<f64> = errors.iter().copied().filter(|error| error.is_finite()).collect();
     sorted.sort_unstable_by(f64::total_cmp);
     import.dataset.position_errors = Some(errors);
+    // How far outlines are from lines also shows how much cells are no Voronoi polygons: errors are known in proportion.
+    import.dataset.position_noise = Some(Noise::Estimated);
     import.dataset.positions_are = Some(PositionsAre::SITES);
-    Ok(SiteRecord {
+    let record = SiteRecord {
         misfit_of_centroids: (before / length).sqrt(),
         misfit: (after / length).sqrt(),
         offset: (offset / count).sqrt(),
         median_error: sorted.get(sorted.len() / 2).copied().unwrap_or(f64::NAN),
-    })
+    };
+    Ok((record, centroids))
 }
