@@ -79,9 +79,10 @@ pub(crate) fn elements_in_lanes<S: Scalar>(
 ) {
     let by_sides = BySides::new(tessellation, cells.clone());
     let mut chunk = Chunk { tessellation, positions, models, cells, forces, on_cells };
-    if TypeId::of::<S>() == TypeId::of::<f64>() {
+    // Sizes are known when this is compiled, and nothing else is then compiled for a scalar; identities are not.
+    if const { size_of::<S>() == size_of::<f64>() } {
         chunk.closed::<Lanes>(&by_sides);
-    } else {
+    } else if const { size_of::<S>() == size_of::<Dual64>() } {
         chunk.closed::<Tangent<Lanes, 1>>(&by_sides);
     }
     let mut polygon = CellPolygon::default();

@@ -121,6 +121,7 @@ fn a_bootstrap_is_the_same_for_any_number_of_threads() {
 }
 
 #[test]
+#[ignore = "slow"]
 fn a_bootstrap_spreads_like_the_interval() {
     let report = fitted("--fix K_A=0.1 --bootstrap 40 --seed 3");
     let bootstrap = &report["bootstrap"];

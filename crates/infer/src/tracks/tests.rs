@@ -46,6 +46,19 @@ fn centroids_are_told_from_sites() {
     }
 }
 
+/// Motions of centroids are predicted as they are measured, though the places that lead back from centroids predict little.
+#[test]
+fn motions_of_centroids_are_predicted() {
+    let filmed = Filmed { size: [100, 4], step: 0.1, error: 0.005, seed: 4 };
+    let movie = filmed.movie_of_centroids().0.with_positions_at(1.0);
+    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let (found, _) =
+        infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
+    let held_out = found.nmse.cross_validated.unwrap().value;
+    assert!(held_out < 3.0 * found.nmse.noise_floor, "{:?}", found.nmse);
+    assert!(held_out < 0.3 * found.nmse.un_nudged, "{:?}", found.nmse);
+}
+
 fn crawling() -> Request {
     let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
     Request { activity: Activity::Polarity, ..Request::new(constraints) }
