@@ -215,6 +215,15 @@ fn page(
         length(found.misfit),
         length(found.misfit_of_centroids)
     ));
+    summary.push(
+        match source.positions {
+            Positions::Centroids => {
+                "The data set has centroids for positions, each with its error, and sites where cells beyond the image count."
+            }
+            Positions::Sites => "The data set has sites for positions, each with its error.",
+        }
+        .to_owned(),
+    );
     if let Some(gap) = report.gap {
         summary.push(format!(
             "Cells touch if the way from one to the other, from side to side of pixels, crosses at most {gap} pixels of background. \
