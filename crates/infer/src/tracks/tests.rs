@@ -54,7 +54,7 @@ fn motions_of_centroids_are_predicted() {
     let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
     let (found, _) =
         infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
-    let held_out = found.nmse.cross_validated.unwrap().value;
+    let [held_out, _] = found.nmse.cross_validated.unwrap();
     assert!(held_out < 3.0 * found.nmse.noise_floor, "{:?}", found.nmse);
     assert!(held_out < 0.3 * found.nmse.un_nudged, "{:?}", found.nmse);
 }
