@@ -18,7 +18,7 @@ fn import(files: &[&Path], flags: &str) -> (Folder, String) {
     let data = Folder::new();
     let files = files.iter().map(|file| ("", *file));
     let paths: Vec<_> = files.chain([("--out", data.path())]).collect();
-    let outcome = succeed(&format!("import labels --link labels --positions centroids {flags}"), &paths);
+    let outcome = succeed(&format!("import labels --link labels {flags}"), &paths);
     (data, outcome.stdout + &outcome.stderr)
 }
 
@@ -29,19 +29,22 @@ fn assert_said(said: &str, facts: &[&str]) {
     }
 }
 
-/// Centroids in pixels; those of images are half a pixel more than those of scikit-image.
+/// Centroids in pixels; those of images are half a pixel more than those of scikit-image. Cells near the border are at their sites, which are not far.
 #[track_caller]
 fn assert_places(data: &Folder, frames: usize, scale: f64) {
     let rows: Array2<f64> = read(&sample("napari-tracks.npy"));
     let positions: Array3<f64> = read(&data.file("positions.npy"));
     assert_eq!(positions.dim(), (frames, 30, 2));
+    let (mut at_centroids, mut all) = (0, 0);
     for row in rows.rows().into_iter().filter(|row| row[1] < frames as f64) {
         let (cell, frame) = (row[0] as usize - 1, row[1] as usize);
-        for (axis, expected) in [row[3], row[2]].into_iter().enumerate() {
-            let found = positions[[frame, cell, axis]];
-            assert!((found - (expected + 0.5) * scale).abs() < 1e-9, "{frame}, {cell}: {found}");
-        }
+        let off = |axis: usize| positions[[frame, cell, axis]] / scale - (row[3 - axis] + 0.5);
+        let off = off(0).hypot(off(1));
+        assert!(off < 3.0, "{frame}, {cell}: {off}");
+        at_centroids += usize::from(off < 1e-9);
+        all += 1;
     }
+    assert!(3 * at_centroids > all, "{at_centroids} of {all}");
 }
 
 #[test]
