@@ -74,7 +74,7 @@ def test_tracks_of_napari_are_those_of_trackmate(fixtures):
 def test_cells_of_masks_are_where_the_tracks_have_them(fixtures):
     examples = fixtures / "examples"
     assert voronudge.info(examples / "masks.tif")["pixel_size"] == 1.6
-    masks = voronudge.import_labels(examples / "masks.tif", link="overlap", quiet=True).arrays["positions"][0]
+    masks = voronudge.import_labels(examples / "masks.tif", link="overlap", positions="sites", quiet=True).arrays["positions"][0]
     tracks = voronudge.import_trackmate(examples / "tracks.xml", quiet=True).arrays["positions"][0]
     masks, tracks = (own[np.isfinite(own).all(axis=1)] for own in (masks, tracks))
     # Cells that the image cuts off are another matter; trackers err by .4 um.
