@@ -31,6 +31,10 @@ impl Noise {
     /// The word for noise that is not known.
     const ESTIMATED: &str = "estimated";
 
+    /// What can be given.
+    pub(crate) const EXPECTED: &str =
+        "a number in data units, a percentage such as \"2 %\", or \"estimated\"";
+
     /// Reads a number, or a number with a per cent sign; `key` names the setting in errors.
     pub(crate) fn parse(key: &'static str, text: &str) -> Result<Self, SettingFault> {
         let trimmed = text.trim();
@@ -42,7 +46,7 @@ impl Noise {
         let noise = noise.ok_or_else(|| SettingFault::Unknown {
             key,
             found: text.to_owned(),
-            expected: "a number in data units, a percentage such as \"2 %\", or \"estimated\"",
+            expected: Self::EXPECTED,
         })?;
         noise.check(key)?;
         Ok(noise)

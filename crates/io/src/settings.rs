@@ -307,11 +307,7 @@ fn noise(key: &'static str, value: &DeValue<'_>) -> Result<Noise, TomlFault> {
             noise.check(key).map(|()| noise)
         }
         (_, None) => {
-            return Err(TomlFault::WrongType {
-                key,
-                found: kind(value),
-                expected: "a number in data units, or a percentage such as \"2 %\"",
-            });
+            return Err(TomlFault::WrongType { key, found: kind(value), expected: Noise::EXPECTED });
         }
     };
     noise.map_err(TomlFault::Setting)

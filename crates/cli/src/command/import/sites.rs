@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use clap::ValueEnum;
 use ndarray::{Array2, Array3};
 use std::collections::{BTreeMap, BTreeSet};
-use voronudge_geometry::{Domain, FieldOfView, Interface, Seen, Tessellation, Vector, Visibility};
+use voronudge_geometry::{Domain, Interface, Tessellation, Vector, Visibility};
 use voronudge_infer::{Outlined, sites};
 use voronudge_io::{DataSet, Noise, PositionsAre, ShapeImport, Snapshot};
 use voronudge_report::shape_report::SiteRecord;
@@ -48,8 +48,7 @@ impl Centroids {
 
 /// Frame and track of the cells whose Voronoi polygon is certain.
 fn certain_cells(dataset: &DataSet) -> BTreeSet<(usize, usize)> {
-    let region = dataset.field_of_view.as_ref().and_then(|area| area.region().ok());
-    let view = FieldOfView { seen: region.map_or(Seen::Hull, Seen::Within), ..FieldOfView::default() };
+    let view = dataset.view().unwrap_or_default();
     let mut certain = BTreeSet::new();
     for frame in 0..dataset.frames() {
         let snapshot = Snapshot::new(dataset, frame);
