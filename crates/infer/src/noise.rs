@@ -96,9 +96,6 @@ pub(crate) const SMALLEST_VELOCITY_NOISE: f64 = 1e-3;
 const GRID: i32 = 2;
 const SPACING: f64 = 1.0;
 
-/// How far beyond a parabola's least likelihood levels may go at most, in steps to there.
-const FURTHER: f64 = 3.0;
-
 /// Precision of log k.
 const PRECISION: f64 = 3e-3;
 
@@ -139,41 +136,6 @@ impl Restricted<'_> {
         let found = executor.run().map_err(|error| Error::Optimiser(error.to_string()))?;
         let log_k = found.state.get_best_param().copied().unwrap_or(grid[best].0);
         self.levels(log_k)
-    }
-
-    /// One step towards the most likely levels, for problems whose likelihood is dear: to the least of the parabola through the present
-    /// log k and one so far to either side. Towards stiff springs the likelihood can go on rising, ever more slowly, and each parabola ends as
-    /// far on as the last: by the step before, which is replaced, the sum of those to come is foreseen (Aitken's process).
-    pub fn towards(
-        &self,
-        present: NoiseLevels,
-        spacing: f64,
-        earlier: &mut Option<f64>,
-    ) -> Result<NoiseLevels, Error> {
-        let centre = present.spring().ln();
-        let points = [-spacing, 0.0, spacing].map(|aside| centre + aside);
-        let values: Vec<f64> = self.equations.each(&points, |log_k| self.criterion(*log_k))?;
-        let (slope, bend) = (values[2] - values[0], values[2] - 2.0 * values[1] + values[0]);
-        let furthest = 2.0 * spacing;
-        let step = match bend > 0.0 {
-            true => (-0.5 * spacing * slope / bend).clamp(-furthest, furthest),
-            false => -furthest.copysign(slope),
-        };
-        let ratio = match earlier.replace(step) {
-            Some(earlier) if earlier > 0.0 && step > 0.0 => step / earlier,
-            _ => 0.0,
-        };
-        let log_k = centre + step / (1.0 - ratio).max(1.0 / FURTHER);
-        let root = (0.5 * log_k).exp();
-        let velocity = self.velocity(log_k)?;
-        let position = velocity / root;
-        Ok(NoiseLevels {
-            velocity: self.known.velocity.unwrap_or(velocity.max(SMALLEST_VELOCITY_NOISE)),
-            position: self
-                .known
-                .position
-                .unwrap_or(position.clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)),
-        })
     }
 
     /// The levels that belong to k, within their limits.

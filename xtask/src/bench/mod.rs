@@ -114,15 +114,17 @@ pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
         std::fs::write(out, serde_json::to_string_pretty(&timings)? + "\n")?;
     }
     let record = root.join(RECORD);
+    let recorded: Vec<Timing> = match record.exists() {
+        true => serde_json::from_slice(&std::fs::read(&record)?)?,
+        false => Vec::new(),
+    };
     if arguments.record {
-        std::fs::write(&record, serde_json::to_string_pretty(&timings)? + "\n")?;
-        std::fs::write(root.join(PICTURE), drawn(&timings))?;
+        let all = renewed(recorded, timings);
+        std::fs::write(&record, serde_json::to_string_pretty(&all)? + "\n")?;
+        std::fs::write(root.join(PICTURE), drawn(&all))?;
+        return Ok(());
     }
-    if arguments.check {
-        compare(&timings, &serde_json::from_slice::<Vec<Timing>>(&std::fs::read(record)?)?)
-    } else {
-        Ok(())
-    }
+    if arguments.check { compare(&timings, &recorded) } else { Ok(()) }
 }
 
 fn named(name: &str) -> Result<&'static Kernel, String> {
@@ -145,9 +147,11 @@ fn in_process(kernel: &Kernel, cells: usize, threads: usize) -> Result<Timing, B
 }
 
 fn measured(kernel: &Kernel, cells: usize) -> Result<Timing, Box<dyn Error>> {
-    // Before anything else, while the processor is as it will be.
-    let (reference, bandwidth) = (kernels::reference()?, kernels::bandwidth()?);
+    // Before anything else, while the processor is as it will be; what takes memory of its own comes after it was told.
+    let reference = kernels::reference()?;
     let [least, median] = times((kernel.prepare)(cells)?)?;
+    let memory = peak_memory();
+    let bandwidth = kernels::bandwidth()?;
     let each = |time: std::time::Duration| time.as_secs_f64() * 1e9 / (cells * kernel.evaluations) as f64;
     Ok(Timing {
         kernel: kernel.name.into(),
@@ -157,7 +161,7 @@ fn measured(kernel: &Kernel, cells: usize) -> Result<Timing, Box<dyn Error>> {
         median: each(median),
         ratio: each(median) / reference,
         bandwidth,
-        memory: peak_memory(),
+        memory,
     })
 }
 
@@ -168,14 +172,29 @@ fn peak_memory() -> Option<f64> {
     Some(line.split_whitespace().nth(1)?.parse::<f64>().ok()? / 1024.0)
 }
 
+impl Timing {
+    /// Whether the same was timed.
+    fn is_of_same(&self, other: &Self) -> bool {
+        (&self.kernel, self.cells, self.threads) == (&other.kernel, other.cells, other.threads)
+    }
+}
+
+/// A record in which some measurements stand in the place of what they repeat.
+fn renewed(mut record: Vec<Timing>, timings: Vec<Timing>) -> Vec<Timing> {
+    for timing in timings {
+        match record.iter_mut().find(|then| then.is_of_same(&timing)) {
+            Some(then) => *then = timing,
+            None => record.push(timing),
+        }
+    }
+    record
+}
+
 /// Fails where something became slower by more than what machines and hours differ.
 fn compare(timings: &[Timing], record: &[Timing]) -> Outcome {
     let mut slower = Vec::new();
     for now in timings {
-        let same = |then: &&Timing| {
-            (&then.kernel, then.cells, then.threads) == (&now.kernel, now.cells, now.threads)
-        };
-        if let Some(then) = record.iter().find(same)
+        if let Some(then) = record.iter().find(|then| then.is_of_same(now))
             && now.ratio > TOLERANCE * then.ratio
         {
             let factor = now.ratio / then.ratio;

@@ -12,10 +12,9 @@ use super::settling::{FINAL, PASSING, Settling};
 use super::states::States;
 use crate::inference::deviation;
 use crate::least_squares::invert;
-use crate::noise::Restricted;
 use crate::normal_equations::NormalEquations;
 use crate::search::{Optimum, Watch, optimise_knowing};
-use crate::{CoefficientSpace, Error, KnownNoise, Method, NoiseLevels, Request, Status};
+use crate::{CoefficientSpace, Error, Method, NoiseLevels, Request, Status};
 use std::ops::ControlFlow;
 
 /// A finer rule must change the coefficients by less than this share of their standard errors.
@@ -47,9 +46,6 @@ const INTEGRATIONS: usize = 2;
 const TOLERANCE: f64 = 5e-5;
 const TOLERANCE_ON_THE_WAY: f64 = 2e-4;
 const TOLERANCE_AT_LEVELS: f64 = 1e-3;
-
-/// Spacing of log k at which the likelihood is looked at.
-const SPACING: f64 = 1.0;
 
 /// A fitted movie.
 pub(super) struct Fit {
@@ -159,19 +155,19 @@ impl<'a> Course<'a, '_> {
                 Some(equations) => equations,
                 None => objective.linearise(&parameters)?,
             };
+            let placed = objective.place(&parameters)?;
+            let components = objective.explained_components(&placed, &parameters);
+            let seen = Seen { objective, equations: &equations, components, known: self.request.noise };
+            let way = Way::Draws(how.draws);
             let (wanted, memory) = match self.memory {
                 Some(_) => {
-                    let placed = objective.place(&parameters)?;
-                    let components = objective.explained_components(&placed, &parameters);
-                    let known = self.request.noise;
-                    let seen = Seen { objective, equations: &equations, components, known };
-                    let likely = seen.likely(Way::Draws(how.draws))?;
+                    let likely = seen.likely(way)?;
                     let free = objective.free_share(&placed, &parameters, likely.memory.speed);
                     // What is expected depends on how free it is: the mean of both does not swing.
                     let free = (free * likely.memory.free).sqrt();
                     (likely.levels, Some(Memory { free, ..likely.memory }))
                 }
-                None => (self.likely_levels(&objective, &parameters, &equations, &mut last)?, None),
+                None => (seen.towards(way, &mut last)?, None),
             };
             let longer = memory.zip(self.memory).map_or(0.0, |(next, present)| next.change(present));
             let next = self.tightened(wanted, how);
@@ -263,25 +259,6 @@ impl<'a> Course<'a, '_> {
         let mut equations = equations.at_levels(self.levels);
         equations.hold(&objective.held());
         equations
-    }
-
-    /// More likely levels, where cells do not crawl.
-    fn likely_levels(
-        &self,
-        objective: &MovieObjective<'_>,
-        parameters: &[f64],
-        equations: &NormalEquations,
-        earlier: &mut Option<f64>,
-    ) -> Result<NoiseLevels, Error> {
-        match self.request.noise {
-            KnownNoise { position: Some(position), velocity: Some(velocity) } => {
-                Ok(NoiseLevels { position, velocity })
-            }
-            known => {
-                let components = objective.explained_components(&objective.place(parameters)?, parameters);
-                Restricted { equations, components, known, held: None }.towards(self.levels, SPACING, earlier)
-            }
-        }
     }
 
     /// The levels of the next round: the dynamics are tightened step by step.

@@ -38,9 +38,19 @@ impl Seen<'_> {
         let at = |times: f64, ratio: f64| -> Result<f64, Error> {
             Ok(self.likelihood(Place { log_k, times, ratio: ratio.exp(), alignment: 0.0 })?.criterion)
         };
-        let tried = HINTS_OF_TIMES.iter().flat_map(|times| HINTS_OF_RATIO.map(|ratio| (*times, ratio)));
-        let points: Vec<(f64, f64)> = std::iter::once((HINTS_OF_TIMES[0], RATIO[1])).chain(tried).collect();
-        let values = equations.each(&points, |(times, ratio)| at(*times, *ratio))?;
-        Ok(values[0] - values.iter().copied().fold(f64::INFINITY, f64::min))
+        let none = at(HINTS_OF_TIMES[0], RATIO[1])?;
+        // The slower polarities are, the larger the ratio. Where faster ones are no likelier, still faster ones are less so.
+        let falls = equations.each(&HINTS_OF_TIMES, |times| {
+            let mut least = none;
+            for ratio in HINTS_OF_RATIO {
+                let next = at(*times, ratio)?;
+                if next >= least {
+                    break;
+                }
+                least = next;
+            }
+            Ok(none - least)
+        })?;
+        Ok(falls.into_iter().fold(0.0, f64::max))
     }
 }

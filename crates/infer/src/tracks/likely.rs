@@ -2,7 +2,7 @@
 
 use super::look::{Look, Seen, Way};
 use super::memory::Memory;
-use super::surface::{CLOSE, Matrix, Point};
+use super::surface::{CLOSE, FURTHEST, Matrix, Point};
 use crate::noise::{LARGEST_POSITION_NOISE, Likelihood, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
 use crate::{Error, KnownNoise, NoiseLevels, NoiseSource};
 
@@ -23,6 +23,9 @@ const SPACINGS: [f64; 4] = [1.0, 0.5, 1.0, 0.5];
 /// Quantile of the normal distribution for intervals of 95 %, and the square of it.
 pub(super) const QUANTILE: f64 = crate::NORMAL_95;
 pub(super) const LESS_LIKELY: f64 = QUANTILE * QUANTILE;
+
+/// How far beyond a parabola's least likelihood levels may go at most, in steps to there.
+const FURTHER: f64 = 3.0;
 
 /// A step that leads to less likely levels is made shorter by this factor, so many times; then none is taken.
 const SHORTER: f64 = 0.3;
@@ -118,6 +121,12 @@ impl Seen<'_> {
         Spaced::about(log_k, ratio.ln(), memory, self.objective.states.polarities.align())
     }
 
+    /// The surroundings of some log k where cells do not crawl.
+    pub fn about_spring(&self, log_k: f64) -> Spaced {
+        let memory = Memory::FIRST;
+        Spaced::about(log_k, self.place(memory).ratio.ln(), memory, false)
+    }
+
     /// Whether both noise levels were given.
     pub fn is_given(&self) -> bool {
         self.known.source() == NoiseSource::Given
@@ -134,22 +143,52 @@ impl Seen<'_> {
         let step = look.criterion.newton(held);
         let (step, Likelihood { criterion, variance }) = self.stepped(&spaced, &look, step)?;
         let Place { log_k, times, ratio, alignment } = spaced.at(step);
-        let velocity = known.velocity.unwrap_or(variance.sqrt()).max(SMALLEST_VELOCITY_NOISE);
-        let position = known.position.unwrap_or_else(|| {
-            (velocity / (0.5 * log_k).exp()).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)
-        });
+        let levels = self.levels(log_k, variance);
         let scales = Matrix::from_diagonal(&Point::from(SPACINGS));
         let slope = match known.velocity {
             Some(_) => Point::zeros(),
             None => Point::from_fn(|k, _| look.log_variance[k] / SPACINGS[k]),
         };
         Ok(Likely {
-            levels: NoiseLevels { position, velocity },
-            memory: Memory { times, speed: velocity / ratio.sqrt(), alignment, ..memory },
+            levels,
+            memory: Memory { times, speed: levels.velocity / ratio.sqrt(), alignment, ..memory },
             criterion,
             covariance: scales * look.criterion.covariance(held) * scales,
             of_variance: (slope, 2.0 / self.components),
         })
+    }
+
+    /// One step towards the most likely noise levels where cells do not crawl: to the least of the parabola that the likelihood is about the present
+    /// log k. Towards stiff springs the likelihood can go on rising, ever more slowly, and each parabola ends as far on as the last: by the step
+    /// before, which is replaced, the sum of those to come is foreseen (Aitken's process).
+    pub fn towards(&self, way: Way, earlier: &mut Option<f64>) -> Result<NoiseLevels, Error> {
+        if let KnownNoise { position: Some(position), velocity: Some(velocity) } = self.known {
+            return Ok(NoiseLevels { position, velocity });
+        }
+        let spaced = self.about_spring(self.objective.levels.spring().ln());
+        let look = self.look(&spaced, way)?;
+        let (slope, bend) = (look.criterion.slope[0], look.criterion.bend[(0, 0)]);
+        let step = match bend > 0.0 {
+            true => (-slope / bend).clamp(-FURTHEST, FURTHEST),
+            false => -FURTHEST.copysign(slope),
+        };
+        let ratio = match earlier.replace(step) {
+            Some(earlier) if earlier > 0.0 && step > 0.0 => step / earlier,
+            _ => 0.0,
+        };
+        let step = step / (1.0 - ratio).max(1.0 / FURTHER);
+        let variance = look.here.variance * (look.log_variance[0] * step).exp();
+        Ok(self.levels(spaced.at(Point::x() * step).log_k, variance))
+    }
+
+    /// What levels belong to k and σ_v², where they are not known.
+    fn levels(&self, log_k: f64, variance: f64) -> NoiseLevels {
+        let KnownNoise { position, velocity } = self.known;
+        let velocity = velocity.unwrap_or(variance.sqrt()).max(SMALLEST_VELOCITY_NOISE);
+        let position = position.unwrap_or_else(|| {
+            (velocity / (0.5 * log_k).exp()).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE)
+        });
+        NoiseLevels { position, velocity }
     }
 
     /// A step, made shorter as long as it leads to less likely levels, with the likelihood at its end; none where it would hardly

@@ -71,6 +71,15 @@ impl Seen<'_> {
         Ok(points.iter().map(|point| found[needed.binary_search(&first(point)).unwrap_or(0)]).collect())
     }
 
+    /// Which of the unknowns the likelihood depends on.
+    fn unknown(&self) -> Vec<usize> {
+        match self.objective.memory {
+            None => vec![0],
+            Some(_) if self.objective.states.polarities.align() => vec![0, 1, 2, 3],
+            Some(_) => vec![0, 1, 2],
+        }
+    }
+
     /// By derivatives, from one factor.
     fn derivatives(&self, spaced: &Spaced, count: usize) -> Result<Look, Error> {
         let [frame] = &self.equations.frames[..] else { return Err(Error::Degenerate) };
@@ -82,18 +91,21 @@ impl Seen<'_> {
             let values: Vec<f64> = points.iter().map(|(own, determinant)| of(own, *determinant)).collect();
             Surface::new(&values).seen_from(CLOSE)
         };
-        let directions = PAIRS_OF_SIDES
-            .map(|[above, below]| Weighting::slope(&points[below].0, &points[above].0, 2.0 * CLOSE));
+        let unknown = self.unknown();
+        let directions: Vec<Weighting> = (unknown.iter())
+            .map(|k| PAIRS_OF_SIDES[*k])
+            .map(|[above, below]| Weighting::slope(&points[below].0, &points[above].0, 2.0 * CLOSE))
+            .collect();
         let (solved, measured) = (frame.solved(&points[0].0)?, frame.measured_components());
         let for_products = (FOR_PRODUCTS / frame.order().max(1)).max(FEWEST_FOR_PRODUCTS);
         let draws = solved.draws(count.max(for_products));
         let (rests, trace) = (solved.rests(), solved.trace(&draws));
         let mut misfit = about(&|own, _| rests.of(own));
-        misfit.bend -= from_dense(&solved.responses(&directions)) * 2.0;
+        misfit.bend -= among(&unknown, &solved.responses(&directions)) * 2.0;
         let mut criterion =
             about(&|own, determinant| trace.of(own) - determinant - measured * own.spring.ln());
         let some = &draws[..for_products * frame.order()];
-        criterion.bend -= from_dense(&solved.products(&directions, some));
+        criterion.bend -= among(&unknown, &solved.products(&directions, some));
         let log_k = spaced.at(Point::zeros()).log_k;
         let here = self.restricted(None).of(log_k, solved.leftover);
         let (of_misfit, log_variance) = self.of_misfit(here.variance, solved.leftover.misfit, &misfit);
@@ -144,16 +156,26 @@ impl Seen<'_> {
     fn weighting(&self, Place { log_k, times, ratio, alignment }: Place) -> Result<(Weighting, f64), Error> {
         let objective = self.objective;
         let speed = objective.levels.velocity / ratio.sqrt();
-        let memory = Memory { times, speed, alignment, ..objective.memory.unwrap_or(Memory::FIRST) };
-        let held = MovieObjective { memory: Some(memory), ..objective }.held();
+        let memory = objective.memory.map(|memory| Memory { times, speed, alignment, ..memory });
+        let held = MovieObjective { memory, ..objective }.held();
         let of_lengths = ratio / objective.movie.interval().powi(2);
-        let determinant = objective.states.polarities.log_determinant(memory, of_lengths)?;
+        let determinant = match memory {
+            Some(memory) => objective.states.polarities.log_determinant(memory, of_lengths)?,
+            None => 0.0,
+        };
         Ok((Weighting { spring: log_k.exp(), held }, determinant))
     }
 }
 
-fn from_dense(matrix: &DMatrix<f64>) -> Matrix {
-    Matrix::from_fn(|i, j| matrix[(i, j)])
+/// A matrix of some of the unknowns; zero for the others.
+fn among(some: &[usize], matrix: &DMatrix<f64>) -> Matrix {
+    let mut all = Matrix::zeros();
+    for (row, i) in some.iter().enumerate() {
+        for (column, j) in some.iter().enumerate() {
+            all[(*i, *j)] = matrix[(row, column)];
+        }
+    }
+    all
 }
 
 #[cfg(test)]

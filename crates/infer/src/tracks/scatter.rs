@@ -8,17 +8,22 @@ use super::anchors::Share;
 use super::fit::least_scatter;
 use super::inference::Followed;
 use super::likely::LESS_LIKELY;
+use super::look::{Seen, Way};
 use super::movie::Movie;
 use crate::noise::{Likelihood, Restricted};
 use crate::{CoefficientSpace, Error, Request};
 
-/// Spacing of log k at which the likelihood is looked at, and how far from the fit.
-const SPACING: f64 = 0.5;
-const FURTHEST: i32 = 3;
+/// Draws for slopes of the likelihood.
+const DRAWS: usize = 48;
 
-/// Steps to an end of an interval, in log k, and halvings of the last.
-const STEPS: i32 = 8;
-const BISECTIONS: usize = 5;
+/// Points from which Newton's method goes on to the likeliest log k at most, and a step to the last of them that is short.
+const LOOKS: usize = 3;
+const SHORT: f64 = 0.25;
+
+/// How far an end of an interval is in log k at most, points at which it is sought, and a share by which the likelihood may miss it.
+const FURTHEST: f64 = 4.0;
+const POINTS: usize = 4;
+const PRECISION: f64 = 0.05;
 
 /// What the dynamics scatter by, in the units of the movie.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,47 +36,66 @@ pub(crate) struct Scatter {
     pub evidence: f64,
 }
 
-/// The likelihood of a fit as a function of k, near that of the fit.
+/// The likelihood as a function of k, near that of a fit.
 struct OfSpring<'a> {
-    restricted: Restricted<'a>,
-    fitted: f64,
+    seen: Seen<'a>,
+    /// The least log k.
+    least: f64,
+}
+
+/// The likeliest k.
+struct Likeliest {
+    log_k: f64,
+    here: Likelihood,
+    /// Derivatives of −2 log L by log k.
+    slope: f64,
+    bend: f64,
 }
 
 impl OfSpring<'_> {
     fn at(&self, log_k: f64) -> Result<Likelihood, Error> {
-        self.restricted.likelihood(log_k)
+        let Seen { equations, components, known, .. } = self.seen;
+        Restricted { equations, components, known, held: None }.likelihood(log_k)
     }
 
     /// The likeliest log k near the fit.
-    fn likeliest(&self) -> Result<f64, Error> {
-        let centre = self.fitted;
-        let points: Vec<f64> =
-            (-FURTHEST..=FURTHEST).map(|step| centre + SPACING * f64::from(step)).collect();
-        let values = self.restricted.equations.each(&points, |log_k| Ok(self.at(*log_k)?.criterion))?;
-        let best = (0..points.len()).min_by(|a, b| values[*a].total_cmp(&values[*b])).unwrap_or(0);
-        let around = best.checked_sub(1).and_then(|k| values.get(k)).zip(values.get(best + 1));
-        let aside = around.map_or(0.0, |(before, after)| {
-            let bend = before + after - 2.0 * values[best];
-            if bend > 0.0 { 0.5 * (before - after) / bend } else { 0.0 }
-        });
-        Ok(points[best] + SPACING * aside)
+    fn likeliest(&self) -> Result<Likeliest, Error> {
+        let mut log_k = self.seen.objective.levels.spring().ln().max(self.least);
+        let mut looks = 1;
+        loop {
+            let look = self.seen.look(&self.seen.about_spring(log_k), Way::Draws(DRAWS))?;
+            let (slope, bend) = (look.criterion.slope[0], look.criterion.bend[(0, 0)]);
+            let newton = if bend > 0.0 { -slope / bend } else { -slope.signum() };
+            let step = newton.clamp(-1.0, 1.0).max(self.least - log_k);
+            log_k += step;
+            if step.abs() < SHORT || looks == LOOKS {
+                let here = Likelihood {
+                    criterion: look.here.criterion + (slope + 0.5 * bend * step) * step,
+                    variance: look.here.variance * (look.log_variance[0] * step).exp(),
+                };
+                return Ok(Likeliest { log_k, here, slope: slope + bend * step, bend });
+            }
+            looks += 1;
+        }
     }
 
-    /// Where the likelihood has fallen as far as the end of an interval, from log k on in steps.
-    fn end(&self, from: f64, least: f64, step: f64) -> Result<f64, Error> {
-        let is_within = |log_k: f64| Ok::<bool, Error>(self.at(log_k)?.criterion - least < LESS_LIKELY);
-        let (mut inside, mut outside) = (from, from + step);
-        for _ in 0..STEPS {
-            if !is_within(outside)? {
+    /// σ_v² where the likelihood has fallen as far as the end of an interval, above the likeliest k or below.
+    fn end(&self, from: &Likeliest, side: f64) -> Result<f64, Error> {
+        let (slope, bend) = (side * from.slope, from.bend.max(f64::MIN_POSITIVE));
+        // Where a parabola ends.
+        let mut aside = ((slope * slope + 2.0 * bend * LESS_LIKELY).sqrt() - slope) / bend;
+        let mut there = from.here;
+        for _ in 0..POINTS {
+            aside = aside.min(FURTHEST);
+            there = self.at(from.log_k + side * aside)?;
+            // The root of what it falls by is nearly a line.
+            let share = ((there.criterion - from.here.criterion) / LESS_LIKELY).max(0.0).sqrt();
+            if (share - 1.0).abs() < PRECISION || (share < 1.0 && aside == FURTHEST) {
                 break;
             }
-            (inside, outside) = (outside, outside + step);
+            aside *= (1.0 / share).clamp(0.5, 2.0);
         }
-        for _ in 0..BISECTIONS {
-            let middle = 0.5 * (inside + outside);
-            if is_within(middle)? { inside = middle } else { outside = middle }
-        }
-        Ok(outside)
+        Ok(there.variance)
     }
 }
 
@@ -91,17 +115,18 @@ impl Followed {
         let placed = objective.place(at)?;
         let components = objective.explained_components(&placed, at);
         let equations = &objective.linearise_at(&placed, at, Share::Known)?;
-        let restricted = Restricted { equations, components, known: request.noise, held: None };
-        let own = OfSpring { restricted, fitted: objective.levels.spring().ln() };
+        let seen = Seen { objective, equations, components, known: request.noise };
         let interval = movie.interval();
-        let least = 2.0 * least_scatter(1.0, interval).ln();
-        let log_k = own.likeliest()?.max(least);
-        let Likelihood { criterion, variance } = own.at(log_k)?;
-        let evidence = (own.at(least)?.criterion - criterion).max(0.0);
+        let own = OfSpring { seen, least: 2.0 * least_scatter(1.0, interval).ln() };
+        let likeliest = own.likeliest()?;
+        let Likelihood { criterion, variance } = likeliest.here;
+        let evidence = match likeliest.log_k > own.least {
+            true => (own.at(own.least)?.criterion - criterion).max(0.0),
+            false => 0.0,
+        };
         let diffusion = |variance: f64| 0.5 * variance * interval;
-        let end = |step: f64| Ok::<f64, Error>(diffusion(own.at(own.end(log_k, criterion, step)?)?.variance));
-        let lower = if evidence < LESS_LIKELY { 0.0 } else { end(-SPACING)? };
-        let interval = [lower, end(SPACING)?];
+        let lower = if evidence < LESS_LIKELY { 0.0 } else { diffusion(own.end(&likeliest, -1.0)?) };
+        let interval = [lower, diffusion(own.end(&likeliest, 1.0)?)];
         Ok(Some(Scatter { diffusion: diffusion(variance), interval, evidence }))
     }
 }

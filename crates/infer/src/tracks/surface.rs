@@ -8,7 +8,7 @@ pub(super) type Point = SVector<f64, UNKNOWNS>;
 pub(super) type Matrix = SMatrix<f64, UNKNOWNS, UNKNOWNS>;
 
 /// Steps of each unknown at most, in spacings.
-const FURTHEST: f64 = 2.0;
+pub(super) const FURTHEST: f64 = 2.0;
 
 /// The points at which the likelihood is looked at, in spacings.
 pub(super) const POINTS: [[f64; UNKNOWNS]; 15] = [

@@ -4,8 +4,7 @@
 //! dF_i = J(x_i) dx_i + X(x_i) dβ,      x_i and x' as in [`super::passage`]
 //! ```
 //!
-//! Derivatives by the places of cells farther than two rings, or three where steps are long, are left out: what a cell does to others
-//! falls off fast.
+//! Derivatives by the places of cells farther than two rings are left out: what a cell does to others falls off fast.
 
 use super::objective::{MovieObjective, Moving};
 use super::passage::{Passage, STAGES, is_known};
@@ -15,15 +14,8 @@ use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;
 
-/// Rings of cells whose places count: those of a force, and one more where cells relax from frame to frame.
+/// Rings of cells whose places and polarities count: those of a force.
 const RINGS: usize = 2;
-const RINGS_IF_LONG: usize = 3;
-
-/// The same of cells whose polarities count.
-const RINGS_OF_POLARITY: usize = 2;
-
-/// Steps of integration up to which an interval is short.
-const FEW_STEPS: usize = 1;
 
 /// A 2 × 2 block, `[xx, xy, yx, yy]`.
 pub(super) type Block = [f64; 4];
@@ -56,9 +48,8 @@ impl Tangent {
         coefficients: &[f64],
     ) -> Self {
         let told_apart = objective.states.own_motion.is_some();
-        let rings = if passage.steps.len() > FEW_STEPS && !told_apart { RINGS_IF_LONG } else { RINGS };
         let ways = objective.memory.is_some() && !told_apart;
-        Self::within(objective, interval, passage, coefficients, (rings, ways))
+        Self::within(objective, interval, passage, coefficients, (RINGS, ways))
     }
 
     /// The same with the ways that the cells near by crawl.
@@ -68,7 +59,7 @@ impl Tangent {
         passage: &Passage<'_>,
         coefficients: &[f64],
     ) -> Self {
-        Self::within(objective, interval, passage, coefficients, (RINGS_OF_POLARITY, true))
+        Self::within(objective, interval, passage, coefficients, (RINGS, true))
     }
 
     /// The same, for what the coefficients and the translation do to all cells alone.
@@ -99,7 +90,7 @@ impl Tangent {
         let mut tangent = Self::still(
             led,
             &passage.steps[0].stages[0].0.tessellation,
-            [rings, if crawls { rings.min(RINGS_OF_POLARITY) } else { 0 }],
+            rings,
             DRIFT + objective.space.dimension(),
             crawls,
         );
@@ -142,13 +133,7 @@ impl Tangent {
     }
 
     /// At the beginning: each cell by its own place. Rows have room for what is within reach.
-    fn still(
-        led: &[bool],
-        tessellation: &Tessellation,
-        [rings, of_polarity]: [usize; 2],
-        width: usize,
-        crawls: bool,
-    ) -> Self {
+    fn still(led: &[bool], tessellation: &Tessellation, rings: usize, width: usize, crawls: bool) -> Self {
         let cells = led.len();
         let mut own = Self {
             start: vec![0],
@@ -162,12 +147,9 @@ impl Tangent {
             let first = own.column.len();
             own.column.push(cell as u32);
             seen[cell] = cell;
-            let (mut ring, mut crawling) = (first, first + 1);
-            for number in 0..rings {
+            let mut ring = first;
+            for _ in 0..rings {
                 let end = own.column.len();
-                if number == of_polarity {
-                    crawling = end;
-                }
                 for at in ring..end {
                     for next in tessellation.neighbours(own.column[at] as usize) {
                         if seen[*next as usize] != cell {
@@ -178,15 +160,11 @@ impl Tangent {
                 }
                 ring = end;
             }
-            let last = own.column.len();
-            if of_polarity >= rings {
-                crawling = last;
-            }
-            for at in first..last {
+            for at in first..own.column.len() {
                 let other = own.column[at];
                 if !led[other as usize] {
                     own.column.push(other + cells as u32);
-                } else if crawls && at < crawling {
+                } else if crawls {
                     own.column.push(other + 2 * cells as u32);
                 }
             }
