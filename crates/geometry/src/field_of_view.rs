@@ -182,6 +182,16 @@ impl Visibility {
             Self::NextToUncertain | Self::Unseen | Self::TooLarge | Self::NotClosed => Certainty::Uncertain,
         }
     }
+
+    /// Whether the polygon of the cell is that of the whole tissue, whatever those of its neighbours are.
+    pub fn has_certain_polygon(self) -> bool {
+        matches!(self, Self::Counted | Self::NextToUncertain)
+    }
+
+    /// The same, or it is so large because a cell next to it was not detected.
+    pub fn has_certain_polygon_or_hole(self) -> bool {
+        self.has_certain_polygon() || self == Self::TooLarge
+    }
 }
 
 /// The judgement on each cell of a frame.

@@ -4,7 +4,6 @@ use crate::inferences::{assert_valid, infer};
 use crate::program::fixture;
 use crate::scratch::{number, report};
 use serde_json::Value;
-use std::ffi::OsStr;
 
 /// A fit of the noisy chiral liquid.
 fn fitted(flags: &str) -> Value {
@@ -100,24 +99,6 @@ fn a_landscape_is_lowest_at_the_estimate() {
             assert!((values[index] - estimate).abs() < 1.01 * step, "{kind} {name}: {}", values[index]);
         }
     }
-}
-
-/// Held coefficients and noise make for short fits.
-#[test]
-fn a_bootstrap_is_the_same_for_any_number_of_threads() {
-    let [one, two] = ["1", "2"].map(|threads| {
-        let (data, out) = (fixture("chiral-liquid"), crate::scratch::Folder::new());
-        let paths = [data.as_os_str(), "--out".as_ref(), out.path().as_os_str(), "--threads".as_ref()];
-        let flags =
-            "infer --fix K_A=0.1 --fix P_0=4 --position-noise 0.5% --velocity-noise 5% --bootstrap 40";
-        let words = flags.split_whitespace().map(OsStr::new).chain(paths).chain([threads.as_ref()]);
-        let outcome = crate::program::voronudge(words);
-        assert!(matches!(outcome.code, Some(0 | 1)), "{outcome:?}");
-        let mut report = report(out.path());
-        report["bootstrap"].take()
-    });
-    assert!(one.is_object());
-    assert_eq!(one.to_string(), two.to_string());
 }
 
 #[test]

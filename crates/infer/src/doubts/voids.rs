@@ -8,7 +8,7 @@
 use super::LEVEL;
 use crate::{Observation, Velocities};
 use statrs::distribution::{ContinuousCDF, DiscreteCDF, Normal, Poisson};
-use voronudge_geometry::{CellPolygon, Domain, Vector, Visibility};
+use voronudge_geometry::{CellPolygon, Domain, Vector};
 
 /// Circles are counted beyond so many widths of the distribution.
 const BEYOND: [f64; 4] = [3.2, 3.7, 4.2, 4.7];
@@ -86,10 +86,7 @@ fn separate(circles: &[Circle], domain: Domain, radius: f64) -> usize {
 /// The circles at the vertices of polygons that are certain, next to cells whose velocities are explained.
 fn circles(frame: &Observation) -> Vec<Circle> {
     let tessellation = &frame.tessellation;
-    let is_certain = |cell: usize| {
-        use Visibility::{Counted, NextToUncertain, TooLarge};
-        matches!(frame.visibility[cell], Counted | NextToUncertain | TooLarge)
-    };
+    let is_certain = |cell: usize| frame.visibility[cell].has_certain_polygon_or_hole();
     let is_explained = |cell: usize| match &frame.velocities {
         Velocities::OfCells(velocities) => velocities[cell].is_some(),
         Velocities::OnGrid(_) => true,

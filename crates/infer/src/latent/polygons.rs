@@ -171,10 +171,7 @@ pub(super) fn voids(scene: &Scene<'_>) -> Vec<Void> {
     }
     let areas = voronudge_geometry::areas(tessellation, positions);
     // A hole that a cell leaves may be so large that its neighbours do not count.
-    let trusted = |cell: usize| {
-        use Visibility::{Counted, NextToUncertain, TooLarge};
-        matches!(frame.visibility[cell], Counted | NextToUncertain | TooLarge)
-    };
+    let trusted = |cell: usize| frame.visibility[cell].has_certain_polygon_or_hole();
     let turned = |cell: usize, h: usize, by: usize| {
         let ring = tessellation.ring(cell);
         ring.start + (h - ring.start + by) % ring.len()

@@ -4,7 +4,7 @@ use super::{Observation, Velocities};
 use crate::Error;
 use crate::flow::{Sampling, Window};
 use crate::measurement::Unknown;
-use voronudge_geometry::{CellPolygon, Tessellation, Vector, Visibility};
+use voronudge_geometry::{CellPolygon, Tessellation, Vector};
 
 /// Steps `r ← y − c (centroid(r) − r)` from measured positions towards sites: more would follow the noise.
 const APPROACHES: usize = 4;
@@ -22,10 +22,7 @@ impl Observation {
         let failure = |source| Error::Geometry { frame: 0, source };
         let mut tessellation = Tessellation::new(&measured, domain).map_err(failure)?;
         let polygons: Vec<bool> = (0..measured.len())
-            .map(|cell| {
-                tessellation.is_closed(cell)
-                    && matches!(self.visibility[cell], Visibility::Counted | Visibility::NextToUncertain)
-            })
+            .map(|cell| tessellation.is_closed(cell) && self.visibility[cell].has_certain_polygon())
             .collect();
         let mut positions = measured.clone();
         let mut polygon = CellPolygon::default();

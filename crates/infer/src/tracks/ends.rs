@@ -10,7 +10,7 @@ use super::neighbours::Motion;
 use super::states::{Instant, instants};
 use crate::Error;
 use std::collections::BTreeSet;
-use voronudge_geometry::{CellPolygon, Tessellation, Vector, Visibility};
+use voronudge_geometry::{CellPolygon, Tessellation, Vector};
 
 /// Steps from where a cell is predicted to the centre of the place that the others leave.
 const STEPS: usize = 3;
@@ -101,8 +101,7 @@ fn further(movie: &Movie) -> Result<Vec<Unseen>, Error> {
         for (cell, track) in tracks.iter().enumerate() {
             let track = *track as usize;
             let (begins, ends) = (movie.tracks[track].first == frame, movie.tracks[track].end() == frame + 1);
-            let is_certain =
-                matches!(cells.visibility[cell], Visibility::Counted | Visibility::NextToUncertain);
+            let is_certain = cells.visibility[cell].has_certain_polygon();
             let Some(r) = movie.near(track, frame).filter(|_| is_certain && (begins || ends)) else {
                 continue;
             };

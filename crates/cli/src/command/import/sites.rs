@@ -4,7 +4,7 @@ use crate::failure::Failure;
 use clap::ValueEnum;
 use ndarray::{Array2, Array3};
 use std::collections::{BTreeMap, BTreeSet};
-use voronudge_geometry::{Domain, Interface, Tessellation, Vector, Visibility};
+use voronudge_geometry::{Domain, Interface, Tessellation, Vector};
 use voronudge_infer::{Outlined, sites};
 use voronudge_io::{DataSet, Noise, PositionsAre, ShapeImport, Snapshot};
 use voronudge_report::shape_report::SiteRecord;
@@ -55,7 +55,7 @@ fn certain_cells(dataset: &DataSet) -> BTreeSet<(usize, usize)> {
         let Ok(tessellation) = Tessellation::new(&snapshot.positions, Domain::Open) else { continue };
         let judged = view.judge(&tessellation, &snapshot.positions);
         for (cell, visibility) in snapshot.cells.iter().zip(judged.visibility()) {
-            if matches!(visibility, Visibility::Counted | Visibility::NextToUncertain) {
+            if visibility.has_certain_polygon() {
                 certain.insert((frame, *cell));
             }
         }
