@@ -88,6 +88,30 @@ fn a_commit_replaces_earlier_results_and_keeps_strangers() {
 }
 
 #[test]
+fn what_is_withdrawn_goes_with_the_commit_unless_it_is_written() {
+    let scratch = Scratch::new();
+    for name in ["movie.gif", "cells.csv", "notes.txt"] {
+        scratch.write(name, "earlier");
+    }
+    let mut out = OutputDirectory::create(scratch.root()).unwrap();
+    out.withdraw("movie.gif").unwrap();
+    out.withdraw("cells.csv").unwrap();
+    out.withdraw("never-there.npy").unwrap();
+    out.write_text("cells.csv", "new").unwrap();
+    assert_told(out.withdraw("../x"), &["\"../x\" is not a plain file name"], "directly");
+    assert!(scratch.path("movie.gif").exists());
+    drop(out);
+    assert_eq!(names(scratch.root()), ["cells.csv", "movie.gif", "notes.txt"]);
+    let mut out = OutputDirectory::create(scratch.root()).unwrap();
+    out.withdraw("movie.gif").unwrap();
+    out.withdraw("cells.csv").unwrap();
+    out.write_text("cells.csv", "new").unwrap();
+    out.commit().unwrap();
+    assert_eq!(names(scratch.root()), ["cells.csv", "notes.txt"]);
+    assert_eq!(fs::read_to_string(scratch.path("cells.csv")).unwrap(), "new");
+}
+
+#[test]
 fn a_check_tells_what_a_claim_tells_and_leaves_nothing() {
     let scratch = Scratch::new();
     OutputFolder::check(&scratch.path("a/b/results")).unwrap();
