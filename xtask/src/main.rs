@@ -1,6 +1,7 @@
 //! Automation of this repository: `cargo xtask <command>`.
 
 mod bench;
+mod book;
 mod check;
 mod figures;
 mod fixtures;
@@ -27,6 +28,8 @@ struct Arguments {
 enum Command {
     /// Time hot formulas against the number of cells and of threads, with memory, and compare with the record.
     Bench(bench::Arguments),
+    /// Make the pages into a site with search, in target/book; needs mdBook.
+    Book,
     /// Run the checks that every change must pass, in order, and stop at the first failure.
     Check {
         /// Run these only.
@@ -58,6 +61,7 @@ fn main() -> ExitCode {
     let root = root();
     let outcome = match Arguments::parse().command {
         Command::Bench(arguments) => bench::run(&root, &arguments),
+        Command::Book => book::run(&root),
         Command::Check { only } => check::run(&root, &only),
         Command::Figures(arguments) => figures::run(&root, &arguments),
         Command::Fuzz(arguments) => fuzz::run(&root, &arguments),

@@ -20,6 +20,11 @@ impl Failure {
         self
     }
 
+    /// The end of a rehearsal: no fault, but what would be done, for stdout.
+    pub fn rehearsed(told: impl Into<String>) -> Self {
+        Self { message: told.into(), hint: None, exit_code: 0 }
+    }
+
     /// Ctrl-C. Nothing has been written.
     pub fn interrupted() -> Self {
         Self { message: "interrupted; nothing was written".into(), hint: None, exit_code: 130 }

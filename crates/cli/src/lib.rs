@@ -59,6 +59,8 @@ mod boundary;
 #[cfg(feature = "cli")]
 mod command;
 #[cfg(feature = "cli")]
+mod configuration;
+#[cfg(feature = "cli")]
 mod failure;
 #[cfg(feature = "cli")]
 mod memory;
@@ -70,6 +72,8 @@ pub mod problem;
 pub mod program;
 #[cfg(feature = "cli")]
 mod progress;
+#[cfg(feature = "cli")]
+mod rehearsal;
 #[cfg(feature = "cli")]
 mod run;
 #[cfg(feature = "cli")]

@@ -2,6 +2,7 @@
 
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
+use crate::rehearsal;
 use serde_json::Value;
 use std::fs;
 use std::io::ErrorKind;
@@ -32,20 +33,75 @@ impl CommonArguments {
         Ok(OutputDirectory::of(self.claim(inputs)?)?)
     }
 
-    /// The same, for a run that writes files as it goes on.
+    /// The same, for a run that writes files as it goes on. With --dry-run the command ends here, so it comes after all that is quickly
+    /// checked and right before the work.
     pub fn claim<P: AsRef<Path>>(
         &self,
         inputs: impl IntoIterator<Item = P>,
     ) -> Result<OutputFolder, Failure> {
         let out = self.required_out()?;
+        let inputs: Vec<P> = inputs.into_iter().collect();
         if let Ok(folder) = out.canonicalize() {
-            inputs.into_iter().try_for_each(|input| refuse_input(&folder, input.as_ref()))?;
+            inputs.iter().try_for_each(|input| refuse_input(&folder, input.as_ref()))?;
         }
+        self.rehearse(inputs)?;
         let folder = OutputFolder::claim(out)?;
         if !self.overwrite {
             refuse_measured(out)?;
         }
         Ok(folder)
+    }
+
+    /// Claims the output folder before checks that take their time; with --dry-run, only checks it.
+    pub fn reserve<P: AsRef<Path>>(
+        &self,
+        inputs: impl IntoIterator<Item = P>,
+    ) -> Result<ReservedOutput<'_>, Failure> {
+        let inputs: Vec<PathBuf> = inputs.into_iter().map(|input| input.as_ref().to_owned()).collect();
+        let out = match self.dry_run {
+            true => self.check_output(&inputs).map(|()| None)?,
+            false => Some(self.output(&inputs)?),
+        };
+        Ok(ReservedOutput { common: self, inputs, out })
+    }
+
+    /// Refuses an output folder that [`claim`](Self::claim) would refuse.
+    fn check_output<P: AsRef<Path>>(&self, inputs: impl IntoIterator<Item = P>) -> Result<(), Failure> {
+        let out = self.required_out()?;
+        if let Ok(folder) = out.canonicalize() {
+            inputs.into_iter().try_for_each(|input| refuse_input(&folder, input.as_ref()))?;
+        }
+        OutputFolder::check(out)?;
+        if self.overwrite { Ok(()) } else { refuse_measured(out) }
+    }
+
+    /// Ends a command with --dry-run, after all checks of its output folder.
+    pub fn rehearse<P: AsRef<Path>>(&self, inputs: impl IntoIterator<Item = P>) -> Result<(), Failure> {
+        if !self.dry_run {
+            return Ok(());
+        }
+        let inputs: Vec<PathBuf> = inputs.into_iter().map(|input| input.as_ref().to_owned()).collect();
+        if self.out.is_some() {
+            self.check_output(&inputs)?;
+        }
+        Err(rehearsal::end(&inputs, self.out.as_deref(), self.format))
+    }
+}
+
+/// The output folder of a run whose work has not begun.
+pub(crate) struct ReservedOutput<'a> {
+    common: &'a CommonArguments,
+    inputs: Vec<PathBuf>,
+    out: Option<OutputDirectory>,
+}
+
+impl ReservedOutput<'_> {
+    /// After all that is checked before the work: with --dry-run the command ends here.
+    pub fn begin(self) -> Result<OutputDirectory, Failure> {
+        match self.out {
+            Some(out) => Ok(out),
+            None => self.common.output(&self.inputs),
+        }
     }
 }
 

@@ -1,7 +1,7 @@
 //! The program `voronudge`: its commands as the command line has them.
 
 use crate::failure::Failure;
-use crate::{command, terminal};
+use crate::{command, configuration, terminal};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use serde_json::json;
@@ -35,6 +35,7 @@ pub(crate) enum Command {
     PhaseDiffusion(command::phase_diffusion::Arguments),
     Rheology(Box<command::rheology::Arguments>),
     Completions(command::completions::Arguments),
+    Man(command::man::Arguments),
 }
 
 /// What a command that ran has to say.
@@ -46,10 +47,10 @@ pub(crate) enum Answer {
     Negative,
 }
 
-/// The words of the command line that runs.
+/// The words of the command line that runs, those of a file of --config among them.
 static TYPED: OnceLock<Vec<String>> = OnceLock::new();
 
-/// The words that were typed, the name of the program first.
+/// The words of the command line, the name of the program first.
 pub(crate) fn typed() -> &'static [String] {
     TYPED.get().map_or(&[], Vec::as_slice)
 }
@@ -59,8 +60,9 @@ pub(crate) fn typed() -> &'static [String] {
 ///
 /// Once in a process: a command takes over SIGINT and SIGTERM, and sets the number of threads.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
-    let arguments: Vec<OsString> = arguments.into_iter().collect();
-    TYPED.get_or_init(|| arguments.iter().map(|word| word.to_string_lossy().into_owned()).collect());
+    let mut words: Vec<OsString> = arguments.into_iter().collect();
+    let configured = configuration::insert(&mut words);
+    TYPED.get_or_init(|| words.iter().map(|word| word.to_string_lossy().into_owned()).collect());
     let failed = |failure: Failure| {
         terminal::note(&failure.to_string());
         if wants_json(typed()) {
@@ -71,10 +73,17 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         }
         failure.exit_code()
     };
-    match Arguments::try_parse_from(arguments) {
+    if let Err(failure) = configured {
+        return failed(failure);
+    }
+    match Arguments::try_parse_from(words) {
         Ok(arguments) => match call(arguments.command) {
             Ok(Answer::Positive) => 0,
             Ok(Answer::Negative) => 1,
+            Err(end) if end.exit_code() == 0 => match terminal::print(end.message()) {
+                Ok(()) => 0,
+                Err(error) => failed(Failure::new(format!("stdout cannot be written: {error}"))),
+            },
             Err(failure) => failed(failure),
         },
         Err(error) => match error.kind() {
@@ -125,5 +134,6 @@ fn call(command: Command) -> Result<Answer, Failure> {
         Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
         Command::Rheology(arguments) => command::rheology::run(*arguments),
         Command::Completions(arguments) => command::completions::run(&arguments),
+        Command::Man(arguments) => command::man::run(&arguments),
     }
 }

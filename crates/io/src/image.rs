@@ -3,6 +3,7 @@
 mod description;
 mod png;
 mod tiff;
+mod zstd;
 
 use std::path::Path;
 

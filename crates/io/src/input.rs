@@ -47,7 +47,12 @@ pub(crate) fn read_bytes(path: &Path) -> Result<Vec<u8>, Error> {
     let failure = |fault| Error::File { path: path.to_path_buf(), fault };
     let metadata = fs::metadata(path).map_err(|source| failure(file_fault(source)))?;
     if metadata.is_dir() {
-        return Err(failure(if is_zarr(path) { FileFault::Zarr } else { FileFault::IsFolder }));
+        let detail = || "a file is needed here".to_owned();
+        return Err(failure(if is_zarr(path) {
+            FileFault::Zarr { detail: detail() }
+        } else {
+            FileFault::IsFolder
+        }));
     }
     if !metadata.is_file() {
         return Err(failure(FileFault::NotRegular));

@@ -18,6 +18,8 @@ use crate::napari;
 use crate::note::Note;
 use crate::series::{Stack, Wanted, read_images};
 use crate::source::Source;
+use crate::tracks::{ImportOptions, import_tracks};
+use crate::zarr::is_geff;
 
 /// What a file or a folder is taken for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -179,6 +181,10 @@ pub fn inspect(path: &Path) -> Result<Inspection, Error> {
         if path.join("positions.npy").exists() || path.join("dataset.toml").exists() {
             let data = Source::folder(path).load()?;
             return Ok(Inspection::of_data(InputKind::DataSet, &data, Vec::new()));
+        }
+        if is_geff(path) {
+            let found = import_tracks(path, &ImportOptions::default())?;
+            return Ok(Inspection::of_data(InputKind::Tracks, &found.dataset, found.notes));
         }
         return of_images(path);
     }

@@ -52,6 +52,7 @@ mod inspect;
 mod journal;
 mod label_import;
 mod linking;
+mod mat;
 mod measurement;
 mod memory;
 mod napari;
@@ -74,6 +75,7 @@ mod trackmate_xml;
 mod tracks;
 mod validate;
 mod velocity;
+mod zarr;
 
 pub use array::{read_integers, read_reals, read_vectors};
 pub use dataset::{Boundary, DataSet, WalledSides, YAxis};

@@ -47,6 +47,8 @@ pub struct OutputDirectory {
     folder: OutputFolder,
     /// File names in the order of writing, each once.
     staged: Vec<String>,
+    /// Earlier results that go.
+    withdrawn: Vec<String>,
 }
 
 impl OutputDirectory {
@@ -64,14 +66,28 @@ impl OutputDirectory {
     /// [`Error::Output`] where it cannot be written to.
     pub fn of(folder: OutputFolder) -> Result<Self, Error> {
         let staging = hidden(STAGING, folder.path(), folder.path())?;
-        Ok(Self { staging, _run: None, ends: Ends::Nothing, folder, staged: Vec::new() })
+        Ok(Self {
+            staging,
+            _run: None,
+            ends: Ends::Nothing,
+            folder,
+            staged: Vec::new(),
+            withdrawn: Vec::new(),
+        })
     }
 
     /// For the results of a run, with the files that are not yet in place in its folder.
     pub(crate) fn of_run(run: RunFolder) -> Result<Self, Error> {
         let folder = run.folder().clone();
         let staging = hidden("results-", run.path(), folder.path())?;
-        Ok(Self { staging, _run: Some(run), ends: Ends::TheRun, folder, staged: Vec::new() })
+        Ok(Self {
+            staging,
+            _run: Some(run),
+            ends: Ends::TheRun,
+            folder,
+            staged: Vec::new(),
+            withdrawn: Vec::new(),
+        })
     }
 
     /// The directory as it is claimed.
@@ -89,6 +105,16 @@ impl OutputDirectory {
     /// States that the results end the run whose journal is in the directory: the commit removes it.
     pub fn end_run(&mut self) {
         self.ends = Ends::TheRun;
+    }
+
+    /// States that an earlier result of this name does not go with these results: the commit removes it.
+    ///
+    /// # Errors
+    /// [`Error::Output`] where `name` is not a plain file name.
+    pub fn withdraw(&mut self, name: &str) -> Result<(), Error> {
+        self.check_name(name)?;
+        self.withdrawn.push(name.to_owned());
+        Ok(())
     }
 
     /// The names written so far, in order.
@@ -167,7 +193,9 @@ impl OutputDirectory {
     /// [`Error::Output`]; whether a name is taken by a folder is looked at before anything is decided.
     pub fn commit(self) -> Result<Vec<PathBuf>, Error> {
         let targets = commit::targets(self.path(), &self.staged)?;
-        commit::commit(self.staging.path(), self.path(), self.ends)?;
+        let withdrawn: Vec<String> =
+            self.withdrawn.iter().filter(|name| !self.staged.contains(name)).cloned().collect();
+        commit::commit(self.staging.path(), self.path(), &withdrawn, self.ends)?;
         Ok(targets)
     }
 
@@ -185,11 +213,7 @@ impl OutputDirectory {
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
     ) -> Result<(), Error> {
         let target = self.path().join(name);
-        let plain = Path::new(name).file_name().is_some_and(|plain| plain == name);
-        if !plain {
-            let name = name.to_owned();
-            return Err(output_error(self.path(), OutputFault::InvalidName { name }));
-        }
+        self.check_name(name)?;
         refuse_folder(&target)?;
         // A write that fails must not leave half a file to be committed.
         self.staged.retain(|known| known != name);
@@ -203,6 +227,14 @@ impl OutputDirectory {
         write_file().map_err(|source| output_error(&target, OutputFault::Write(source)))?;
         self.staged.push(name.to_owned());
         Ok(())
+    }
+
+    /// Refuses what would be a place elsewhere.
+    fn check_name(&self, name: &str) -> Result<(), Error> {
+        match Path::new(name).file_name().is_some_and(|plain| plain == name) {
+            true => Ok(()),
+            false => Err(output_error(self.path(), OutputFault::InvalidName { name: name.to_owned() })),
+        }
     }
 }
 

@@ -12,6 +12,7 @@ use crate::image::{Described, Images, check_total, image_error};
 use crate::input::{InputFile, file_fault, is_zarr, read_input};
 use crate::note::Note;
 use crate::stated::Stated;
+use crate::zarr::read_ome;
 
 /// Files that are read, by the end of their names.
 const KINDS: [&str; 4] = ["tif", "tiff", "png", "npy"];
@@ -63,8 +64,17 @@ pub(crate) fn read_images<T: Clone>(
     let (mut parts, mut inputs, mut starts) = (Vec::new(), Vec::new(), Vec::new());
     let (mut first, mut frames) = (None, 0);
     for path in &files {
-        let (bytes, record) = read_input(path)?;
-        let Images { pixels, described } = parse(path, &bytes)?;
+        let (Images { pixels, described }, record) = match path.is_dir() {
+            // Only stores are folders here.
+            true => {
+                let (bytes, described, record) = read_ome(path, wanted)?;
+                (Images { described, ..parse(path, &bytes)? }, record)
+            }
+            false => {
+                let (bytes, record) = read_input(path)?;
+                (parse(path, &bytes)?, record)
+            }
+        };
         let (pages, rows, columns) = pixels.dim();
         let Described { stated, notes: own } = described;
         let (expected, of_first): &([usize; 2], Stated) =
@@ -101,7 +111,7 @@ pub(crate) fn read_images<T: Clone>(
 fn files_of(paths: &[PathBuf], wanted: Wanted, notes: &mut Vec<Note>) -> Result<Vec<PathBuf>, Error> {
     let mut files = Vec::new();
     for path in paths {
-        match path.is_dir() {
+        match path.is_dir() && !is_zarr(path) {
             true => files.extend(images_in(path, wanted, notes)?),
             false => files.push(path.clone()),
         }
@@ -122,9 +132,6 @@ fn files_of(paths: &[PathBuf], wanted: Wanted, notes: &mut Vec<Note>) -> Result<
 /// The images of a folder, of one kind.
 fn images_in(folder: &Path, wanted: Wanted, notes: &mut Vec<Note>) -> Result<Vec<PathBuf>, Error> {
     let failure = |fault| Error::File { path: folder.to_path_buf(), fault };
-    if is_zarr(folder) {
-        return Err(failure(FileFault::Zarr));
-    }
     let mut found: BTreeMap<String, Vec<PathBuf>> = BTreeMap::new();
     let (mut masks, mut others) = (0, 0);
     for entry in fs::read_dir(folder).map_err(|source| failure(file_fault(source)))? {

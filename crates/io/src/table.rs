@@ -2,6 +2,7 @@
 
 mod columns;
 mod known;
+mod pivlab;
 mod profile;
 mod text;
 mod vectors;
@@ -19,7 +20,7 @@ use columns::Columns;
 pub(crate) use columns::{Layout, Spot};
 pub use profile::{FlowProfile, read_flow_profile};
 pub(crate) use text::{decompressed, text_in_utf8};
-use text::{delimiter, tabbed, text_of};
+use text::{delimiter, tabbed, text_of, with_points};
 pub use vectors::FlowColumnNames;
 pub(crate) use vectors::{Vector, VectorTable, read_table};
 
@@ -54,11 +55,13 @@ pub(crate) fn read_spots(
         Some(separator) => (Cow::Borrowed(&*text.bytes), separator),
         None => (Cow::Owned(tabbed(&text.bytes)), b'\t'),
     };
+    let (separated, commas) = with_points(separated, separator);
     let mut table = parse(&separated, separator, layout, names).map_err(|(offset, fault)| {
         let line = offset.map(|offset| line_number(&separated, offset));
         failure(line, fault)
     })?;
     table.notes.extend(text.note());
+    table.notes.extend(commas);
     Ok(table)
 }
 

@@ -9,12 +9,13 @@ use crate::dataset::{Boundary, DataSet, YAxis};
 use crate::error::{Error, TableFault};
 use crate::field_of_view::SeenArea;
 use crate::image_scale::ImageScale;
-use crate::input::{InputFile, read_input};
+use crate::input::{InputFile, is_zarr, read_input};
 use crate::napari;
 use crate::note::Note;
 use crate::table::{ColumnNames, Layout, SpotTable, decompressed, read_spots};
 use crate::trackmate_xml::{is_xml, read_trackmate};
 use crate::validate::{ArrayNames, check_seen};
+use crate::zarr::read_geff;
 
 /// The most frames between the first and the last spot.
 const FRAME_LIMIT: usize = 100_000;
@@ -122,6 +123,10 @@ pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Err
 
 fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
     options.scale().begin(Boundary::Open)?;
+    if is_zarr(path) {
+        let (table, record) = read_geff(path)?;
+        return finish(path, options, record, (table, Layout::Tracks));
+    }
     let (bytes, record) = read_input(path)?;
     let read = read_any(path, &bytes, layout, &options.columns)?;
     finish(path, options, record, read)

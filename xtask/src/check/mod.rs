@@ -1,6 +1,7 @@
 //! The checks that every change must pass.
 
 mod layers;
+pub mod pages;
 mod tidy;
 
 use crate::Outcome;
@@ -17,6 +18,8 @@ pub enum Check {
     Layers,
     /// Whitespace, length and names of files; sources of packages.
     Tidy,
+    /// Links in pages, and the table of contents.
+    Pages,
     /// Lints, where a warning is an error.
     Clippy,
     /// Lints of the library without the program.
@@ -47,6 +50,7 @@ impl Check {
             Self::Fmt => cargo(root, "fmt --all --check", &[]),
             Self::Layers => report(&layers::violations(root)?),
             Self::Tidy => report(&tidy::violations(root)?),
+            Self::Pages => report(&pages::violations(root)?),
             Self::Clippy => cargo(root, "clippy --workspace --all-targets --release -- -D warnings", &[]),
             Self::Library => cargo(
                 root,

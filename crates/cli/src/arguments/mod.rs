@@ -43,6 +43,12 @@ pub(crate) struct CommonArguments {
     /// Also replace a data set in --out that this program did not write there. Files that are read are never replaced.
     #[arg(long)]
     pub overwrite: bool,
+    /// Options from a file: TOML, whose keys are names of options. One that is typed wins.
+    #[arg(long, value_name = "FILE")]
+    config: Option<PathBuf>,
+    /// Read and check all that would be used, say what would be computed and written, and stop there.
+    #[arg(long)]
+    pub dry_run: bool,
     /// Seed of random numbers, for commands that draw some; recorded by all.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,

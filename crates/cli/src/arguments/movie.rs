@@ -2,52 +2,36 @@
 
 use crate::failure::Failure;
 use crate::run::Run;
-use clap::{Args, ValueEnum};
+use clap::Args;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
 use voronudge_io::OutputDirectory;
 use voronudge_report::movie::{CellMovie, Colouring};
+
+/// What it is called.
+const FILE: &str = "movie.gif";
 
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct MovieArguments {
     /// Also write the cells of the frames as movie.gif, coloured by this.
-    #[arg(long, value_name = "QUANTITY", value_enum)]
-    movie: Option<Quantity>,
+    #[arg(long, value_name = "QUANTITY", value_parser = colouring())]
+    movie: Option<Colouring>,
 }
 
-/// Colours of a movie, by the names that are typed.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
-enum Quantity {
-    /// Area.
-    Area,
-    /// Perimeter over the root of the area.
-    Shape,
-    /// Number of neighbours.
-    Neighbours,
-    /// Size of the measured velocity.
-    Speed,
-    /// Vorticity of the measured velocities.
-    Vorticity,
-    /// Size of what the model leaves of the measured velocity.
-    Residual,
-}
-
-impl Quantity {
-    fn colouring(self) -> Colouring {
-        match self {
-            Self::Area => Colouring::Area,
-            Self::Shape => Colouring::Shape,
-            Self::Neighbours => Colouring::Neighbours,
-            Self::Speed => Colouring::Speed,
-            Self::Vorticity => Colouring::Vorticity,
-            Self::Residual => Colouring::Residual,
-        }
-    }
+/// Colours by the words that are typed.
+fn colouring() -> impl TypedValueParser<Value = Colouring> {
+    let words = Colouring::ALL.map(Colouring::word);
+    let known = PossibleValuesParser::new(words.map(|[word, help]| PossibleValue::new(word).help(help)));
+    known.try_map(|typed| {
+        let mut all = Colouring::ALL.into_iter();
+        all.find(|own| own.word()[0] == typed).ok_or("cells have no such colour")
+    })
 }
 
 impl MovieArguments {
     /// Refuses what nothing is known of where nothing is fitted.
     pub fn check_without_fit(self) -> Result<(), Failure> {
         match self.movie {
-            Some(Quantity::Residual) => {
+            Some(Colouring::Residual) => {
                 Err(Failure::new("--movie residual: nothing is fitted, so nothing is left")
                     .with_hint("colour it by area, shape, neighbours, speed or vorticity"))
             }
@@ -55,20 +39,21 @@ impl MovieArguments {
         }
     }
 
-    /// Writes the image, if it is asked for; warns if what it is to be coloured by is not known.
+    /// Writes the image, if it is asked for; an earlier one goes. Warns if what it is to be coloured by is not known.
     pub fn write(
         self,
         out: &mut OutputDirectory,
         movie: Option<&CellMovie>,
         run: &mut Run,
     ) -> Result<(), Failure> {
-        let Some(quantity) = self.movie else { return Ok(()) };
-        match movie.map(|movie| movie.gif(quantity.colouring())).transpose()?.flatten() {
-            Some(image) => Ok(out.write_bytes("movie.gif", &image)?),
+        // One of an earlier run would be of other cells.
+        out.withdraw(FILE)?;
+        let Some(colouring) = self.movie else { return Ok(()) };
+        match movie.map(|movie| movie.gif(colouring)).transpose()?.flatten() {
+            Some(image) => Ok(out.write_bytes(FILE, &image)?),
             None => {
-                let name =
-                    quantity.to_possible_value().map(|own| own.get_name().to_owned()).unwrap_or_default();
-                run.warn(format!("no movie.gif was written: the {name} of the cells is not known here"));
+                let [name, _] = colouring.word();
+                run.warn(format!("no {FILE} was written: the {name} of the cells is not known here"));
                 Ok(())
             }
         }

@@ -64,7 +64,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let inputs = data.iter().flat_map(|data| &data.inputs).map(AsRef::as_ref);
     let mut out = match &arguments.common.out {
         Some(_) => Some(arguments.common.output(inputs.chain(arguments.parameters.file()))?),
-        None => None,
+        None => arguments.common.rehearse(inputs.chain(arguments.parameters.file())).map(|()| None)?,
     };
     let mut subjects: Vec<(String, Snapshot, Domain)> = Vec::new();
     match &data {

@@ -35,6 +35,7 @@ fn every_sample_is_what_it_is() {
         "cellprofiler.csv",
         "regionprops.csv",
         "manual-tracking.xls",
+        "decimal-comma.csv",
     ] {
         let found = assert_is(&sample(name), "tracks of cells", "import tracks");
         assert_eq!((&found["frames"], &found["cells"]), (&json!(4), &json!(30)), "{name}");
@@ -54,8 +55,12 @@ fn every_sample_is_what_it_is() {
         "series",
         "masks_seg.npy",
         "labels-slices.tif",
+        "labels-zstd-tiles.tif",
     ] {
         assert_is(&sample(name), "label images", "import labels");
+    }
+    for name in ["pivlab.mat", "pivlab-frame.mat"] {
+        assert_is(&sample(name), "table of vectors on a grid", "import flow");
     }
     let found = info(&sample("labels.ome.tif"));
     assert_eq!(found["shape"], json!([4, 60, 72]));
@@ -121,8 +126,17 @@ fn what_is_not_read_is_answered_with_a_hint() {
         refused(name, fact, "comma-separated values");
     }
     refused("none.csv", "no such file", "spelling");
-    folder.write("zstd.tif", std::fs::read(fixture("imports").join("labels-zstd.tif")).unwrap());
-    refused("zstd.tif", "is compressed by a method that is not read (ZSTD, page 0)", "compression=\"zlib\"");
+    // The tag of compression, of one number of two bytes, that stands for LZMA in place of Zstandard.
+    let mut image = std::fs::read(fixture("imports").join("labels-zstd.tif")).unwrap();
+    let tag = [3, 1, 3, 0, 1, 0, 0, 0];
+    let at = tag.len() + image.windows(tag.len()).position(|own| own == tag).unwrap();
+    image[at..at + 2].copy_from_slice(&34925_u16.to_le_bytes());
+    folder.write("lzma.tif", image);
+    refused(
+        "lzma.tif",
+        "is compressed by a method that is not read (Unknown(34925), page 0)",
+        "compression=\"zlib\"",
+    );
     std::fs::create_dir(folder.file("x.zarr")).unwrap();
     refused("x.zarr", "is a folder without .tif, .png or .npy files", "name the folder");
     folder.write("x.zarr/.zgroup", "{}");

@@ -8,6 +8,7 @@ mod bad_fits;
 mod bad_folders;
 mod bad_places;
 mod channels;
+mod configurations;
 mod discoveries;
 mod evaluations;
 mod exports;

@@ -52,6 +52,16 @@ fn fits_show_residuals_and_what_is_known_of_each_cell() {
 }
 
 #[test]
+fn a_movie_of_an_earlier_run_goes_and_other_files_stay() {
+    let out = Folder::new();
+    succeed(&format!("{LINE} --movie area"), &[("--out", out.path())]);
+    assert!(out.file("movie.gif").exists());
+    out.write("movie.mp4", "");
+    succeed(LINE, &[("--out", out.path())]);
+    assert!(!out.file("movie.gif").exists() && out.file("movie.mp4").exists());
+}
+
+#[test]
 fn colours_of_which_nothing_is_known_are_told() {
     let line = LINE.split_whitespace().chain(["--movie", "residual"]);
     assert!(assert_arguments_refused(line, &["--movie residual", "nothing is fitted"]).contains("shape"));

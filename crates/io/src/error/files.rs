@@ -18,9 +18,12 @@ pub enum FileFault {
     /// A folder without images.
     #[error("is a folder without .tif, .png or .npy files")]
     NoImages,
-    /// A store of chunks, as OME-Zarr and GEFF are.
-    #[error("is a Zarr store (OME-Zarr or GEFF), which is not read")]
-    Zarr,
+    /// A store of chunks, as OME-Zarr and GEFF are, that is not read, or not here.
+    #[error("is a Zarr store (OME-Zarr or GEFF), and {detail}")]
+    Zarr {
+        /// Why it is not read.
+        detail: String,
+    },
     /// A folder with images of several kinds.
     #[error("holds images of several kinds: {kinds}")]
     Mixed {
@@ -55,8 +58,8 @@ impl FileFault {
             Self::NoImages => {
                 Some("name the folder that the images are in; folders inside it are not searched".into())
             }
-            Self::Zarr => Some(
-                "write labels as TIFF, in Python: tifffile.imwrite(\"labels.tif\", \
+            Self::Zarr { .. } => Some(
+                "import tracks reads GEFF, import labels and import field images; else write labels as TIFF, in Python: tifffile.imwrite(\"labels.tif\", \
                  numpy.squeeze(zarr.open(\"x.zarr\")[\"0\"][:]), photometric=\"minisblack\"); write tracks as a table of track, frame, x, y"
                     .into(),
             ),

@@ -132,7 +132,12 @@ pub enum TableFault {
     AnotherKind {
         /// Which.
         kind: &'static str,
+        /// How it becomes a table.
+        advice: &'static str,
     },
+    /// A file of MATLAB that is not whole, or whose variables do not go together.
+    #[error("cannot be read as a file of MATLAB: {0}")]
+    Matlab(String),
     /// A file of bytes that are no text.
     #[error("is not text, a table is needed")]
     NotText,
@@ -223,8 +228,9 @@ impl TableFault {
                 "is the frame column a time? name the column that counts images from zero"
             }
             Self::TooLarge { .. } => "drop short tracks, or import fewer frames at a time",
-            Self::AnotherKind { .. } => {
-                "export what it holds as text, for instance as comma-separated values"
+            Self::AnotherKind { advice, .. } => advice,
+            Self::Matlab(_) => {
+                "save it again from PIVlab (Export, MATLAB file), or its vectors as text; the copy may be cut"
             }
             Self::NotText => "export the table as text; displacements of pixels may be given as .npy",
             Self::NoHeader => "leave the names out if the columns are x, y, u, v, or add a line of names",

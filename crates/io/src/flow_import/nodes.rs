@@ -165,5 +165,5 @@ fn weighted_median(gaps: &[(f64, usize)]) -> Option<f64> {
 }
 
 fn table_error(path: &Path, row: &Vector, fault: TableFault) -> Error {
-    Error::Table { path: path.to_path_buf(), line: Some(row.line), fault }
+    Error::Table { path: path.to_path_buf(), line: (row.line > 0).then_some(row.line), fault }
 }

@@ -8,7 +8,8 @@ use crate::table::VectorTable;
 
 /// Takes units that options leave open, and tells of them.
 pub(super) fn take_units(table: &VectorTable, options: &FlowOptions, dataset: &mut DataSet) -> Vec<Note> {
-    let mut notes = vec![Note::guessed(format!("of the columns {}", table.columns))];
+    let mut notes = vec![Note::guessed(format!("of the {}", table.columns))];
+    notes.extend(table.notes.iter().cloned());
     let is_scaled = options.pixel_size.is_some() || options.frame_interval.is_some();
     let (Some(place), false) = (table.place_unit.as_deref(), is_scaled) else { return notes };
     let (length, time) = match table.unit.as_deref().and_then(|unit| unit.split_once('/')) {

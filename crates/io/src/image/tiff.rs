@@ -21,6 +21,9 @@ pub(super) fn parse_tiff<T: Clone>(
     numbers: fn(DecodingResult) -> Result<Vec<T>, ImageFault>,
 ) -> Result<Images<T>, Error> {
     let failure = |fault| image_error(path, fault);
+    let unpacked = super::zstd::unpacked(bytes)
+        .map_err(|detail| failure(ImageFault::Tiff { page: 0, detail: format!("Zstandard: {detail}") }))?;
+    let bytes = unpacked.as_deref().unwrap_or(bytes);
     let mut page = 0;
     let broken = |page: usize| {
         move |error: TiffError| {

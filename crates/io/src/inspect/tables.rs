@@ -26,11 +26,12 @@ pub(super) fn of_table(path: &Path, bytes: &[u8]) -> Result<Inspection, Error> {
     if let Ok(vectors) = read_table(path, bytes, &FlowColumnNames::default()) {
         let frames: BTreeSet<i64> = vectors.vectors.iter().map(|vector| vector.frame).collect();
         let unit = vectors.unit.map(|unit| Note::read(format!("displacements in {unit}")));
+        let notes = unit.into_iter().chain(vectors.notes).collect();
         return Ok(Inspection {
             shape: Some(vec![vectors.vectors.len()]),
             frames: Some(frames.len()),
             files: vec![path.to_path_buf()],
-            notes: unit.into_iter().collect(),
+            notes,
             ..Inspection::of(InputKind::FlowTable)
         });
     }

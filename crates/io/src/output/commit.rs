@@ -8,7 +8,7 @@
 
 use std::ffi::OsString;
 use std::fs::{self, File};
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use super::folder::deciding;
@@ -20,6 +20,8 @@ use crate::error::{Error, OutputFault};
 pub(crate) const DECIDED: &str = ".voronudge-commit";
 /// A file in it if the results end the run whose checkpoint or journal the directory holds.
 const ENDS_RUN: &str = ".ends-run";
+/// A file in it with the names of earlier results that go, one on a line.
+const WITHDRAWN: &str = ".withdrawn";
 
 /// Whether results end the run of the directory that they go to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -29,8 +31,13 @@ pub(crate) enum Ends {
 }
 
 /// Decides that the files of a hidden folder are the results of a directory, and puts them in place.
-pub(crate) fn commit(staging: &Path, folder: &Path, ends: Ends) -> Result<(), Error> {
+pub(crate) fn commit(staging: &Path, folder: &Path, withdrawn: &[String], ends: Ends) -> Result<(), Error> {
     let switch = || {
+        if !withdrawn.is_empty() {
+            let mut list = File::create(staging.join(WITHDRAWN))?;
+            list.write_all(withdrawn.join("\n").as_bytes())?;
+            list.sync_all()?;
+        }
         if ends == Ends::TheRun {
             File::create(staging.join(ENDS_RUN))?.sync_all()?;
         }
@@ -63,6 +70,12 @@ pub(crate) fn complete(folder: &Path) -> Result<(), Error> {
         }
     }
     let total = names.len();
+    let withdrawn = fs::read_to_string(decided.join(WITHDRAWN)).unwrap_or_default();
+    let plain = |name: &&str| Path::new(name).file_name().is_some_and(|plain| plain == *name);
+    let withdrawn = withdrawn.lines().filter(plain).map(|name| folder.join(name));
+    for target in withdrawn.filter(|target| target.is_file()) {
+        fs::remove_file(&target).map_err(|source| unfinished(&target, source, [total, total]))?;
+    }
     sync_folder(folder).map_err(|source| unfinished(folder, source, [total, total]))?;
     run::remove(&decided)
 }
@@ -75,7 +88,7 @@ fn names(folder: &Path) -> io::Result<Option<Vec<OsString>>> {
     };
     let names = entries.map(|entry| entry.map(|entry| entry.file_name()));
     let mut names: Vec<OsString> = names.collect::<io::Result<_>>()?;
-    names.retain(|name| name != ENDS_RUN);
+    names.retain(|name| name != ENDS_RUN && name != WITHDRAWN);
     names.sort();
     Ok(Some(names))
 }

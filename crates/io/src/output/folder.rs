@@ -102,6 +102,41 @@ impl OutputFolder {
         Ok(Self(Arc::new(claim)))
     }
 
+    /// Whether [`claim`](Self::claim) would succeed, as far as can be told without leaving anything behind.
+    ///
+    /// # Errors
+    /// As [`claim`](Self::claim).
+    pub fn check(path: &Path) -> Result<(), Error> {
+        let failure = |fault| output_error(path, fault);
+        if path.as_os_str().is_empty() {
+            return Err(failure(OutputFault::Unnamed));
+        }
+        let found = fs::metadata(path);
+        if found.as_ref().is_ok_and(|found| !found.is_dir()) {
+            return Err(failure(OutputFault::NotADirectory));
+        }
+        // The name of the current directory is empty among ancestors.
+        let mut parents =
+            path.ancestors().map(|own| if own.as_os_str().is_empty() { Path::new(".") } else { own });
+        let parent = parents.find(|own| own.exists()).unwrap_or(Path::new("."));
+        tempfile::tempfile_in(parent).map_err(|source| {
+            failure(if found.is_ok() {
+                OutputFault::NotWritable(source)
+            } else {
+                OutputFault::Create(source)
+            })
+        })?;
+        match File::open(path.join(LOCK)) {
+            Ok(mut file) => match file.try_lock_shared() {
+                Err(TryLockError::WouldBlock) => {
+                    Err(failure(OutputFault::InUse { holder: holder(&mut file) }))
+                }
+                _ => Ok(()),
+            },
+            Err(_) => Ok(()),
+        }
+    }
+
     /// The directory.
     #[must_use]
     pub fn path(&self) -> &Path {

@@ -1,11 +1,12 @@
 //! Velocities across a channel, as a table.
 
+use std::borrow::Cow;
 use std::path::Path;
 
 use csv::ByteRecord;
 
 use super::columns::{Column, plain};
-use super::{csv_fault, delimiter, line_number, offset_of, text_of};
+use super::{csv_fault, delimiter, line_number, offset_of, text_of, with_points};
 use crate::error::{Error, TableFault};
 use crate::input::{InputFile, read_input};
 
@@ -44,6 +45,8 @@ type Columns = (Vec<f64>, [Vec<f64>; 2], Option<[Vec<f64>; 2]>);
 
 fn parse(text: &[u8]) -> Result<Columns, super::Located> {
     let separator = delimiter(text).unwrap_or(b',');
+    let (text, _) = with_points(Cow::Borrowed(text), separator);
+    let text = &*text;
     let mut reader = csv::ReaderBuilder::new().has_headers(false).delimiter(separator).from_reader(text);
     let mut rows = reader.byte_records();
     let header = match rows.next() {

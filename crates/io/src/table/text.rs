@@ -13,23 +13,38 @@ use crate::note::Note;
 /// exhaust a machine.
 const DECOMPRESSED_LIMIT: u64 = 1 << 30;
 
-/// How files of other kinds begin.
-const OTHER_KINDS: [(&[u8], &str); 14] = [
-    (b"PAR1", "a Parquet file"),
-    (b"MATLAB ", "a MATLAB file"),
-    (b"{", "JSON"),
-    (b"[{", "JSON"),
-    (b"[[", "JSON"),
-    (b"<", "XML or HTML"),
-    (b"PK\x03\x04", "a zip archive or a spreadsheet"),
-    (b"\xd0\xcf\x11\xe0", "an old spreadsheet"),
-    (b"\x89HDF", "an HDF5 file"),
-    (b"\x93NUMPY", "a .npy array"),
-    (b"\x80\x04\x95", "a pickled Python object"),
-    (b"II*\0", "a TIFF image"),
-    (b"MM\0*", "a TIFF image"),
-    (b"\x89PNG", "a PNG image"),
+/// How files of other kinds begin, what they are, and how they become a table.
+const OTHER_KINDS: [(&[u8], &str, &str); 16] = [
+    (b"PAR1", "a Parquet file", PARQUET),
+    (b"MATLAB 7.3", "a MATLAB file of version 7.3 (HDF5)", MATLAB_7_3),
+    (b"MATLAB ", "a MATLAB file", MATLAB),
+    (b"{", "JSON", OTHER),
+    (b"[{", "JSON", OTHER),
+    (b"[[", "JSON", OTHER),
+    (b"<", "XML or HTML", OTHER),
+    (b"PK\x03\x04", "a zip archive or a spreadsheet", SPREADSHEET),
+    (b"\xd0\xcf\x11\xe0", "an old spreadsheet", SPREADSHEET),
+    (b"\x89HDF", "an HDF5 file", HDF5),
+    (b"\x93NUMPY", "a .npy array", OTHER),
+    (b"\x80\x04\x95", "a pickled Python object", OTHER),
+    (b"ARROW1", "a Feather file", FEATHER),
+    (b"II*\0", "a TIFF image", OTHER),
+    (b"MM\0*", "a TIFF image", OTHER),
+    (b"\x89PNG", "a PNG image", OTHER),
 ];
+
+const OTHER: &str = "export what it holds as text, for instance as comma-separated values";
+const PARQUET: &str = "write it as text, as comma-separated values: in Python, \
+     pandas.read_parquet(\"x.parquet\").to_csv(\"x.csv\", index=False); in R, write.csv(arrow::read_parquet(\"x.parquet\"), \"x.csv\")";
+const FEATHER: &str = "write it as text, as comma-separated values: in Python, \
+     pandas.read_feather(\"x.feather\").to_csv(\"x.csv\", index=False)";
+const MATLAB: &str = "import flow reads what PIVlab saves for MATLAB; export other things as text, as comma-separated values: \
+     writetable(array2table(x), \"x.csv\")";
+const MATLAB_7_3: &str = "save it in MATLAB again with save(\"x.mat\", \"-v7\") after load, which import flow reads if it is from PIVlab, \
+     or as text, as comma-separated values";
+const HDF5: &str = "export what it holds as text, as comma-separated values: from ilastik by its table export, from Imaris as statistics, \
+     in Python by pandas.DataFrame(h5py.File(\"x.h5\")[\"name\"][:]).to_csv(\"x.csv\", index=False); label images as TIFF";
+const SPREADSHEET: &str = "save the sheet with the table as text, as comma-separated values";
 
 /// The text of a table in UTF-8, without a byte order mark.
 pub(super) struct Text<'a> {
@@ -50,8 +65,8 @@ impl Text<'_> {
 pub(super) fn text_of(bytes: &[u8]) -> Result<Text<'_>, TableFault> {
     let bytes = decompressed(bytes)?;
     let begin = bytes.trim_ascii_start();
-    if let Some((_, kind)) = OTHER_KINDS.iter().find(|(first, _)| begin.starts_with(first)) {
-        return Err(TableFault::AnotherKind { kind });
+    if let Some((_, kind, advice)) = OTHER_KINDS.iter().find(|(first, ..)| begin.starts_with(first)) {
+        return Err(TableFault::AnotherKind { kind, advice });
     }
     decoded(bytes)
 }
@@ -119,6 +134,43 @@ pub(super) fn delimiter(text: &[u8]) -> Option<u8> {
     let commonest = candidates.into_iter().max_by_key(|&candidate| count(candidate))?;
     let has_blanks = first.trim_ascii().contains(&b' ');
     (count(commonest) > 0 || !has_blanks).then_some(commonest)
+}
+
+/// The same text with points in the place of decimal commas; lines and fields stay where they are. Commas stay where they separate, and
+/// where numbers with points are in the same table, since nobody knows then what they mean.
+pub(super) fn with_points(text: Cow<'_, [u8]>, separator: u8) -> (Cow<'_, [u8]>, Option<Note>) {
+    if separator == b',' {
+        return (text, None);
+    }
+    let ends = |byte: &u8| *byte == separator || matches!(byte, b'\n' | b'\r');
+    let has = |mark: u8| text.split(ends).any(|field| is_number_with(mark, field));
+    if !has(b',') || has(b'.') {
+        return (text, None);
+    }
+    let mut own = text.into_owned();
+    for field in own.split_mut(ends).filter(|field| is_number_with(b',', field)) {
+        field.iter_mut().filter(|byte| **byte == b',').for_each(|byte| *byte = b'.');
+    }
+    (Cow::Owned(own), Some(Note::guessed("commas within numbers are decimal commas")))
+}
+
+/// Whether a field is a number of which this mark separates the digits before and after the point.
+fn is_number_with(mark: u8, field: &[u8]) -> bool {
+    let field = field.trim_ascii();
+    let field = field.strip_prefix(b"\"").and_then(|own| own.strip_suffix(b"\"")).unwrap_or(field);
+    let Some(at) = field.iter().position(|byte| *byte == mark) else { return false };
+    let whole = field[..at].strip_prefix(b"-").or(field[..at].strip_prefix(b"+")).unwrap_or(&field[..at]);
+    let rest = &field[at + 1..];
+    let digits = rest.iter().take_while(|byte| byte.is_ascii_digit()).count();
+    let exponent = match &rest[digits..] {
+        [] => true,
+        [b'e' | b'E', power @ ..] => {
+            let power = power.strip_prefix(b"-").or(power.strip_prefix(b"+")).unwrap_or(power);
+            !power.is_empty() && power.iter().all(u8::is_ascii_digit)
+        }
+        _ => false,
+    };
+    whole.iter().all(u8::is_ascii_digit) && whole.len() + digits > 0 && exponent
 }
 
 /// Text with a tab wherever there are blanks between fields; lines stay as they are.

@@ -6,8 +6,11 @@ use std::path::Path;
 use csv::ByteRecord;
 
 use super::columns::{Column, unbracketed, unit_in};
-use super::{Located, csv_fault, line_number, offset_of, tabbed, text_of};
+use super::pivlab::read_pivlab;
+use super::{Located, csv_fault, line_number, offset_of, tabbed, text_of, with_points};
 use crate::error::{Error, TableFault, excerpt};
+use crate::mat;
+use crate::note::Note;
 
 /// Names of the columns, where they are not to be recognised automatically.
 ///
@@ -32,7 +35,7 @@ pub struct FlowColumnNames {
 /// A row of the table.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) struct Vector {
-    /// Line, counted from 1.
+    /// Line, counted from 1; 0 in a file without lines.
     pub(crate) line: u64,
     pub(crate) frame: i64,
     pub(crate) x: f64,
@@ -42,29 +45,37 @@ pub(crate) struct Vector {
 }
 
 /// The vectors of a table, in the order of its rows; at least one.
-#[derive(Debug)]
+#[derive(Debug, Default)]
 pub(crate) struct VectorTable {
     pub(crate) vectors: Vec<Vector>,
     /// The unit of displacements that the header states in brackets.
     pub(crate) unit: Option<String>,
     /// The unit of places, likewise.
     pub(crate) place_unit: Option<String>,
-    /// Which columns were taken for what, in words.
+    /// Which columns or variables were taken for what, in words.
     pub(crate) columns: String,
+    /// What else was understood.
+    pub(crate) notes: Vec<Note>,
 }
 
 /// Reads a table, compressed or not; `path` only names the place.
 pub(crate) fn read_table(path: &Path, bytes: &[u8], names: &FlowColumnNames) -> Result<VectorTable, Error> {
     let failure = |line, fault| Error::Table { path: path.to_path_buf(), line, fault };
+    if bytes.starts_with(mat::SIGNATURE) {
+        return read_pivlab(path, bytes, names);
+    }
     let text = text_of(bytes).map_err(|fault| failure(None, fault))?.bytes;
     let (text, separator) = match separator(&text) {
         Some(separator) => (text, separator),
         None => (Cow::Owned(tabbed(&text)), b'\t'),
     };
-    parse(&text, separator, names).map_err(|(offset, fault)| {
+    let (text, commas) = with_points(text, separator);
+    let mut table = parse(&text, separator, names).map_err(|(offset, fault)| {
         let line = offset.map(|offset| line_number(&text, offset));
         failure(line, fault)
-    })
+    })?;
+    table.notes.extend(commas);
+    Ok(table)
 }
 
 fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTable, Located> {
@@ -74,7 +85,7 @@ fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTa
     // The last line of text that is no header, and why it is none.
     let mut preface: Option<(ByteRecord, TableFault)> = None;
     let mut lines = Lines { text, at: 0, line: 1 };
-    let mut table = VectorTable { vectors: Vec::new(), unit: None, place_unit: None, columns: String::new() };
+    let mut table = VectorTable::default();
     for row in reader.byte_records() {
         let row = row.map_err(csv_fault)?;
         if row.iter().all(|field| field.trim_ascii().is_empty()) {
@@ -107,7 +118,7 @@ fn parse(text: &[u8], separator: u8, names: &FlowColumnNames) -> Result<VectorTa
         (Some(columns), _) => {
             table.unit = unit_in(&columns.u.name);
             table.place_unit = unit_in(&columns.x.name);
-            table.columns = columns.described();
+            table.columns = format!("columns {}", columns.described());
             Ok(table)
         }
         (None, Some((header, fault))) => Err((offset_of(&header), fault)),

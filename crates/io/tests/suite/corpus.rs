@@ -6,9 +6,9 @@ use std::time::{Duration, Instant};
 
 use ndarray::{Array2, Array3};
 use voronudge_io::{
-    Error, FieldOptions, ImportOptions, Journal, LabelOptions, OutputFolder, Recording, Source,
-    WantedExtrema, import_field, import_labels, import_trackmate, import_tracks, read_integers, read_reals,
-    read_vectors,
+    Error, FieldOptions, FlowOptions, ImportOptions, Journal, LabelOptions, OutputFolder, Recording, Source,
+    WantedExtrema, import_field, import_flow, import_labels, import_trackmate, import_tracks, read_integers,
+    read_reals, read_vectors,
 };
 
 use crate::{Scratch, assert_told};
@@ -224,8 +224,13 @@ fn mutated_files_of_other_programs_are_read_or_refused() {
     let path = scratch.path("masks.npy");
     assert_survives(13, &sample("masks_seg.npy"), &path, 600, || labels(&path));
     let path = scratch.path("labels.tif");
-    for (seed, name) in [(14, "labels-slices.tif"), (15, "labels.ome.tif")] {
+    for (seed, name) in [(14, "labels-slices.tif"), (15, "labels.ome.tif"), (19, "labels-zstd-tiles.tif")] {
         assert_survives(seed, &sample(name), &path, 100, || labels(&path));
+    }
+    let path = scratch.path("flow.mat");
+    for (seed, name) in [(20, "pivlab.mat"), (21, "pivlab-frame.mat")] {
+        let flow = || import_flow(std::slice::from_ref(&path), &FlowOptions::default());
+        assert_survives(seed, &sample(name), &path, 300, || flow().map(|_| ()));
     }
     let path = scratch.path("tracks.xml");
     for (seed, name) in
@@ -233,6 +238,30 @@ fn mutated_files_of_other_programs_are_read_or_refused() {
     {
         let options = ImportOptions::default();
         assert_survives(seed, &sample(name), &path, 300, || import_tracks(&path, &options).map(|_| ()));
+    }
+}
+
+#[test]
+fn mutated_stores_of_chunks_are_read_or_refused() {
+    let scratch = Scratch::new();
+    let fixtures = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fixtures/imports");
+    for (seed, store, file) in [
+        (22, "labels-shards.zarr", "labels/cells/0/zarr.json"),
+        (23, "labels-shards.zarr", "labels/cells/0/c/0/0/0/0"),
+        (24, "labels-shards.zarr", "labels/cells/zarr.json"),
+        (25, "tracks.geff", "nodes/props/x/values/0"),
+        (26, "tracks.geff", "nodes/ids/.zarray"),
+        (27, "tracks.geff", ".zattrs"),
+    ] {
+        let own = scratch.path(&format!("{seed}-{store}"));
+        crate::other_programs::copy(&fixtures.join(store), &own);
+        let path = own.join(file);
+        let whole = fs::read(&path).unwrap();
+        let read = || match store.ends_with("geff") {
+            true => import_tracks(&own, &ImportOptions::default()).map(|_| ()),
+            false => labels(&own),
+        };
+        assert_survives(seed, &whole, &path, 100, read);
     }
 }
 

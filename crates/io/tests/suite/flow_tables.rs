@@ -260,7 +260,12 @@ fn tables_that_cannot_be_meant_are_told() {
     assert_told(import("x,y,u,v\n"), &["no data rows"], "export");
     assert_told(import("\n\n"), &["is empty"], "export");
     assert_told(import(""), &["is empty"], "export");
-    assert_told(import(b"MATLAB 5.0 MAT-file\0\0\x01"), &["piv.txt: is a MATLAB file"], "as text");
+    assert_told(
+        import(b"MATLAB 5.0 MAT-file\0\0\x01"),
+        &["piv.txt: cannot be read as a file of MATLAB"],
+        "as text",
+    );
+    assert_told(import(b"MATLAB 7.3 MAT-file, Platform"), &["is a MATLAB file of version 7.3"], "\"-v7\"");
     assert_told(import(b"1,2,3,4\n\0\0"), &["piv.txt: is not text"], "as text");
     assert_told(import("1 2 3\n4 5 6\n"), &["line 2: no column for the x coordinate"], "name the columns");
     let quoted = format!("x,y,u,v\n\"1,1,1,1\n{}", lines(&ROWS, ","));

@@ -102,6 +102,16 @@ fn decided_results_are_put_in_place_whenever_the_process_died() {
 }
 
 #[test]
+fn decided_withdrawals_happen_whenever_the_process_died() {
+    let scratch = Scratch::new();
+    decided(&scratch, 2);
+    scratch.write("movie.gif", "earlier");
+    scratch.write(".voronudge-commit/.withdrawn", "movie.gif\n../out-of-place\ngone.npy");
+    drop(OutputFolder::claim(scratch.root()).unwrap());
+    assert_eq!(names(scratch.root()), ["dataset.toml", "positions.npy", "report.json"]);
+}
+
+#[test]
 fn a_reader_sees_decided_results() {
     let scratch = Scratch::new();
     let mut out = OutputDirectory::create(scratch.root()).unwrap();

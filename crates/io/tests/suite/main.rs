@@ -10,6 +10,7 @@ mod flows;
 mod folders;
 mod foreign_tables;
 mod frames;
+mod other_programs;
 mod output;
 mod settings;
 mod trackmate_files;

@@ -1,9 +1,10 @@
 //! Results arrive whole or not at all.
 
 use std::fs;
+use std::path::Path;
 
 use ndarray::{Array3, ShapeBuilder, array};
-use voronudge_io::{OutputDirectory, read_integers, read_reals};
+use voronudge_io::{OutputDirectory, OutputFolder, read_integers, read_reals};
 
 use crate::{Scratch, assert_told, names};
 
@@ -84,6 +85,50 @@ fn a_commit_replaces_earlier_results_and_keeps_strangers() {
     assert_eq!(names(scratch.root()), ["notes.txt", "report.json"]);
     let replaced = fs::read_to_string(scratch.path("report.json")).unwrap();
     assert_eq!(replaced, "second");
+}
+
+#[test]
+fn what_is_withdrawn_goes_with_the_commit_unless_it_is_written() {
+    let scratch = Scratch::new();
+    for name in ["movie.gif", "cells.csv", "notes.txt"] {
+        scratch.write(name, "earlier");
+    }
+    let mut out = OutputDirectory::create(scratch.root()).unwrap();
+    out.withdraw("movie.gif").unwrap();
+    out.withdraw("cells.csv").unwrap();
+    out.withdraw("never-there.npy").unwrap();
+    out.write_text("cells.csv", "new").unwrap();
+    assert_told(out.withdraw("../x"), &["\"../x\" is not a plain file name"], "directly");
+    assert!(scratch.path("movie.gif").exists());
+    drop(out);
+    assert_eq!(names(scratch.root()), ["cells.csv", "movie.gif", "notes.txt"]);
+    let mut out = OutputDirectory::create(scratch.root()).unwrap();
+    out.withdraw("movie.gif").unwrap();
+    out.withdraw("cells.csv").unwrap();
+    out.write_text("cells.csv", "new").unwrap();
+    out.commit().unwrap();
+    assert_eq!(names(scratch.root()), ["cells.csv", "notes.txt"]);
+    assert_eq!(fs::read_to_string(scratch.path("cells.csv")).unwrap(), "new");
+}
+
+#[test]
+fn a_check_tells_what_a_claim_tells_and_leaves_nothing() {
+    let scratch = Scratch::new();
+    OutputFolder::check(&scratch.path("a/b/results")).unwrap();
+    OutputFolder::check(scratch.root()).unwrap();
+    assert_eq!(names(scratch.root()), Vec::<String>::new());
+    let file = scratch.write("taken", "x");
+    assert_told(OutputFolder::check(&file), &["taken: is a file"], "another --out");
+    assert_told(
+        OutputFolder::check(&file.join("results")),
+        &["results: output directory cannot be created"],
+        "--out",
+    );
+    assert_told(OutputFolder::check(Path::new("")), &["empty name"], "--out DIR");
+    let held = OutputFolder::claim(scratch.path("held")).unwrap();
+    assert_told(OutputFolder::check(&scratch.path("held")), &["is written to by process"], "wait");
+    drop(held);
+    OutputFolder::check(&scratch.path("held")).unwrap();
 }
 
 #[test]

@@ -235,7 +235,7 @@ fn what_is_not_a_number_is_told_with_its_line() {
         assert_told(tracks(format!("{head}{row}\n")), &[&fact], "this row");
     }
     let facts = ["line 2: column \"x\" holds \"1,5\""];
-    assert_told(tracks("track;frame;x;y\n1;0;1,5;2\n"), &facts, "decimal point");
+    assert_told(tracks("track;frame;x;y\n1;0;1,5;2.5\n"), &facts, "decimal point");
 }
 
 #[test]

@@ -22,7 +22,12 @@ from .errors import Error
 from .report import Report, temporary_folder
 
 _COMMANDS = {
-    tuple(words): {name: (by_place, values, repeated, help) for name, by_place, values, repeated, help in entries}
+    tuple(words): {
+        name: (by_place, values, repeated, help)
+        for name, by_place, values, repeated, help in entries
+        # It has no results to read.
+        if name != "dry-run"
+    }
     for words, _, entries in _options()
 }
 _HELP = {tuple(words): help for words, help, _ in _options()}

@@ -28,6 +28,19 @@ impl Colouring {
     pub const ALL: [Self; 6] =
         [Self::Shape, Self::Area, Self::Neighbours, Self::Speed, Self::Vorticity, Self::Residual];
 
+    /// The word by which it is asked for, and what it is.
+    #[must_use]
+    pub fn word(self) -> [&'static str; 2] {
+        match self {
+            Self::Area => ["area", "Area"],
+            Self::Shape => ["shape", "Perimeter over the root of the area"],
+            Self::Neighbours => ["neighbours", "Number of neighbours"],
+            Self::Speed => ["speed", "Size of the measured velocity"],
+            Self::Vorticity => ["vorticity", "Vorticity of the measured velocities"],
+            Self::Residual => ["residual", "Size of what the model leaves of the measured velocity"],
+        }
+    }
+
     fn name(self) -> &'static str {
         match self {
             Self::Area => "area",

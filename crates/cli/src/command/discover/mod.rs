@@ -118,10 +118,11 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     arguments.check.possible(&arguments, &data, arguments.difference)?;
     let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
     let snapshots = &arguments.snapshots;
-    let mut out = arguments.common.output(&data.inputs)?;
+    let out = arguments.common.reserve(&data.inputs)?;
     let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
     let raw = asked.raw(&data, &mut run)?;
     let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), &mut run)?;
+    let mut out = out.begin()?;
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(out.folder(), ("discover", "null sets"), own, (&run, &data))?;
     let searched = asked.searched(&raw, (&data, map.as_ref()), &mut kept, &mut progress);

@@ -74,7 +74,7 @@ enum Kind {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = arguments.common.output(&arguments.files)?;
+    let out = arguments.common.reserve(&arguments.files)?;
     let options = FieldOptions {
         scale: arguments.image.scale(),
         extrema: match arguments.extrema {
@@ -89,6 +89,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         linking: arguments.link.linking(arguments.link_limit),
     };
     let import = import_field_series(&arguments.files, &options)?;
+    let mut out = out.begin()?;
     let data = &import.dataset;
     warn_of_breaks(&mut run, arguments.link, &import.counts, import.linked, "extrema");
     let understood = told(&mut run, &import.notes);

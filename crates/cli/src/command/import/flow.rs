@@ -67,7 +67,7 @@ struct Report {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = arguments.common.output(arguments.files.iter().chain(&arguments.positions))?;
+    let out = arguments.common.reserve(arguments.files.iter().chain(&arguments.positions))?;
     let scale = arguments.scale;
     let is_scaled = scale.image.pixel_size.is_some() || scale.image.frame_interval.is_some();
     let options = FlowOptions {
@@ -89,6 +89,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         positions: arguments.positions,
     };
     let import = import_flow(&arguments.files, &options)?;
+    let mut out = out.begin()?;
     warn(&mut run, &import.summary, is_scaled);
     let understood = told(&mut run, &import.notes);
     import.save(&mut out)?;

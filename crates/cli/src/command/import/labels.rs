@@ -55,7 +55,7 @@ enum Border {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.output(&arguments.files)?;
+    let out = arguments.common.reserve(&arguments.files)?;
     let options = LabelOptions {
         scale: arguments.image.scale(),
         gap: arguments.gap,
@@ -70,6 +70,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         },
     };
     let import = import_label_series(&arguments.files, &options)?;
+    let out = out.begin()?;
     if import.summary.in_pieces > 0 {
         run.warn(format!(
             "{} labels lie in several pieces; centroid, area and perimeter are those of all pieces together",

@@ -38,7 +38,7 @@ pub(super) struct Arguments {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.output([&arguments.file])?;
+    let out = arguments.common.reserve([&arguments.file])?;
     let options = OutlineOptions {
         scale: arguments.image.scale(),
         columns: ColumnNames {
@@ -49,6 +49,7 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         },
     };
     let import = import_outlines(&arguments.file, &options)?;
+    let out = out.begin()?;
     let source = Source { file: &arguments.file, gap: None, positions: arguments.positions };
     shapes::finish(run, out, &source, import)
 }

@@ -43,10 +43,11 @@ struct Report {
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &arguments.common)?;
-    let mut out = arguments.common.output([&arguments.file])?;
+    let out = arguments.common.reserve([&arguments.file])?;
     let options = arguments.spots.options(None);
     let linking = arguments.link.linking(arguments.link_limit);
     let found = import_points(&arguments.file, &options, linking)?;
+    let mut out = out.begin()?;
     let data = &found.import.dataset;
     warn_of_breaks(&mut run, arguments.link, &found.counts, found.linked, "points");
     let understood = told(&mut run, &found.import.notes);

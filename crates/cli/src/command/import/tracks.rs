@@ -46,9 +46,10 @@ type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
 
 pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
     let mut run = Run::begin("import", &table.common)?;
-    let mut out = table.common.output([&table.file])?;
+    let out = table.common.reserve([&table.file])?;
     let options = table.spots.options(table.track_column);
     let Import { dataset, track_ids, summary, notes } = read(&table.file, &options)?;
+    let mut out = out.begin()?;
     if summary.left_out_duplicate > 0 {
         run.warn(format!(
             "{} spots share track and frame with another (a split track); the first of each was kept",

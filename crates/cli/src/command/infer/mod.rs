@@ -124,7 +124,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     let method = arguments.method.method()?;
     arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
     let data = arguments.snapshots.data.load()?;
-    let mut out = arguments.common.output(&data.inputs)?;
+    let out = arguments.common.reserve(&data.inputs)?;
     let velocities = measured(&arguments.snapshots, &data, arguments.difference)?;
     if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
         run.warn(format!(
@@ -157,6 +157,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     }
     spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
+    let mut out = out.begin()?;
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
     let understood = prepared.understand(&mut |state| progress.tell(state));

@@ -37,14 +37,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("moduli", &arguments.common)?;
     let parameters = arguments.parameters.resolve()?;
     arguments.protocol.check()?;
-    let mut out =
-        arguments.common.output(arguments.start.file().into_iter().chain(arguments.parameters.file()))?;
+    let out =
+        arguments.common.reserve(arguments.start.file().into_iter().chain(arguments.parameters.file()))?;
     let starts = measure::starts(&arguments)?;
     let first = &starts[0].1;
     let cells = first.positions.len();
     refuse_beyond(format!("moduli of {cells} cells"), cells, OF_A_STRAINED_CELL)?;
     let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();
     let protocol = Protocol::new(&arguments.protocol, &parameters, spacing)?;
+    let mut out = out.begin()?;
     protocol.doubts().into_iter().for_each(|doubt| run.warn(doubt));
     let measured = measure::replicas(&starts, &parameters, &protocol, arguments.common.verbosity())?;
     report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));

@@ -65,9 +65,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     let (cells, count) = (data.cells(), frames.len());
     refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
-    let mut out = arguments.common.output(&data.inputs)?;
+    let out = arguments.common.reserve(&data.inputs)?;
     let recorded = arguments.record(&data, &frames, &place)?;
     let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;
+    let mut out = out.begin()?;
     if recorded.velocities == Velocities::None {
         run.warn("there are neither velocities nor several frames: nothing is said of motion");
     }

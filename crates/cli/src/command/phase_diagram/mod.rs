@@ -47,9 +47,9 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("phase-diagram", &arguments.common)?;
-    let out = &arguments.common.claim(NO_INPUTS)?;
     let request = Request::new(&arguments.grid, arguments.common.seed)?;
     let scaling = arguments.scaling.resolve()?;
+    let out = &arguments.common.claim(NO_INPUTS)?;
     let header = Header { request, shard: arguments.shard.unwrap_or(Shard::WHOLE) };
     let (mut journal, mut points) = open(out, header, arguments.resume)?;
     let request = points.header.request.clone();

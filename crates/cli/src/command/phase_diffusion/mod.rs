@@ -105,9 +105,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => (0..data.frames()).collect(),
     };
-    let mut out = arguments.common.output(&data.inputs)?;
+    let out = arguments.common.reserve(&data.inputs)?;
     let tracked = TrackedPattern::new(&data, &frames, arguments.reference.as_deref())
         .map_err(|failure| failure.at(&place))?;
+    let mut out = out.begin()?;
     let present = data.cells();
     if tracked.cells.len() < present {
         run.warn(format!(

@@ -9,8 +9,8 @@ use std::path::PathBuf;
 use voronudge_io::DataSet;
 
 /// Arguments on which no number depends, or that are compared by themselves.
-const INDIFFERENT: [&str; 9] =
-    ["out", "overwrite", "seed", "threads", "quiet", "format", "open_report", "resume", "shard"];
+const INDIFFERENT: [&str; 10] =
+    ["out", "dry_run", "overwrite", "seed", "threads", "quiet", "format", "open_report", "resume", "shard"];
 
 /// What stands for a file, whose content is compared.
 const FILE_GIVEN: &str = "(file)";

@@ -85,7 +85,6 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         .at(other.path.display())
         .with_hint("fit all data in the same units"));
     }
-    let mut out = arguments.common.output(fits.iter().map(|fit| fit.input.path.as_path()))?;
     let seeds: Vec<u64> =
         (0..arguments.replicas).map(|replica| seed_of_replica(arguments.common.seed, replica)).collect();
     let starts: Vec<Start> =
@@ -97,6 +96,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         return Err(Failure::new(format!("--box gives each cell the area {area}, but here it is 1"))
             .with_hint("leave --box out: the fit tells the size of the cells"));
     }
+    let mut out = arguments.common.output(fits.iter().map(|fit| fit.input.path.as_path()))?;
     let progress = Mutex::new(Progress::new(arguments.common.verbosity()));
     let work = Work { starts: &starts, arguments: &arguments.protocol, progress: &progress };
     let mut fitted = Vec::new();

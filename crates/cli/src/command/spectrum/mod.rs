@@ -63,7 +63,6 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         Some(lattice) => (lattice.data_set(), "the honeycomb".to_owned()),
         None => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
     };
-    let mut out = arguments.common.output(&data.inputs)?;
     domain_at(&data, 0)?;
     let frames = match &arguments.frames {
         Some(selection) => {
@@ -71,6 +70,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => vec![0],
     };
+    let mut out = arguments.common.output(&data.inputs)?;
     if arguments.frames.is_none() && data.frames() > 1 {
         run.warn(format!("of {} frames only the first is looked at; --frames chooses others", data.frames()));
     }
