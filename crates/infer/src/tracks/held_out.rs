@@ -1,5 +1,6 @@
 //! Displacements predicted: from the measured positions, and from places that were fitted without them.
 
+use super::anchors::Share;
 use super::motions::Motion;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -91,8 +92,18 @@ impl<'a> AsMeasured<'a> {
         Ok(missed.sum())
     }
 
-    /// What errors of the positions of unit variance alone make of the sum of the squared velocities.
-    pub fn noise(&self) -> f64 {
+    /// What errors of the positions of unit variance alone make of the sum of the squared velocities beside predictions of held-out motions: where
+    /// these are forces at measured positions, what they do to the forces included. With the unknowns of the fit.
+    pub fn noise(&self, at: &[f64]) -> Result<f64, Error> {
+        if follows_from_fit(&self.objective) {
+            return Ok(self.noise_of_motions());
+        }
+        let objective = MovieObjective { rule: Rule::Trapezoid, ..self.objective };
+        Ok(objective.linearise_with(at, Share::Known)?.sensitivity())
+    }
+
+    /// The same of the measured motions themselves.
+    fn noise_of_motions(&self) -> f64 {
         let MovieObjective { movie, states, .. } = self.objective;
         let of_motion = |motion: &Motion| {
             let track = &movie.tracks[motion.track as usize];
@@ -102,6 +113,11 @@ impl<'a> AsMeasured<'a> {
         // Nothing was measured where the cell was not seen.
         states.motions.iter().map(of_motion).filter(|square| square.is_finite()).sum()
     }
+}
+
+/// Whether motions that are held out are predicted from the places of the cells in a fit without them, and not by the forces at measured positions.
+fn follows_from_fit(objective: &MovieObjective<'_>) -> bool {
+    objective.rule.steps() > FEW_STEPS || objective.movie.share() > 0.0
 }
 
 /// What the fits without some motions say of these.
@@ -147,7 +163,7 @@ pub(super) fn cross_validate(
         let states = States { motions, integrated, ..all.clone() };
         let mut without = fitted_to(&MovieObjective { states: &states, ..*objective }, at, &known)?;
         forget_unseen(all, &states.motions, &mut without[p..]);
-        let (rule, point) = match objective.rule.steps() > FEW_STEPS || objective.movie.share() > 0.0 {
+        let (rule, point) = match follows_from_fit(objective) {
             true => (objective.rule, without),
             false => (Rule::Trapezoid, measured.at(&without)),
         };

@@ -106,7 +106,10 @@ pub(crate) fn follow(
     };
     let noise_floor = match at_limit(&levels, &request.noise) {
         true => f64::NAN,
-        false => (2.0 * used as f64 * variance + measured.noise() * levels.position.powi(2)) / total,
+        false => {
+            let of_places = measured.noise(&found.parameters)? * levels.position.powi(2);
+            (2.0 * used as f64 * variance + of_places) / total
+        }
     };
     let placed = objective.place(&found.parameters)?;
     let stray = tails(&strays(&objective, &placed, displacements)).map(Doubt::Tails);

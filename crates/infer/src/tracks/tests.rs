@@ -22,6 +22,21 @@ fn large_steps_do_not_bias_the_parameters() {
     assert!(tracked.integration.error < 0.2);
 }
 
+/// Where the model is right, the error of motions held out is what noise alone leaves: of the motions themselves and of the forces at measured places,
+/// which make half of it here.
+#[test]
+fn errors_held_out_are_those_of_noise() {
+    for seed in [3, 4] {
+        let (movie, _) = Filmed { size: [100, 5], step: 0.06, error: 0.02, seed }.movie();
+        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+        let (found, tracked) =
+            infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
+        let [held_out, spread] = found.nmse.cross_validated.unwrap();
+        println!("RATIO {} {:?} {:?}", held_out / found.nmse.noise_floor, found.nmse, tracked.integration);
+        assert!((held_out - found.nmse.noise_floor).abs() < 3.0 * spread, "{:?}", found.nmse);
+    }
+}
+
 /// Centroids in a movie are told from sites, and do not bias the parameters.
 #[test]
 #[ignore = "slow"]
