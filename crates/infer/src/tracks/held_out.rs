@@ -1,6 +1,5 @@
 //! Displacements predicted: from the measured positions, and from places that were fitted without them.
 
-use super::anchors::Share;
 use super::motions::Motion;
 use super::movie::Movie;
 use super::objective::MovieObjective;
@@ -99,7 +98,10 @@ impl<'a> AsMeasured<'a> {
             return Ok(self.noise_of_motions());
         }
         let objective = MovieObjective { rule: Rule::Trapezoid, ..self.objective };
-        Ok(objective.linearise_with(at, Share::Known)?.sensitivity())
+        let usual = objective.movie.interval();
+        let of_motions = objective.sensitivities(at)?.into_iter().zip(&objective.states.motions);
+        let seen = of_motions.zip(&self.velocities).filter(|(_, velocity)| velocity.is_some());
+        Ok(seen.map(|((square, motion), _)| square * usual / objective.span(motion.interval)).sum())
     }
 
     /// The same of the measured motions themselves.

@@ -130,6 +130,25 @@ impl MovieObjective<'_> {
         Ok(NormalEquations::new(&self.space.widened(further), self.levels, &free, vec![linearised]))
     }
 
+    /// `Σ_j ‖∂r/∂x_j‖² / m_j` of each motion: what errors of measured places of unit variance make of the square of what is left of it.
+    pub(super) fn sensitivities(&self, parameters: &[f64]) -> Result<Vec<f64>, Error> {
+        let placed = self.place(parameters)?;
+        let (free, displacements) = self.split(parameters);
+        let anchors = Anchors::new(self, &placed, displacements, Share::Known);
+        let square = |block: &[f64; 4]| block.iter().map(|entry| entry * entry).sum::<f64>();
+        let mut m = vec![0.0; self.states.blocks()];
+        let Rows { jacobian, rows } = anchors.rows();
+        for (row, ..) in rows {
+            jacobian.row(*row).for_each(|(place, block)| m[place] += 0.5 * square(block));
+        }
+        let motions = self.motion_rows(&placed, self.space.coefficients(free).as_slice()).jacobian;
+        let of_motion = |row: usize| {
+            let measured = motions.row(row).filter(|(place, _)| m[*place] > 0.0);
+            measured.map(|(place, block)| square(block) / m[place]).sum()
+        };
+        Ok((0..self.states.motions.len()).map(of_motion).collect())
+    }
+
     /// The derivatives of all motions.
     fn motion_rows(&self, placed: &Placed<'_>, coefficients: &[f64]) -> MotionRows {
         let intervals: Vec<&[Motion]> =
