@@ -32,7 +32,6 @@ fn errors_held_out_are_those_of_noise() {
         let (found, tracked) =
             infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
         let [held_out, spread] = found.nmse.cross_validated.unwrap();
-        println!("RATIO {} {:?} {:?}", held_out / found.nmse.noise_floor, found.nmse, tracked.integration);
         assert!((held_out - found.nmse.noise_floor).abs() < 3.0 * spread, "{:?}", found.nmse);
     }
 }
