@@ -147,7 +147,7 @@ impl Seen<'_> {
         Ok(Likelihood { criterion: own.criterion - determinant, ..own })
     }
 
-    fn restricted<'a>(&'a self, held: Option<&'a Held>) -> Restricted<'a> {
+    pub(super) fn restricted<'a>(&'a self, held: Option<&'a Held>) -> Restricted<'a> {
         let Self { equations, components, known, .. } = *self;
         Restricted { equations, components, known, held }
     }

@@ -10,7 +10,7 @@ use super::inference::Followed;
 use super::likely::LESS_LIKELY;
 use super::look::{Seen, Way};
 use super::movie::Movie;
-use crate::noise::{Likelihood, Restricted};
+use crate::noise::Likelihood;
 use crate::{CoefficientSpace, Error, Request};
 
 /// Draws for slopes of the likelihood.
@@ -54,8 +54,7 @@ struct Likeliest {
 
 impl OfSpring<'_> {
     fn at(&self, log_k: f64) -> Result<Likelihood, Error> {
-        let Seen { equations, components, known, .. } = self.seen;
-        Restricted { equations, components, known, held: None }.likelihood(log_k)
+        self.seen.restricted(None).likelihood(log_k)
     }
 
     /// The likeliest log k near the fit.

@@ -29,7 +29,7 @@ fn errors_held_out_are_those_of_noise() {
     for seed in [3, 4] {
         let (movie, _) = Filmed { size: [100, 5], step: 0.06, error: 0.02, seed }.movie();
         let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
-        let (found, tracked) =
+        let (found, _) =
             infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
         let [held_out, spread] = found.nmse.cross_validated.unwrap();
         assert!((held_out - found.nmse.noise_floor).abs() < 3.0 * spread, "{:?}", found.nmse);
