@@ -8,7 +8,7 @@ use clap::Args;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
-use voronudge_io::{Boundary, Inspection, NoteKind, inspect};
+use voronudge_io::{Boundary, InputKind, Inspection, NoteKind, inspect};
 use voronudge_report::numbers::significant;
 use voronudge_report::shape_report::NoteRecord;
 
@@ -44,6 +44,8 @@ struct Record {
     files: Vec<String>,
     notes: Vec<NoteRecord>,
     command: String,
+    /// Words of the command before the path.
+    arguments: Vec<&'static str>,
 }
 
 pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
@@ -59,7 +61,8 @@ pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
 
 fn record(path: String, found: &Inspection) -> Record {
     Record {
-        command: format!("voronudge {} {path} --out DIR", found.kind.command()),
+        command: next(&path, found),
+        arguments: words(found),
         path,
         kind: found.kind.to_string(),
         shape: found.shape.clone(),
@@ -79,6 +82,17 @@ fn record(path: String, found: &Inspection) -> Record {
         files: found.files.iter().map(|file| file.display().to_string()).collect(),
         notes: records(&found.notes),
     }
+}
+
+/// The command that reads it, in words: cells of several label images are followed by their overlap.
+fn words(found: &Inspection) -> Vec<&'static str> {
+    let follows = found.kind == InputKind::Labels && found.frames.is_some_and(|frames| frames > 1);
+    let link: &[&str] = if follows { &["--link", "overlap"] } else { &[] };
+    found.kind.command().split(' ').chain(link.iter().copied()).collect()
+}
+
+fn next(path: &str, found: &Inspection) -> String {
+    format!("voronudge {} {path} --out DIR", words(found).join(" "))
 }
 
 fn described(path: &str, found: &Inspection) -> String {
@@ -133,6 +147,6 @@ fn described(path: &str, found: &Inspection) -> String {
             let _ = writeln!(text, "{kind}: {}", texts.join("; "));
         }
     }
-    let _ = writeln!(text, "next: voronudge {} {path} --out DIR", found.kind.command());
+    let _ = writeln!(text, "next: {}", next(path, found));
     text
 }

@@ -100,7 +100,7 @@ fn people_are_told_in_lines() {
         "  pixels      0.5 um\n",
         "  interval    10 min\n",
         "read: 4 frames (ImageJ); pixels of 0.5 um (ImageJ)",
-        "next: voronudge import labels ",
+        "next: voronudge import labels --link overlap ",
     ] {
         assert!(said.contains(line), "\"{line}\" is not in: {said}");
     }

@@ -4,7 +4,7 @@ use super::classes::{Tested, without_each};
 use super::crawling::{self, Crawling};
 use super::null_data;
 use super::ranking::Ranking;
-use super::result::{NullSets, Ranked};
+use super::result::{Fate, NullSets, Ranked};
 use super::steps::{Model, Setting};
 use crate::Error;
 use crate::cross_validation::{Folds, Split};
@@ -13,9 +13,6 @@ use crate::search::Watch;
 
 /// Effects refused because of velocities held out before the search ends.
 const MOST_REFUSED: usize = 3;
-
-/// Why a candidate is refused that cannot be fitted.
-const UNFITTED: &str = "the fit with it fails";
 
 /// A search under way.
 pub(super) struct Growth<'a> {
@@ -115,9 +112,9 @@ impl<'a> Growth<'a> {
                 Ok(model) => model,
                 Err(Error::Interrupted) => return Err(Error::Interrupted),
                 // One candidate that leads a fit astray is no end of a search.
-                Err(_) => {
+                Err(error) => {
                     own.into_iter().for_each(|ranked| self.ranking.put(ranked));
-                    self.refuse(candidate, UNFITTED);
+                    self.ranking.end(self.setting.candidates[candidate].effect, &Fate::NotFitted(error));
                     refused.push(candidate);
                     continue;
                 }
@@ -261,6 +258,6 @@ impl<'a> Growth<'a> {
     }
 
     fn refuse(&mut self, candidate: usize, reason: &'static str) {
-        self.ranking.refuse(self.setting.candidates[candidate].effect, reason);
+        self.ranking.end(self.setting.candidates[candidate].effect, &Fate::NotConfirmed(reason));
     }
 }

@@ -27,7 +27,6 @@ const BESIDE: &str = "where cells differ, it is no more than chance";
 const SMOOTH: &str = "a smooth flow describes better what is left";
 const UNTOLD: &str = "these velocities cannot tell it from a smooth flow";
 const TURNED: &str = "it is not looked for beside effects on whole velocities";
-const FAILED: &str = "the fit of what single cells have of their own fails";
 const DEGENERATE: &str = "the velocities cannot tell it from the parameters that all cells share";
 
 /// A parameter in which cells differ.
@@ -71,9 +70,10 @@ pub(super) fn beside(
         let model = match setting.differing(model, varied, watch) {
             Ok(model) => model,
             Err(Error::Interrupted) => return Err(Error::Interrupted),
-            Err(_) => {
+            Err(error) => {
                 let refused = found.iter().map(|own| setting.candidates[own.candidate].effect);
-                refused.for_each(|effect| growth.ranking.refuse(effect, FAILED));
+                let fate = Fate::NotFitted(error);
+                refused.for_each(|effect| growth.ranking.end(effect, &fate));
                 return Ok((grown, None));
             }
         };

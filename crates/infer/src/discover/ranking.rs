@@ -89,10 +89,10 @@ impl Ranking {
         self.candidates.insert(place, own);
     }
 
-    /// Marks a candidate that was tried and refused.
-    pub fn refuse(&mut self, effect: &Effect, reason: &'static str) {
+    /// Marks what became of a candidate that was tried.
+    pub fn end(&mut self, effect: &Effect, fate: &Fate) {
         for ranked in self.candidates.iter_mut().filter(|ranked| ranked.effect.id == effect.id) {
-            ranked.fate = Fate::NotConfirmed(reason);
+            ranked.fate = fate.clone();
         }
     }
 
@@ -117,7 +117,9 @@ impl Ranking {
             } else {
                 None
             };
-            ranked.fate = fate.unwrap_or(ranked.fate);
+            if let Some(fate) = fate {
+                ranked.fate = fate;
+            }
         }
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::cross_validation::Folds;
 use crate::diagnostics::Diagnostics;
-use crate::{Doubt, Estimate, Inference, Progress, Prospects, Request, Tracked};
+use crate::{Doubt, Error, Estimate, Inference, Progress, Prospects, Request, Tracked};
 use std::ops::ControlFlow;
 use voronudge_model::{Column, Effect};
 
@@ -144,7 +144,7 @@ pub struct Selected {
 }
 
 /// What became of a candidate.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, PartialEq)]
 pub enum Fate {
     /// It was added.
     Selected,
@@ -158,6 +158,8 @@ pub enum Fate {
     Explained,
     /// It was better than chance, but fails one of the further conditions.
     NotConfirmed(&'static str),
+    /// It was better than chance, but no fit with it comes to an end.
+    NotFitted(Error),
     /// The data do not allow to test it.
     NotTestable(&'static str),
     /// A description, which is no cause.

@@ -63,7 +63,7 @@ impl RandomMotion {
         let ranked =
             Ranked { size, interval: Some([least, most]), detection_limit: most - least, fate, ..plain };
         let is_chance = ranked.adjusted_p >= setting.level(model.added.len());
-        if matches!(fate, Fate::NotConfirmed(_)) || is_chance {
+        if matches!(ranked.fate, Fate::NotConfirmed(_)) || is_chance {
             return Ok(Some(Self { ranked, selected: None }));
         }
         let selected = Selected {

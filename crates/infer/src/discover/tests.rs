@@ -115,7 +115,7 @@ fn tracks_tell_whether_cells_crawl() {
     assert!(polarity.coefficients[0].covers(speed), "{polarity:?} {speed}");
     assert!(found.predicts_better() && found.after.tracked.is_some());
     let fate_in = |found: &Discovery, id: &str| {
-        found.ranking.iter().find(|own| own.effect.id == id).map(|own| own.fate)
+        found.ranking.iter().find(|own| own.effect.id == id).map(|own| own.fate.clone())
     };
     assert_eq!(fate_in(&found, "polarity_alignment"), Some(Fate::BelowThreshold));
     let passive = discover_in_tracks(&filmed.movie().0, &search, &mut silent).unwrap();

@@ -34,16 +34,16 @@ def verdict(path, *, out=None, quiet: bool = False, importing: dict | None = Non
     found = info(path)
     if found["kind"] == "data set":
         return run("discover", inputs=path, out=out, quiet=quiet, **options)
-    words = found["command"].split()
-    if words[:2] != ["voronudge", "import"]:
+    command, kind, *link = found["arguments"]
+    if command != "import":
         raise Error(f"{path} is {found['kind']}, which no command reads", "voronudge.info(path) says more")
     # Pages tell the name of the folder.
     data = temporary_folder() / path.name.split(".")[0]
     importing = dict(importing or {})
-    if words[2] == "labels" and (found["frames"] or 1) > 1:
-        importing.setdefault("link", "overlap")
+    if link:
+        importing.setdefault("link", link[-1])
     try:
-        run("import", words[2], inputs=path, out=data, quiet=quiet, **importing)
+        run("import", kind, inputs=path, out=data, quiet=quiet, **importing)
         return run("discover", inputs=data, out=out, quiet=quiet, **options)
     finally:
         shutil.rmtree(data.parent, ignore_errors=True)

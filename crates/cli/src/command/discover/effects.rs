@@ -154,7 +154,7 @@ pub(super) fn ranked(candidate: &Ranked, discovery: &Discovery) -> RankedEffect 
 /// Why a candidate was taken or not.
 fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, String) {
     let p = probability(candidate.adjusted_p);
-    match candidate.fate {
+    match &candidate.fate {
         Fate::Selected => {
             let found = discovery.selected.iter().find(|selected| selected.effect.id == candidate.effect.id);
             // What nothing predicts explains nothing.
@@ -182,7 +182,11 @@ fn verdict(candidate: &Ranked, discovery: &Discovery) -> (CandidateStatus, Strin
         Fate::NotConfirmed(why) => {
             (CandidateStatus::BelowThreshold, format!("better than chance (adjusted p {p}), but {why}"))
         }
-        Fate::NotTestable(why) => (CandidateStatus::NotTestable, why.to_owned()),
+        Fate::NotFitted(error) => (
+            CandidateStatus::BelowThreshold,
+            format!("better than chance (adjusted p {p}), but the fit with it fails: {error}"),
+        ),
+        Fate::NotTestable(why) => (CandidateStatus::NotTestable, (*why).to_owned()),
         Fate::Description => {
             (CandidateStatus::Description, "a description, which is never named as a cause".into())
         }
