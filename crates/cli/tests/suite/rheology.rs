@@ -125,7 +125,10 @@ fn several_fits_are_told_against_time() {
 #[test]
 fn what_is_no_fit_is_refused() {
     let data = Folder::new();
-    let refuse = |line: &str, facts: &[&str]| assert_arguments_refused(line.split_whitespace(), facts);
+    // What is refused after some work is told after the progress of that.
+    let refuse = |line: &str, facts: &[&str]| {
+        assert_arguments_refused(line.split_whitespace().chain(["--quiet"]), facts)
+    };
     let good = write(&data, "good.json", &fit(3.0, 0.5, 0));
     let mut other = fit(3.0, 0.5, 0);
     other["command"] = json!("moduli");

@@ -172,6 +172,7 @@ impl Seen<'_> {
             true => (-slope / bend).clamp(-FURTHEST, FURTHEST),
             false => -FURTHEST.copysign(slope),
         };
+        let step = if -0.5 * slope * step < NO_GAIN { 0.0 } else { step };
         let ratio = match earlier.replace(step) {
             Some(earlier) if earlier > 0.0 && step > 0.0 => step / earlier,
             _ => 0.0,

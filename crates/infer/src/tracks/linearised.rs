@@ -54,7 +54,7 @@ struct Rests<'a> {
 impl MovieObjective<'_> {
     /// The problem linearised about a point, with what integrating over the unknowns adds.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
-        Ok(self.linearise_with(parameters, Share::Known)?.tilted(self.tilt()))
+        Ok(self.linearise_with(parameters, Share::Known)?.tilted(self.tilt(self.split(parameters).0)))
     }
 
     /// Φ by itself, perhaps with the share of the way to the centroids as a further coefficient, after all others.

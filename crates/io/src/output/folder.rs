@@ -84,6 +84,8 @@ impl OutputFolder {
         if path.as_os_str().is_empty() {
             return failure(OutputFault::Unnamed);
         }
+        // No signal ends the process between making the directory and knowing of it.
+        let mut held = held();
         let origin = match fs::metadata(&path) {
             Ok(metadata) if metadata.is_dir() => Origin::Found,
             Ok(_) => return failure(OutputFault::NotADirectory),
@@ -92,13 +94,17 @@ impl OutputFolder {
                 Err(source) => return failure(OutputFault::Create(source)),
             },
         };
+        let locked = lock(&path);
+        if locked.is_ok() {
+            held.claims.push((path.clone(), origin));
+        }
+        drop(held);
         let mut claim = Claim { path, origin, lock: None };
-        claim.lock = lock(&claim.path).map_err(|fault| output_error(&claim.path, fault))?;
+        claim.lock = locked.map_err(|fault| output_error(&claim.path, fault))?;
         commit::complete(&claim.path)?;
         if claim.lock.is_some() {
             sweep(&claim.path)?;
         }
-        held().claims.push((claim.path.clone(), origin));
         Ok(Self(Arc::new(claim)))
     }
 
