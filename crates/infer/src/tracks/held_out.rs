@@ -91,20 +91,27 @@ impl<'a> AsMeasured<'a> {
         Ok(missed.sum())
     }
 
-    /// What errors of the positions of unit variance alone make of the sum of the squared velocities beside predictions of held-out motions: where
-    /// these are forces at measured positions, what they do to the forces included. With the unknowns of the fit.
-    pub fn noise(&self, at: &[f64]) -> Result<f64, Error> {
+    /// What errors of the positions alone make of the sum of the squared velocities beside predictions of held-out motions: where these are forces at
+    /// measured positions, what they do to the forces included, of no motion more than `most`: beyond, where contacts are about to change, forces are
+    /// no linear function of positions. With the unknowns of the fit.
+    pub fn noise(&self, at: &[f64], most: f64) -> Result<f64, Error> {
+        let variance = self.objective.levels.position.powi(2);
         if follows_from_fit(&self.objective) {
-            return Ok(self.noise_of_motions());
+            return Ok(variance * self.noise_of_motions());
         }
-        let objective = MovieObjective { rule: Rule::Trapezoid, ..self.objective };
+        // The motions themselves are predicted, and not what happened to each cell by itself.
+        let states = &States { own_motion: None, ..self.objective.states.clone() };
+        let objective = MovieObjective { rule: Rule::Trapezoid, states, ..self.objective };
         let usual = objective.movie.interval();
         let of_motions = objective.sensitivities(at)?.into_iter().zip(&objective.states.motions);
         let seen = of_motions.zip(&self.velocities).filter(|(_, velocity)| velocity.is_some());
-        Ok(seen.map(|((square, motion), _)| square * usual / objective.span(motion.interval)).sum())
+        let of_motion = |square: f64, motion: &Motion| {
+            (variance * square * usual / objective.span(motion.interval)).min(most)
+        };
+        Ok(seen.map(|((square, motion), _)| of_motion(square, motion)).sum())
     }
 
-    /// The same of the measured motions themselves.
+    /// The same of the measured motions themselves, for errors of unit variance.
     fn noise_of_motions(&self) -> f64 {
         let MovieObjective { movie, states, .. } = self.objective;
         let of_motion = |motion: &Motion| {
@@ -270,6 +277,20 @@ mod tests {
     use crate::tracks::memory::Memory;
     use crate::tracks::sample::followed;
     use crate::{Activity, NoiseLevels};
+
+    /// Where a cell's surroundings are about to change, errors of positions count for no more than is stated.
+    #[test]
+    fn errors_of_positions_have_an_end() {
+        let (movie, request, followed) = followed(Activity::None);
+        let space = request.space().unwrap();
+        let objective = followed.objective(&movie, &request.structure, &space);
+        let at = &followed.fit.parameters;
+        let measured = AsMeasured::new(objective, objective.split(at).1);
+        let [all, ended] = [f64::INFINITY, 1e-6].map(|most| measured.noise(at, most).unwrap());
+        assert!(all > measured.noise_of_motions() * objective.levels.position.powi(2) && all.is_finite());
+        let used = measured.velocities.iter().flatten().count() as f64;
+        assert!(ended < all && (ended / used - 1e-6).abs() < 1e-9, "{all} {ended}");
+    }
 
     /// What is predicted of motions that were left out does not depend on the polarities that these had led to, however loosely polarities are held.
     #[test]

@@ -107,7 +107,7 @@ pub(crate) fn follow(
     let noise_floor = match at_limit(&levels, &request.noise) {
         true => f64::NAN,
         false => {
-            let of_places = measured.noise(&found.parameters)? * levels.position.powi(2);
+            let of_places = measured.noise(&found.parameters, total / used as f64)?;
             (2.0 * used as f64 * variance + of_places) / total
         }
     };
