@@ -92,7 +92,7 @@ impl<'a> AsMeasured<'a> {
     }
 
     /// What errors of the positions alone make of the sum of the squared velocities beside predictions of held-out motions: where these are forces at
-    /// measured positions, what they do to the forces included, of no motion more than `most`: beyond, where contacts are about to change, forces are
+    /// measured positions, what they do to the forces included, of no motion more than `most`: beyond, as between cells that nearly coincide, forces are
     /// no linear function of positions. With the unknowns of the fit.
     pub fn noise(&self, at: &[f64], most: f64) -> Result<f64, Error> {
         let variance = self.objective.levels.position.powi(2);
@@ -278,7 +278,7 @@ mod tests {
     use crate::tracks::sample::followed;
     use crate::{Activity, NoiseLevels};
 
-    /// Where a cell's surroundings are about to change, errors of positions count for no more than is stated.
+    /// However much cells do to each other, errors of their positions count for no more than is stated.
     #[test]
     fn errors_of_positions_have_an_end() {
         let (movie, request, followed) = followed(Activity::None);

@@ -207,8 +207,8 @@ impl MovieObjective<'_> {
     /// What holds the unknowns beside the data.
     pub(super) fn stiffness(&self) -> Stiffness {
         let own = self.states.polarities.range();
-        let floor = self.floor();
-        let mut of_blocks = vec![floor; self.states.blocks()];
+        let mut of_blocks = vec![self.floor(); self.states.blocks()];
+        of_blocks[..self.states.start.len()].fill(self.stiffness_of_room());
         self.states.anchors.iter().for_each(|place| of_blocks[*place as usize] = 0.0);
         let mut stiffness = Stiffness { of_blocks, couplings: Vec::new() };
         if let Some(memory) = self.memory {

@@ -25,8 +25,12 @@ use rayon::prelude::*;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::Structure;
 
-/// Standard deviation of a place that nothing holds about where it began, in units of ℓ₀: none to speak of.
+/// Standard deviation of what nothing holds about where it began, in units of ℓ₀: none to speak of.
 const FAR: f64 = 30.0;
+
+/// Standard deviation of the place of a cell that was not seen about the middle of the room that the others leave it, in units of ℓ₀. Without it such
+/// cells of measured tissues moved onto their neighbours.
+const ROOM: f64 = 0.3;
 
 /// Share of motions that nothing explains. Where contacts change, the way of a cell forks, and a fit can be caught on the wrong side of a
 /// fork: what is then left of its motion must not decide a coefficient, nor keep it from crossing over.
@@ -249,9 +253,14 @@ impl<'a> MovieObjective<'a> {
         placed.instants.par_iter().enumerate().map(of_frame).collect()
     }
 
-    /// Stiffness of places that were not seen.
+    /// Stiffness of what nothing holds.
     pub fn floor(&self) -> f64 {
         (self.levels.velocity / FAR).powi(2)
+    }
+
+    /// Stiffness of places that were not seen.
+    pub fn stiffness_of_room(&self) -> f64 {
+        (self.levels.velocity / ROOM).powi(2)
     }
 
     /// The parts of Φ.
