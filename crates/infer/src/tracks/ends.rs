@@ -152,8 +152,13 @@ fn settle(movie: &mut Movie, put: &[Unseen]) -> Result<Vec<Unseen>, Error> {
 mod tests {
     use super::*;
     use crate::tracks::Drift;
+    use crate::tracks::objective::MovieObjective;
+    use crate::tracks::rule::Rule;
     use crate::tracks::sample::Filmed;
+    use crate::tracks::states::States;
+    use crate::{CoefficientSpace, Constraints, NoiseLevels};
     use voronudge_geometry::FieldOfView;
+    use voronudge_model::Structure;
 
     /// Cells that are not detected at first, at last, or twice at the end are put where they are; one that divides is not.
     #[test]
@@ -183,6 +188,21 @@ mod tests {
             let miss = domain.shortest(place - truth[frame][cell].unwrap()).norm();
             assert!(miss < 0.3, "{cell} in {frame}: {miss}");
         }
+        // They are held in the room that they have, and nothing else of the places is.
+        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+        let objective = MovieObjective {
+            movie: &longer,
+            states: &States::new(&longer).unwrap(),
+            rule: Rule::Trapezoid,
+            structure: &Structure::base(1.0),
+            space: &space,
+            levels: NoiseLevels { position: 0.01, velocity: 0.15 },
+            memory: None,
+        };
+        let places = objective.states.start.len();
+        let held = objective.stiffness().of_blocks[..places].to_vec();
+        assert_eq!(held.iter().filter(|own| (**own - 0.25).abs() < 1e-12).count(), 5);
+        assert_eq!(held.iter().filter(|own| **own == 0.0).count(), places - 5);
         // A gap goes on beyond the first frames.
         let gap = longer.beginning(4);
         assert_eq!((gap.tracks[90].end(), gap.tracks[90].at(3)), (4, None));
