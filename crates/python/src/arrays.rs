@@ -46,7 +46,7 @@ pub(crate) fn array<'py>(
     py: Python<'py>,
     vectors: impl IntoIterator<Item = Vector<f64>>,
 ) -> Bound<'py, PyArray2<f64>> {
-    let flat: Vec<f64> = vectors.into_iter().flat_map(|v| [v.x, v.y]).collect();
-    // Two numbers for each row: the shape always fits.
+    // Pairs, for which an iterator knows its length; two numbers for each row: the shape always fits.
+    let flat = vectors.into_iter().map(|v| [v.x, v.y]).collect::<Vec<_>>().into_flattened();
     Array2::from_shape_vec((flat.len() / 2, 2), flat).unwrap_or_default().into_pyarray(py)
 }

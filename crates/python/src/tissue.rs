@@ -131,7 +131,7 @@ impl Tissue {
             Given::read(py, parameters)?.model(py, &self.tessellation, &self.positions, &self.view)?;
         let matrix = py.detach(|| jacobian(&self.tessellation, &self.positions, &model));
         let blocks = matrix.block.len();
-        let flat: Vec<f64> = matrix.block.into_iter().flatten().collect();
+        let flat = matrix.block.into_flattened();
         // Four numbers for each block: the shape always fits.
         let data = Array3::from_shape_vec((blocks, 2, 2), flat).unwrap_or_default();
         let starts: Vec<u64> = matrix.row_start.into_iter().map(|start| start as u64).collect();
