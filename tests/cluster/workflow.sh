@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Runs docs/cluster/Snakefile for real, on two movies of different kinds, and again once a verdict is lost. Needs Snakemake.
+# Runs docs/cluster/Snakefile for real, on two movies of different kinds, and again once a verdict and the table are lost. Needs Snakemake.
 #
 #     tests/cluster/workflow.sh [PROGRAM]
 set -euo pipefail
@@ -23,8 +23,9 @@ for movie in masks tracks; do
 done
 
 kept=$(stat -c %Y verdicts/masks/verdict/report.json)
-rm verdicts/tracks/verdict/report.json
+rm verdicts/tracks/verdict/report.json verdicts/verdicts.csv
 verdicts
 [ -f verdicts/tracks/verdict/report.json ]
+[ "$(wc -l <verdicts/verdicts.csv)" = 3 ]
 [ "$(stat -c %Y verdicts/masks/verdict/report.json)" = "$kept" ]
 echo "workflow of two movies: both verdicts, and only what was lost is made again"
