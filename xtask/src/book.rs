@@ -1,4 +1,4 @@
-//! The pages as a site with search, by mdBook.
+//! The pages as a site with search, by mdBook, with the reference of the crates and of the Python package.
 
 use crate::Outcome;
 use crate::check::pages::{CONTENTS, Pages};
@@ -8,31 +8,73 @@ use std::process::Command;
 
 /// What is said where mdBook is not there.
 const INSTALL: &str = "mdbook cannot be run; cargo install mdbook --no-default-features --features search";
+/// What is said where the Python package is left out.
+const PYTHON: &str = "without the reference of the Python package: that takes `pip install . pdoc`";
+
+/// Pages of another tool that go into the site.
+struct Reference {
+    /// What they are of.
+    of: &'static str,
+    /// Where they were made, their folder in the site, and the page there with which they begin.
+    made: PathBuf,
+    folder: &'static str,
+    first: &'static str,
+}
 
 /// Builds the site in target/book, and checks the links of its pages.
 pub fn run(root: &Path) -> Outcome {
     let [source, site] = ["target/book-source", "target/book"].map(|folder| root.join(folder));
-    for folder in [&source, &site] {
+    let references = references(root)?;
+    build(root, &source, &site, &references)?;
+    println!("{} has the pages", site.join("index.html").display());
+    Ok(())
+}
+
+/// The site of the pages and of references.
+fn build(root: &Path, source: &Path, site: &Path, references: &[Reference]) -> Outcome {
+    for folder in [source, site] {
         if folder.exists() {
             fs::remove_dir_all(folder)?;
         }
     }
-    gather(root, &source)?;
+    gather(root, source, references)?;
     let mut mdbook = Command::new("mdbook");
-    let status = mdbook.arg("build").arg(&source).arg("--dest-dir").arg(&site).status();
+    let status = mdbook.arg("build").arg(source).arg("--dest-dir").arg(site).status();
     if !status.map_err(|error| format!("{INSTALL} ({error})"))?.success() {
         return Err("mdbook failed".into());
     }
-    let dead = dead_links(&site)?;
-    match dead.is_empty() {
-        true => println!("{} has the pages", site.join("index.html").display()),
-        false => return Err(dead.join("\n").into()),
+    let mut pages = Vec::new();
+    within(site, &mut pages)?;
+    for Reference { made, folder, .. } in references {
+        copy(made, &site.join(folder))?;
     }
-    Ok(())
+    let dead = dead_links(site, &pages)?;
+    if dead.is_empty() { Ok(()) } else { Err(dead.join("\n").into()) }
+}
+
+/// Makes the reference of the crates, and that of the Python package where there are Python, the package and pdoc.
+fn references(root: &Path) -> Result<Vec<Reference>, Box<dyn std::error::Error>> {
+    let mut cargo = Command::new("cargo");
+    cargo.current_dir(root).args(["doc", "--quiet", "--workspace", "--no-deps", "--lib"]);
+    if !cargo.args(["--exclude", "claims"]).status()?.success() {
+        return Err("cargo doc failed".into());
+    }
+    let made = root.join("target/doc");
+    let mut all = vec![Reference { of: "The crates", made, folder: "api", first: "voronudge/index.html" }];
+    let made = root.join("target/book-python");
+    let mut pdoc = Command::new("pdoc");
+    pdoc.args(["--docformat", "numpy", "--output-directory"]).arg(&made).arg("voronudge");
+    match pdoc.status() {
+        Ok(status) if status.success() => {
+            all.push(Reference { of: "The Python package", made, folder: "python", first: "voronudge.html" });
+        }
+        _ => eprintln!("{PYTHON}"),
+    }
+    Ok(all)
 }
 
 /// Puts the pages of the table of contents, and what they lead to, where mdBook can find them by the same paths.
-fn gather(root: &Path, source: &Path) -> Outcome {
+fn gather(root: &Path, source: &Path, references: &[Reference]) -> Outcome {
     let pages = Pages::read(root)?;
     let contents = pages.texts.get(Path::new(CONTENTS)).ok_or("there is no table of contents")?;
     let mut files: Vec<PathBuf> = Vec::new();
@@ -46,7 +88,13 @@ fn gather(root: &Path, source: &Path) -> Outcome {
         fs::copy(file, place)?;
     }
     // Paths of the table of contents are those from its folder.
-    let contents = contents.replace("](", "](docs/").replace("](docs/../", "](");
+    let mut contents = contents.replace("](", "](docs/").replace("](docs/../", "](");
+    if !references.is_empty() {
+        let line = |Reference { of, folder, first, .. }: &Reference| format!("- [{of}]({folder}/{first})\n");
+        let lines: String = references.iter().map(line).collect();
+        fs::write(source.join("reference.md"), format!("# Reference\n\n{lines}"))?;
+        contents += "- [Reference](reference.md)\n";
+    }
     fs::write(source.join("SUMMARY.md"), contents)?;
     fs::remove_file(source.join(CONTENTS))?;
     fs::copy(root.join("docs/book.toml"), source.join("book.toml"))?;
@@ -65,10 +113,20 @@ fn within(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Links of the site that lead to no file of it, or to no part of a page.
-fn dead_links(site: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>> {
+/// Copies a folder with all that is in it.
+fn copy(from: &Path, to: &Path) -> Outcome {
     let mut files = Vec::new();
-    within(site, &mut files)?;
+    within(from, &mut files)?;
+    for file in files {
+        let place = to.join(file.strip_prefix(from)?);
+        fs::create_dir_all(place.parent().unwrap_or(to))?;
+        fs::copy(file, place)?;
+    }
+    Ok(())
+}
+
+/// Links of files of the site that lead to no file of it, or to no part of a page.
+fn dead_links(site: &Path, files: &[PathBuf]) -> Result<Vec<String>, Box<dyn std::error::Error>> {
     let mut found = Vec::new();
     let is_page = |file: &&PathBuf| file.extension().is_some_and(|end| end == "html");
     for page in files.iter().filter(is_page) {
@@ -112,16 +170,39 @@ mod tests {
             "docs/a.html",
             r##"<h1 id="part">A</h1> <a href="../index.html?x">up</a> <a href="#part">here</a> <a href="#no">no</a>"##,
         );
+        let mut files = Vec::new();
+        within(site.path(), &mut files).unwrap();
         assert_eq!(
-            dead_links(site.path()).unwrap(),
+            dead_links(site.path(), &files).unwrap(),
             ["docs/a.html: #no leads nowhere", "index.html: c.svg leads nowhere"]
         );
+    }
+
+    /// Where there is mdBook.
+    #[test]
+    fn the_site_is_made_and_no_link_of_it_leads_nowhere() {
+        if Command::new("mdbook").arg("--version").output().is_err() {
+            eprintln!("skipped: there is no mdBook");
+            return;
+        }
+        let scratch = tempfile::tempdir().unwrap();
+        let [source, site, made] = ["source", "site", "made"].map(|folder| scratch.path().join(folder));
+        fs::create_dir(&made).unwrap();
+        fs::write(made.join("first.html"), "<a href=\"elsewhere.html\">not of ours</a>").unwrap();
+        let reference = Reference { of: "Another", made, folder: "another", first: "first.html" };
+        build(&crate::root(), &source, &site, &[reference]).unwrap();
+        for page in
+            ["index.html", "docs/theory.html", "docs/gallery.html", "reference.html", "another/first.html"]
+        {
+            assert!(site.join(page).is_file(), "{page}");
+        }
+        assert!(fs::read_to_string(site.join("reference.html")).unwrap().contains("another/first.html"));
     }
 
     #[test]
     fn all_that_pages_lead_to_is_gathered() {
         let source = tempfile::tempdir().unwrap();
-        gather(&crate::root(), source.path()).unwrap();
+        gather(&crate::root(), source.path(), &[]).unwrap();
         let contents = fs::read_to_string(source.path().join("SUMMARY.md")).unwrap();
         for place in ["README.md", "docs/commands/README.md", "ARCHITECTURE.md", "fixtures/imports/README.md"]
         {

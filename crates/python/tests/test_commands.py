@@ -1,5 +1,6 @@
 """The commands as functions, and the way from files of other programs to a verdict."""
 
+import contextlib
 import os
 import signal
 import subprocess
@@ -98,7 +99,9 @@ def test_the_program_runs_as_a_module():
 @pytest.mark.skipif(os.name != "posix", reason="signals")
 def test_an_interrupt_ends_the_command_and_is_raised():
     code = (
-        "import voronudge\n"
+        "import signal, voronudge\n"
+        # Who starts tests in the background has them ignore it.
+        "signal.signal(signal.SIGINT, signal.default_int_handler)\n"
         "print('begun', flush=True)\n"
         "try:\n"
         "    voronudge.simulate(cells=2000, time=10000, quiet=True)\n"
@@ -106,11 +109,16 @@ def test_an_interrupt_ends_the_command_and_is_raised():
         "    print('interrupted')\n"
     )
     child = subprocess.Popen([sys.executable, "-c", code], stdout=subprocess.PIPE, text=True, start_new_session=True)
-    assert child.stdout.readline() == "begun\n"
-    time.sleep(1.0)
-    child.send_signal(signal.SIGINT)
-    out, _ = child.communicate(timeout=30)
-    assert out == "interrupted\n"
+    try:
+        assert child.stdout.readline() == "begun\n"
+        time.sleep(1.0)
+        child.send_signal(signal.SIGINT)
+        out, _ = child.communicate(timeout=30)
+        assert out == "interrupted\n"
+    finally:
+        # The command, too, which is all of its group that may be left.
+        with contextlib.suppress(ProcessLookupError):
+            os.killpg(child.pid, signal.SIGKILL)
 
 
 def test_every_command_is_a_function_with_help():

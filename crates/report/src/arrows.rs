@@ -1,9 +1,13 @@
 //! Arrows that share one scale, and the reference arrow that states it.
 
+use crate::key::LETTER;
 use crate::map::{Legend, Viewport};
 use crate::numbers::{nice_below, quantile, significant};
 use crate::svg::{Anchor, PathData, TextStyle};
 use crate::view::{CellView, FrameView, is_finite, length};
+
+/// Nudges of this share of a cell's spacing, and less, are no nudges.
+const ROUNDING: f64 = 1e-9;
 
 /// How long a vector is drawn: units of length on the map per unit of the vector.
 ///
@@ -51,12 +55,16 @@ impl ArrowScale {
     }
 
     /// The scale at which the 95th percentile of the nudges of used cells is 0.4 to 0.9 cell
-    /// spacings long, a round magnification. `None` where no cell is nudged.
+    /// spacings long, a round magnification. `None` where no cell is nudged by more than rounding may do.
     #[must_use]
     pub fn nudges(frames: &[FrameView]) -> Option<Self> {
         let cells = frames.iter().flat_map(|frame| &frame.cells).filter(|cell| cell.is_used());
         let size = quantile(cells.map(|cell| length(cell.nudge)), 0.95)?;
-        let most = 0.9 * typical_spacing(frames)? / size;
+        let spacing = typical_spacing(frames)?;
+        if size < ROUNDING * spacing {
+            return None;
+        }
+        let most = 0.9 * spacing / size;
         // One digit is round enough for a magnification: 40 rather than 20.
         let power = 10f64.powf(most.log10().floor());
         let stretch = (most / power + 1e-9).floor() * power;
@@ -114,12 +122,20 @@ impl Arrows {
 impl Legend {
     /// Draws the reference arrow at `x` on the first line, with its magnitude and unit.
     pub fn reference_arrow(&mut self, x: f64, scale: &ArrowScale, mark: &ReferenceMark<'_>) {
-        let pixels = scale.reference * scale.stretch * self.pixels_per_length();
+        let width = self.svg.size()[0];
+        let label = |reference: f64| format!("{} {}{}", significant(reference, 1), mark.unit, mark.remark);
+        let pixels = |reference: f64| reference * scale.stretch * self.pixels_per_length();
+        let fits = |&reference: &f64| {
+            x + pixels(reference) + 7.0 + label(reference).chars().count() as f64 * LETTER < width
+        };
+        // Long arrows, as of a few large cells, give way to their label.
+        let shorter = std::iter::successors(Some(scale.reference), |own| nice_below(0.99 * own));
+        let reference = shorter.take(6).find(fits).unwrap_or(scale.reference);
+        let (pixels, label) = (pixels(reference), label(reference));
         let y = self.top + 15.0;
         let mut arrows = Arrows::default();
         arrows.push([x, y], [pixels, 0.0]);
         arrows.draw(&mut self.svg, mark.colour);
-        let label = format!("{} {}{}", significant(scale.reference, 1), mark.unit, mark.remark);
         self.svg.text([x + pixels + 7.0, y + 4.0], &label, TextStyle::label(Anchor::Start));
     }
 }

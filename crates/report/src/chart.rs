@@ -7,7 +7,7 @@ use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, Value
 use plotters::prelude::*;
 
 use crate::colour::INK;
-use crate::numbers::{as_given, superscript, tick_labels, ticks};
+use crate::numbers::{Ticks, as_given, superscript, ticks};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Plotters counts in whole pixels: it draws this many times larger and is scaled down.
@@ -91,20 +91,21 @@ impl Axis {
         (-1e-9..=1.0 + 1e-9).contains(&self.share(value))
     }
 
-    fn tick_positions(&self) -> Vec<f64> {
+    /// Positions and labels of its ticks, and its label beside these.
+    fn ticks(&self) -> (Vec<f64>, Vec<String>, String) {
         if self.ticks == 0 {
-            return Vec::new();
+            return (Vec::new(), Vec::new(), self.label.clone());
         }
         match self.scale {
-            AxisScale::Linear => ticks(self.range, self.ticks),
-            AxisScale::Logarithmic => logarithmic_ticks(self.range, self.ticks),
-        }
-    }
-
-    fn labels(&self, positions: &[f64]) -> Vec<String> {
-        match self.scale {
-            AxisScale::Linear => tick_labels(positions),
-            AxisScale::Logarithmic => positions.iter().map(|&at| power_label(at)).collect(),
+            AxisScale::Linear => {
+                let ticks = Ticks::new(self.range, self.ticks);
+                (ticks.positions().to_vec(), ticks.labels().to_vec(), ticks.axis_label(&self.label))
+            }
+            AxisScale::Logarithmic => {
+                let positions = logarithmic_ticks(self.range, self.ticks);
+                let labels = positions.iter().map(|&at| power_label(at)).collect();
+                (positions, labels, self.label.clone())
+            }
         }
     }
 }
@@ -161,15 +162,16 @@ impl Chart {
     fn label_axes(&mut self) {
         let [[left, top], [right, bottom]] = self.plot;
         let style = TextStyle { size: 12.0, ..TextStyle::label(Anchor::Middle) };
+        let [(.., x), (.., y)] = [&self.x, &self.y].map(Axis::ticks);
         if !self.x.label.is_empty() {
-            self.svg.text([(left + right) / 2.0, bottom + 37.0], &self.x.label, style);
+            self.svg.text([(left + right) / 2.0, bottom + 37.0], &x, style);
         }
         if self.y.label.is_empty() {
             return;
         }
         let middle = (top + bottom) / 2.0;
         self.svg.raw(&format!("<g transform=\"rotate(-90 13 {middle:.1})\">"));
-        self.svg.text([13.0, middle], &self.y.label, style);
+        self.svg.text([13.0, middle], &y, style);
         self.svg.raw("</g>\n");
     }
 
@@ -251,8 +253,7 @@ struct TickedAxis {
 
 impl TickedAxis {
     fn new(axis: &Axis) -> Self {
-        let positions = axis.tick_positions();
-        let labels = axis.labels(&positions);
+        let (positions, labels, _) = axis.ticks();
         Self { axis: axis.clone(), positions, labels }
     }
 }

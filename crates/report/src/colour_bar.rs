@@ -1,11 +1,12 @@
 //! The horizontal bar that says which number a colour stands for.
 
 use crate::colour::ColourScale;
+use crate::numbers::Ticks;
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Where a colour bar stands and what it says.
 #[derive(Debug, Clone, PartialEq)]
-pub struct ColourBar<'a> {
+pub struct ColourBar {
     /// Left and right end in pixels.
     pub ends: [f64; 2],
     /// Upper edge in pixels; the bar with its label is about 45 pixels high.
@@ -13,10 +14,17 @@ pub struct ColourBar<'a> {
     /// Positions on the colour scale and their labels.
     pub ticks: Vec<(f64, String)>,
     /// What the numbers mean, with unit.
-    pub label: &'a str,
+    pub label: String,
 }
 
-impl ColourBar<'_> {
+impl ColourBar {
+    /// A bar of colours that are spread evenly.
+    #[must_use]
+    pub fn linear(ends: [f64; 2], top: f64, colours: &ColourScale, label: &str) -> Self {
+        let ticks = Ticks::new(colours.limits(), 5);
+        Self { ends, top, label: ticks.axis_label(label), ticks: ticks.labelled() }
+    }
+
     /// Draws the bar. Triangles at its ends say that some values lie beyond it.
     pub fn draw(&self, svg: &mut Svg, colours: &ColourScale) {
         let [left, right] = self.ends;
@@ -49,6 +57,6 @@ impl ColourBar<'_> {
             svg.text([x, bottom + 14.5], text, TextStyle::label(Anchor::Middle));
         }
         let at = [(left + right) / 2.0, bottom + 29.0];
-        svg.text(at, self.label, TextStyle::label(Anchor::Middle));
+        svg.text(at, &self.label, TextStyle::label(Anchor::Middle));
     }
 }

@@ -8,7 +8,7 @@ pub const SAMPLE: [f64; 2] = [26.0, 14.0];
 /// Height of a line of the key in pixels.
 const LINE: f64 = 18.0;
 /// About the width of a letter in pixels.
-const LETTER: f64 = 6.2;
+pub(crate) const LETTER: f64 = 6.2;
 
 /// One entry of a key.
 #[derive(Debug, Clone)]

@@ -139,8 +139,7 @@ pub fn tick_labels(positions: &[f64]) -> Vec<String> {
         [only] => only.abs(),
         [] => return Vec::new(),
     };
-    let largest = positions.iter().fold(0.0f64, |most, position| most.max(position.abs()));
-    if largest >= 1e6 || (largest > 0.0 && largest < 1e-4) {
+    if plain_power(positions) != 0 {
         return positions.iter().map(|&position| significant(position, 2)).collect();
     }
     let decimals = if step > 0.0 { (-exponent_of(step)).max(0) } else { 0 };
@@ -148,6 +147,67 @@ pub fn tick_labels(positions: &[f64]) -> Vec<String> {
         .iter()
         .map(|&position| fixed(if position.abs() < step * 1e-9 { 0.0 } else { position }, decimals))
         .collect()
+}
+
+/// The power of ten in which labels of positions are short.
+fn plain_power(positions: &[f64]) -> i32 {
+    let largest = positions.iter().fold(0.0f64, |most, position| most.max(position.abs()));
+    if largest >= 1e6 || (largest > 0.0 && largest < 1e-4) { exponent_of(largest) } else { 0 }
+}
+
+/// Ticks of a linear axis. Their labels are in units of a power of ten where plain ones would be long; the label of the axis says so.
+///
+/// ```
+/// use voronudge_report::numbers::Ticks;
+/// let ticks = Ticks::new([-3e-13, 2e-13], 6);
+/// assert_eq!(ticks.labels(), ["−3", "−2", "−1", "0", "1", "2"]);
+/// assert_eq!(ticks.axis_label("residual (µm/min)"), "residual (10⁻¹³ µm/min)");
+/// ```
+#[derive(Debug, Clone, PartialEq)]
+pub struct Ticks {
+    positions: Vec<f64>,
+    labels: Vec<String>,
+    power: i32,
+}
+
+impl Ticks {
+    /// At most about `count` [`ticks`] inside a range.
+    #[must_use]
+    pub fn new(range: [f64; 2], count: usize) -> Self {
+        let positions = ticks(range, count);
+        let power = plain_power(&positions);
+        let scaled: Vec<f64> = positions.iter().map(|position| position / 10f64.powi(power)).collect();
+        Self { positions, labels: tick_labels(&scaled), power }
+    }
+
+    /// Where they are.
+    #[must_use]
+    pub fn positions(&self) -> &[f64] {
+        &self.positions
+    }
+
+    /// What they say.
+    #[must_use]
+    pub fn labels(&self) -> &[String] {
+        &self.labels
+    }
+
+    /// Each with its label.
+    #[must_use]
+    pub fn labelled(&self) -> Vec<(f64, String)> {
+        self.positions.iter().copied().zip(self.labels.iter().cloned()).collect()
+    }
+
+    /// The label of an axis with these ticks, its unit in brackets at the end if it has one.
+    #[must_use]
+    pub fn axis_label(&self, label: &str) -> String {
+        let power = format!("10{}", superscript(self.power));
+        match (self.power, label.ends_with(')').then(|| label.rsplit_once('(')).flatten()) {
+            (0, _) => label.to_owned(),
+            (_, Some((name, unit))) => format!("{name}({power} {unit}"),
+            (_, None) => format!("{label} ({power})"),
+        }
+    }
 }
 
 /// The `fraction` quantile of the finite `values` (linear between order statistics); `None` if

@@ -2,8 +2,8 @@
 
 use crate::failure::Failure;
 use clap::Args;
-use voronudge_geometry::{Domain, Tessellation, Vector, polygons};
-use voronudge_io::{CellFrame, DataSet, ExportFormat, OutputDirectory, export_cells};
+use voronudge_geometry::{Domain, Tessellation, Vector, areas, perimeters, polygons};
+use voronudge_io::{CellFrame, CellValues, DataSet, ExportFormat, OutputDirectory, export_cells};
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArguments {
@@ -28,13 +28,14 @@ impl ExportArguments {
     }
 }
 
-/// The cells of a frame with their polygons and neighbours, without values: `chosen` are those to write, by their number in the
-/// tessellation and in the data set. In an open field a polygon that reaches beyond all cells counts as open: it would be another one if more
-/// had been seen.
+/// The cells of a frame with their polygons and neighbours, area, perimeter and further values: `chosen` are those to write, by their number
+/// in the tessellation and in the data set. In an open field a polygon that reaches beyond all cells counts as open: it would be another one
+/// if more had been seen.
 pub(crate) fn cell_frame(
     frame: usize,
     (tessellation, positions): (&Tessellation, &[Vector<f64>]),
     chosen: &[(usize, usize)],
+    values: impl IntoIterator<Item = (&'static str, CellValues)>,
 ) -> CellFrame {
     let mut vertices = polygons(tessellation, positions);
     if tessellation.domain() == Domain::Open {
@@ -52,12 +53,20 @@ pub(crate) fn cell_frame(
     let neighbours = |own: usize| -> Vec<usize> {
         tessellation.neighbours(own).iter().filter_map(|&other| numbers[other as usize]).collect()
     };
+    let of_polygons = |all: Vec<f64>| {
+        let value = |own: usize| if vertices[own].is_empty() { f64::NAN } else { all[own] };
+        CellValues::Numbers(chosen.iter().map(|&(own, _)| value(own)).collect())
+    };
+    let shapes = [
+        ("area", of_polygons(areas(tessellation, positions))),
+        ("perimeter", of_polygons(perimeters(tessellation, positions))),
+    ];
     CellFrame {
         frame,
+        values: shapes.into_iter().chain(values).collect(),
         cells: chosen.iter().map(|&(_, cell)| cell).collect(),
         positions: chosen.iter().map(|&(own, _)| positions[own]).collect(),
         polygons: chosen.iter().map(|&(own, _)| std::mem::take(&mut vertices[own])).collect(),
         neighbours: chosen.iter().map(|&(own, _)| neighbours(own)).collect(),
-        values: Vec::new(),
     }
 }

@@ -114,17 +114,12 @@ impl Fields {
     /// For other programs.
     fn cells(&self, frame: usize) -> CellFrame {
         let chosen: Vec<(usize, usize)> = self.snapshot.cells.iter().copied().enumerate().collect();
-        let numbers = |all: &[f64]| CellValues::Numbers(all.to_vec());
-        let counts: Vec<f64> = self.counted.iter().map(|&counts| f64::from(u8::from(counts))).collect();
-        CellFrame {
-            values: vec![
-                ("area", numbers(&self.areas)),
-                ("perimeter", numbers(&self.perimeters)),
-                ("counts", CellValues::Numbers(counts)),
-                ("velocity", CellValues::Vectors(self.velocities.clone())),
-            ],
-            ..cell_frame(frame, (&self.tessellation, &self.snapshot.positions), &chosen)
-        }
+        let counts = self.counted.iter().map(|&counts| f64::from(u8::from(counts))).collect();
+        let values = [
+            ("counts", CellValues::Numbers(counts)),
+            ("velocity", CellValues::Vectors(self.velocities.clone())),
+        ];
+        cell_frame(frame, (&self.tessellation, &self.snapshot.positions), &chosen, values)
     }
 }
 

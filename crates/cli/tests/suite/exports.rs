@@ -72,6 +72,8 @@ fn tracks_for_napari_come_back_as_they_were() {
     let features = collection["features"].as_array().unwrap();
     let are = |kind: &str| features.iter().filter(|own| own["geometry"]["type"] == kind).count();
     assert!(are("Point") > 0 && are("Polygon") > 0 && are("Point") + are("Polygon") == features.len());
+    let has_area = |own: &Value| own["properties"]["area"].is_number();
+    assert!(features.iter().all(|own| has_area(own) == (own["geometry"]["type"] == "Polygon")));
     // A polygon is around its cell.
     let closed = features.iter().find(|own| own["geometry"]["type"] == "Polygon").unwrap();
     let ring = closed["geometry"]["coordinates"][0].as_array().unwrap();

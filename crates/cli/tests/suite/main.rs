@@ -7,6 +7,7 @@ mod bad_discoveries;
 mod bad_fits;
 mod bad_folders;
 mod bad_places;
+mod browser;
 mod channels;
 mod configurations;
 mod discoveries;

@@ -17,7 +17,7 @@ fn assert_described(report: &Value) {
 }
 
 /// What of a report of `infer` is read: cells of 20 µm, K_P = 0.02 per minute, and two axes.
-fn fit(shape_index: f64, chirality: f64, frame: usize) -> Value {
+pub fn fit(shape_index: f64, chirality: f64, frame: usize) -> Value {
     let parameter = |value: f64| json!({"value": value});
     json!({
         "command": "infer",

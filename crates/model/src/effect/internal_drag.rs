@@ -2,6 +2,7 @@
 
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{BlockMatrix, Exactness, Flow, FlowResponse, Linearisation, Parity, Stage, assemble};
+use std::collections::HashMap;
 use voronudge_geometry::{Scalar, Vector};
 
 /// Friction between neighbours, in proportion to the difference of their velocities: `(I + ξ L) v = F` with the graph Laplacian
@@ -50,17 +51,16 @@ impl FlowResponse for InternalDrag {
         let Linearisation { flow, jacobian } = at;
         let graph = Graph::new(flow);
         let rows = jacobian.rows();
+        let first = (0..rows).find(|&cell| flow.moves(cell)).unwrap_or(0);
+        let usual = graph.inverse_row(coefficient, first, 1).radius;
         assemble(rows, |cell, row| {
             if !flow.moves(cell) {
                 return;
             }
-            // A row of the symmetric inverse is the response to a force on one cell.
-            let mut unit = vec![0.0; rows];
-            unit[cell] = 1.0;
-            let inverse = graph.solve(coefficient, &unit);
-            let largest = inverse.iter().fold(0.0, |max: f64, entry| max.max(entry.abs()));
-            for (j, &weight) in inverse.iter().enumerate() {
-                if flow.moves(j) && weight.abs() > TRUNCATION * largest {
+            let InverseRow { cells, weights, .. } = graph.inverse_row(coefficient, cell, usual);
+            let largest = largest(&weights);
+            for (&j, &weight) in cells.iter().zip(&weights) {
+                if weight.abs() > TRUNCATION * largest {
                     row.add_scaled_row(weight, jacobian, j);
                 }
             }
@@ -76,6 +76,9 @@ impl FlowResponse for InternalDrag {
 /// Entries of the inverse that are left out of the Jacobian, relative to the largest of the row.
 const TRUNCATION: f64 = 1e-7;
 
+/// Entries of the inverse at which a part of the tissue ends that stands for all of it, in the same unit.
+const NEGLIGIBLE: f64 = 1e-9;
+
 /// The reduction of the error at which iteration ends. It is far below rounding, because derivatives converge later.
 const REDUCTION: f64 = 1e-20;
 
@@ -85,7 +88,17 @@ const MOST_ITERATIONS: usize = 20_000;
 /// Who has friction with whom.
 struct Graph {
     neighbours: Vec<Vec<u32>>,
+    /// Numbers of neighbours that are at rest.
+    at_rest: Vec<usize>,
     most: usize,
+}
+
+/// A row of the inverse of `I + ξ L`, which is symmetric: the response to a force on one cell.
+struct InverseRow {
+    /// Cells up to a distance in steps from neighbour to neighbour, by distance.
+    cells: Vec<usize>,
+    weights: Vec<f64>,
+    radius: usize,
 }
 
 impl Graph {
@@ -96,16 +109,60 @@ impl Graph {
         };
         let neighbours: Vec<Vec<u32>> = (0..flow.velocities.len()).map(of).collect();
         let most = neighbours.iter().map(Vec::len).max().unwrap_or(0);
-        Self { neighbours, most }
+        Self { at_rest: vec![0; neighbours.len()], neighbours, most }
+    }
+
+    /// A row, from cells within a radius, larger than the given one where entries at its end are not negligible.
+    fn inverse_row(&self, drag: f64, cell: usize, mut radius: usize) -> InverseRow {
+        loop {
+            let (part, cells, last_ring) = self.around(cell, radius);
+            let mut force = vec![0.0; cells.len()];
+            force[0] = 1.0;
+            let weights = part.solve(drag, &force);
+            let largest = largest(&weights);
+            if weights[last_ring..].iter().any(|weight| weight.abs() > NEGLIGIBLE * largest) {
+                radius += 1;
+            } else {
+                return InverseRow { cells, weights, radius };
+            }
+        }
+    }
+
+    /// The cells up to a distance from one, by distance, what the graph is among them while all others are at rest, and where the last distance
+    /// begins.
+    fn around(&self, centre: usize, radius: usize) -> (Self, Vec<usize>, usize) {
+        let mut places = HashMap::from([(centre, 0)]);
+        let (mut cells, mut ring) = (vec![centre], 0);
+        for _ in 0..radius {
+            let begin = std::mem::replace(&mut ring, cells.len());
+            for k in begin..ring {
+                for &next in &self.neighbours[cells[k]] {
+                    places.entry(next as usize).or_insert_with(|| {
+                        cells.push(next as usize);
+                        cells.len() as u32 - 1
+                    });
+                }
+            }
+        }
+        let among = |cell: &usize| -> Vec<u32> {
+            self.neighbours[*cell].iter().filter_map(|next| places.get(&(*next as usize)).copied()).collect()
+        };
+        let neighbours: Vec<Vec<u32>> = cells.iter().map(among).collect();
+        let at_rest = cells
+            .iter()
+            .zip(&neighbours)
+            .map(|(&cell, own)| self.neighbours[cell].len() - own.len())
+            .collect();
+        (Self { neighbours, at_rest, most: self.most }, cells, ring)
     }
 
     /// `(I + ξ L) x`
     fn apply<S: Scalar>(&self, drag: S, x: &[S]) -> Vec<S> {
-        let row = |(cell, own): (&Vec<u32>, &S)| {
-            let sum = cell.iter().fold(S::constant(0.0), |sum, &j| sum + (*own - x[j as usize]));
+        let row = |((cell, &at_rest), own): ((&Vec<u32>, &usize), &S)| {
+            let sum = cell.iter().fold(*own * at_rest as f64, |sum, &j| sum + (*own - x[j as usize]));
             *own + drag * sum
         };
-        self.neighbours.iter().zip(x).map(row).collect()
+        self.neighbours.iter().zip(&self.at_rest).zip(x).map(row).collect()
     }
 
     /// The solution of `(I + ξ L) x = f` by Chebyshev iteration on the interval that holds all eigenvalues.
@@ -137,6 +194,11 @@ impl Graph {
         }
         x
     }
+}
+
+/// The largest size among numbers.
+fn largest(all: &[f64]) -> f64 {
+    all.iter().fold(0.0, |largest: f64, one| largest.max(one.abs()))
 }
 
 /// The catalogue's entry.

@@ -4,7 +4,6 @@ use super::no_data;
 use crate::colour::{ColourScale, Palette};
 use crate::colour_bar::ColourBar;
 use crate::map::{GREY, HATCH_STYLE, Legend, MAP_WIDTH, Map, hatch};
-use crate::numbers::{tick_labels, ticks};
 use crate::svg::PathData;
 use crate::units::Units;
 use crate::view::{CellStatus, FrameView};
@@ -104,9 +103,5 @@ pub(super) fn draw_cells(map: &mut Map, frame: &FrameView, (scalar, colours): (&
 }
 
 fn colour_bar(legend: &mut Legend, colours: &ColourScale, label: &str) {
-    let positions = ticks(colours.limits(), 5);
-    let labels = tick_labels(&positions);
-    let ticks = positions.into_iter().zip(labels).collect();
-    let bar = ColourBar { ends: BAR, top: legend.top + 9.0, ticks, label };
-    bar.draw(&mut legend.svg, colours);
+    ColourBar::linear(BAR, legend.top + 9.0, colours, label).draw(&mut legend.svg, colours);
 }

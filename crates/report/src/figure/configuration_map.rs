@@ -6,7 +6,6 @@ use crate::arrows::{ArrowScale, Arrows, ReferenceMark};
 use crate::colour::{ColourScale, INK};
 use crate::colour_bar::ColourBar;
 use crate::map::{MAP_WIDTH, Map};
-use crate::numbers::{tick_labels, ticks};
 use crate::units::Units;
 use crate::view::FrameView;
 
@@ -47,14 +46,7 @@ pub fn configuration_map(
         let mark = ReferenceMark { unit: &unit, remark: "", colour: INK };
         legend.reference_arrow(MAP_WIDTH / 2.0, scale, &mark);
     }
-    let positions = ticks(colours.limits(), 5);
-    let labels = tick_labels(&positions);
-    let bar = ColourBar {
-        ends: [40.0, MAP_WIDTH - 40.0],
-        top: legend.top + 36.0,
-        ticks: positions.into_iter().zip(labels).collect(),
-        label: &scalar.label,
-    };
+    let bar = ColourBar::linear([40.0, MAP_WIDTH - 40.0], legend.top + 36.0, &colours, &scalar.label);
     legend.svg.raw(PALE);
     bar.draw(&mut legend.svg, &colours);
     legend.svg.raw("</g>\n");

@@ -4,7 +4,6 @@ use super::no_data;
 use crate::colour::{ColourScale, Palette, VERMILLION};
 use crate::colour_bar::ColourBar;
 use crate::map::{MAP_WIDTH, Map};
-use crate::numbers::{tick_labels, ticks};
 use crate::svg::PathData;
 use crate::units::Units;
 use crate::view::FrameView;
@@ -71,14 +70,7 @@ pub fn extrema_map(frame: &FrameView, field: &ExtremaMap<'_>, units: &Units) -> 
     map.boundary(frame);
     let mut legend = map.with_legend(54.0);
     legend.scale_bar(units);
-    let positions = ticks(colours.limits(), 5);
-    let labels = tick_labels(&positions);
-    let bar = ColourBar {
-        ends: [156.0, MAP_WIDTH - 16.0],
-        top: legend.top + 9.0,
-        ticks: positions.into_iter().zip(labels).collect(),
-        label: "field",
-    };
+    let bar = ColourBar::linear([156.0, MAP_WIDTH - 16.0], legend.top + 9.0, &colours, "field");
     bar.draw(&mut legend.svg, &colours);
     legend.svg.finish()
 }

@@ -172,7 +172,7 @@ fn assemble(title: &str, chart: &Svg, (colours, ends): (&ColourScale, [f64; 2]))
         ends: [ends[0] + 10.0, ends[1] - 10.0],
         top: TITLE_STRIP + height + 8.0,
         ticks: rise_ticks(colours.limits()[1]),
-        label: "rise of −2 log likelihood above the best fit",
+        label: "rise of −2 log likelihood above the best fit".into(),
     };
     bar.draw(&mut svg, colours);
     svg.finish()

@@ -6,7 +6,6 @@ use crate::colour::{ColourScale, INK, Palette};
 use crate::colour_bar::ColourBar;
 use crate::key::KeyEntry;
 use crate::map::{HATCH_STYLE, hatch};
-use crate::numbers::{tick_labels, ticks};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Room beneath the chart for the colour bar.
@@ -128,11 +127,12 @@ pub fn phase_map(map: &PhaseMap<'_>) -> String {
     let style = TextStyle { size: 13.0, ..TextStyle::label(Anchor::Middle) };
     svg.text([(ends[0] + ends[1]) / 2.0, 14.0], map.title, style);
     svg.nest([0.0, TITLE_STRIP], &picture);
-    let bar = ColourBar {
-        ends: [ends[0] + 10.0, ends[1] - 10.0],
-        top: TITLE_STRIP + height + 8.0,
-        ticks: bar_ticks(colours.limits(), map.scale),
-        label: map.label,
+    let (ends, top) = ([ends[0] + 10.0, ends[1] - 10.0], TITLE_STRIP + height + 8.0);
+    let bar = match map.scale {
+        AxisScale::Linear => ColourBar::linear(ends, top, &colours, map.label),
+        AxisScale::Logarithmic => {
+            ColourBar { ends, top, ticks: powers(colours.limits()), label: map.label.to_owned() }
+        }
     };
     bar.draw(&mut svg, &colours);
     svg.finish()
@@ -213,23 +213,15 @@ fn crosses(chart: &Chart, [from, to]: [[f64; 2]; 2]) -> bool {
     })
 }
 
-fn bar_ticks([low, high]: [f64; 2], scale: AxisScale) -> Vec<(f64, String)> {
-    match scale {
-        AxisScale::Linear => {
-            let positions = ticks([low, high], 5);
-            let labels = tick_labels(&positions);
-            positions.into_iter().zip(labels).collect()
-        }
-        AxisScale::Logarithmic => {
-            let leads: &[f64] = if high - low < 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
-            let powers = low.floor() as i32..=high.ceil() as i32;
-            powers
-                .flat_map(|power| leads.iter().map(move |lead| lead * 10f64.powi(power)))
-                .filter(|value| (low..=high).contains(&value.log10()))
-                .map(|value| (value.log10(), power_label(value)))
-                .collect()
-        }
-    }
+/// Ticks of a bar whose colours are spread by logarithms.
+fn powers([low, high]: [f64; 2]) -> Vec<(f64, String)> {
+    let leads: &[f64] = if high - low < 2.0 { &[1.0, 2.0, 5.0] } else { &[1.0] };
+    let powers = low.floor() as i32..=high.ceil() as i32;
+    powers
+        .flat_map(|power| leads.iter().map(move |lead| lead * 10f64.powi(power)))
+        .filter(|value| (low..=high).contains(&value.log10()))
+        .map(|value| (value.log10(), power_label(value)))
+        .collect()
 }
 
 /// Colours of the rows of a diagram, dark to light, for charts beside it: viridis without its palest end.
@@ -255,7 +247,7 @@ mod tests {
 
     #[test]
     fn a_logarithmic_bar_has_powers_of_ten() {
-        let labels = |limits| bar_ticks(limits, AxisScale::Logarithmic).into_iter().map(|(_, text)| text);
+        let labels = |limits| powers(limits).into_iter().map(|(_, text)| text);
         assert_eq!(labels([-3.0, 1.1]).collect::<Vec<_>>(), ["0.001", "0.01", "0.1", "1", "10"]);
         assert_eq!(labels([0.0, 0.8]).collect::<Vec<_>>(), ["1", "2", "5"]);
     }

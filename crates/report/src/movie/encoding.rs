@@ -15,7 +15,7 @@
 use super::{ArrowField, CellMovie, Quantity};
 use crate::colour::{ColourScale, GREEN};
 use crate::map::GREY;
-use crate::numbers::{tick_labels, ticks};
+use crate::numbers::Ticks;
 use crate::view::{CellStatus, CellView, is_finite};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -161,17 +161,16 @@ impl CellMovie {
 impl<'a> QuantityHeader<'a> {
     fn new((quantity, range): (&'a Quantity, [f64; 2])) -> Self {
         let limits = quantity.colours.limits();
-        let positions = ticks(limits, 5);
-        let labels = tick_labels(&positions);
+        let ticks = Ticks::new(limits, 5);
         Self {
             name: &quantity.name,
             unit: &quantity.unit,
-            label: quantity.label(),
+            label: ticks.axis_label(&quantity.label()),
             whole: quantity.colouring == super::Colouring::Neighbours,
             range,
             limits,
             extended: quantity.colours.extended(),
-            ticks: positions.into_iter().zip(labels).collect(),
+            ticks: ticks.labelled(),
             colours: (0..ColourScale::LEVELS).map(|level| quantity.colours.colour(level)).collect(),
         }
     }

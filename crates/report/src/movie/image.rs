@@ -5,7 +5,7 @@ use super::{CellMovie, Colouring, Quantity};
 use crate::colour::{ColourScale, GREEN, INK};
 use crate::error::ReportError;
 use crate::map::GREY;
-use crate::numbers::{nice_below, significant, tick_labels, ticks};
+use crate::numbers::{Ticks, nice_below, significant};
 use crate::view::{CellStatus, FrameView};
 use gif::{Encoder, Frame, Repeat};
 use zeno::{Command, Fill, Format, Mask, Point, Stroke, Style};
@@ -184,14 +184,14 @@ impl Canvas<'_> {
             (0..12).for_each(|y| set(x, bar + y, (level * SHADES) as u8));
         }
         let [low, high] = self.quantity.colours.limits();
-        let positions = ticks([low, high], 6);
-        for (position, label) in positions.iter().zip(tick_labels(&positions)) {
+        let ticks = Ticks::new([low, high], 6);
+        for (position, label) in ticks.labelled() {
             let x = left + ((position - low) / (high - low) * (right - left) as f64) as usize;
             (12..16).for_each(|y| set(x, bar + y, LINES));
             let start = x.saturating_sub(width(&label) / 2).min(across.saturating_sub(width(&label)));
             letters([start, bar + 18], &label, |x, y| set(x, y, LINES));
         }
-        let label = self.quantity.label();
+        let label = ticks.axis_label(&self.quantity.label());
         let start = (across.saturating_sub(width(&label))) / 2;
         letters([start, bar + 24 + LETTER], &label, |x, y| set(x, y, LINES));
     }

@@ -1,6 +1,68 @@
-// Loads each page in windows of three widths, looks at it and uses its movie.
+// Loads each page in windows of some widths and on paper, looks at it and uses its movie.
 const faults = [];
 const pause = (time) => new Promise((done) => setTimeout(done, time));
+const PAPER = 718; // A4 between its margins
+const LEAST_CONTRAST = 4.5;
+
+// What print would show: its rules apply, and those of screens do not.
+const turnToPaper = (page) => {
+  for (const sheet of page.document.styleSheets) {
+    for (const rule of [...sheet.cssRules].filter((rule) => rule.media)) {
+      rule.media.mediaText = rule.media.mediaText === "print" ? "all" : "not all";
+    }
+  }
+};
+
+const isSeen = (box) => box.width > 0 && box.height > 0;
+
+// Labels of a picture lie inside of it, and none on another.
+const lookAtPicture = (svg, fault) => {
+  const whole = svg.getBoundingClientRect();
+  if (!isSeen(whole)) return;
+  const labels = [...svg.querySelectorAll("text")].filter((text) => text.textContent.trim());
+  const boxes = labels.map((text) => text.getBoundingClientRect());
+  const name = svg.querySelector("title")?.textContent ?? "a picture";
+  boxes.forEach((box, k) => {
+    const out = Math.max(whole.left - box.left, box.right - whole.right, whole.top - box.top, box.bottom - whole.bottom);
+    if (out > 2) fault(`${name}: “${labels[k].textContent}” ends ${out.toFixed(1)} px outside`);
+    for (let other = 0; other < k; other++) {
+      const by = boxes[other];
+      const across = Math.min(box.right, by.right) - Math.max(box.left, by.left);
+      const down = Math.min(box.bottom, by.bottom) - Math.max(box.top, by.top);
+      // A box is higher than its letters.
+      if (across > 1 && down > 0.4 * Math.min(box.height, by.height)) {
+        fault(`${name}: “${labels[k].textContent}” lies on “${labels[other].textContent}”`);
+      }
+    }
+  });
+  for (const bar of svg.querySelectorAll("rect")) {
+    const box = bar.getBoundingClientRect();
+    if (isSeen(box) && Math.min(box.width, box.height) < 0.5) fault(`${name}: a bar of ${box.width.toFixed(2)} by ${box.height.toFixed(2)} px`);
+  }
+};
+
+const luminance = (colour) => {
+  const parts = colour.match(/[\d.]+/g).slice(0, 3).map((part) => part / 255);
+  const [r, g, b] = parts.map((part) => (part <= 0.04045 ? part / 12.92 : ((part + 0.055) / 1.055) ** 2.4));
+  return 0.2126 * r + 0.7152 * g + 0.0722 * b;
+};
+
+// Words stand out from what is behind them, and stay in their boxes.
+const lookAtWords = (page, fault) => {
+  for (const element of page.document.body.querySelectorAll("*")) {
+    const own = [...element.childNodes].some((node) => node.nodeType === 3 && node.textContent.trim());
+    if (!own || element.closest("svg, script, style") || !isSeen(element.getBoundingClientRect())) continue;
+    let behind = element;
+    while (behind && /^rgba\(.*, 0\)$/.test(page.getComputedStyle(behind).backgroundColor)) behind = behind.parentElement;
+    const [ink, paper] = [page.getComputedStyle(element).color, behind ? page.getComputedStyle(behind).backgroundColor : "rgb(255, 255, 255)"].map(luminance);
+    const contrast = (Math.max(ink, paper) + 0.05) / (Math.min(ink, paper) + 0.05);
+    const words = `“${element.textContent.trim().slice(0, 40)}”`;
+    if (contrast < LEAST_CONTRAST) fault(`${words} has a contrast of ${contrast.toFixed(1)}`);
+    if (element.scrollWidth > element.clientWidth + 1 && page.getComputedStyle(element).display !== "inline" && !element.closest(".scroll")) {
+      fault(`${words} is wider than its box`);
+    }
+  }
+};
 
 const use = async (page, fault) => {
   const figure = page.document.querySelector("figure.player");
@@ -39,7 +101,7 @@ const use = async (page, fault) => {
   const point = (kind) => canvas.dispatchEvent(new page.PointerEvent(kind, { clientX, clientY, bubbles: true, pointerType: "mouse" }));
   point("pointermove");
   const told = part("reading").textContent;
-  expect(/cell \d+.*: .*area [\d.]+ µm²/.test(told), `pointing at a cell tells “${told}”`);
+  expect(/cell \d+.*: .*area [\d.]+ \S+²/.test(told), `pointing at a cell tells “${told}”`);
   point("click");
   point("pointerleave");
   expect(part("reading").textContent.startsWith(told.split(/[:,]/)[0]), `${told} is not followed: ${part("reading").textContent}`);
@@ -62,7 +124,7 @@ const use = async (page, fault) => {
   expect(canvas.getBoundingClientRect().right <= page.innerWidth, "the picture is wider than the window");
 };
 
-const look = async (name, width) => {
+const look = async (name, width, onPaper) => {
   const frame = document.createElement("iframe");
   frame.style.cssText = `width: ${width}px; height: 900px; border: 0`;
   const loaded = new Promise((done) => (frame.onload = done));
@@ -70,12 +132,15 @@ const look = async (name, width) => {
   document.body.append(frame);
   await loaded;
   await pause(50);
-  const page = frame.contentWindow, fault = (what) => faults.push(`${name} at ${width}: ${what}`);
+  const page = frame.contentWindow, fault = (what) => faults.push(`${name} ${onPaper ? "on paper" : `at ${width}`}: ${what}`);
+  if (onPaper) turnToPaper(page);
   const wide = page.document.documentElement.scrollWidth;
   if (page.innerWidth !== width) fault(`the window is ${page.innerWidth} wide`);
   if (wide > page.innerWidth) fault(`the page is ${wide} wide`);
+  page.document.querySelectorAll("svg").forEach((svg) => lookAtPicture(svg, fault));
+  lookAtWords(page, fault);
   try {
-    await use(page, fault);
+    if (!onPaper) await use(page, fault);
   } catch (error) {
     fault(String(error));
   }
@@ -84,15 +149,12 @@ const look = async (name, width) => {
 };
 
 (async () => {
-  let windows = 0;
   for (const name of PAGES) {
-    for (const width of WIDTHS) {
-      await look(name, width);
-      windows += 1;
-    }
+    for (const width of WIDTHS) await look(name, width, false);
+    await look(name, PAPER, true);
   }
   const told = document.createElement("pre");
   told.id = "faults";
-  told.textContent = faults.length ? faults.join("\n") : `${windows} windows, none with a fault`;
+  told.textContent = faults.length ? faults.join("\n") : `${PAGES.length} pages without a fault`;
   document.body.append(told);
 })();

@@ -1,67 +1,14 @@
-//! Pages in a browser, where there is one: nothing is wider than the window, no script fails, and movies play.
+//! Pages of samples in a browser.
 
+use crate::chromium::assert_sound;
 use crate::{discover_sample, movies, sample};
 use std::error::Error;
-use std::path::Path;
-use std::process::Command;
 use voronudge_report::page::Figure;
 use voronudge_report::{DiscoverFigures, DiscoverPage, FrameView, InferPage, SimulatePage, Uncertainty};
 
-/// Loads pages in frames of three widths and uses them; what is wrong is put into the element `faults`.
-const HARNESS: &str = include_str!("browser.js");
-/// Catches what fails in a page.
-const WATCH: &str = "<head><script>window.faults = []; addEventListener(\"error\", (event) => faults.push(event.message));</script>";
-
-/// The names under which Chromium may be installed.
-const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
-
-/// Light and dark, and the widths of windows.
-const SCHEMES: [(&str, &[u32]); 2] = [
-    ("--blink-settings=preferredColorScheme=1", &[400, 800, 1400]),
-    ("--blink-settings=preferredColorScheme=0", &[400]),
-];
-
 #[test]
 fn pages_fit_their_window_and_movies_play() {
-    let runs =
-        |name: &&&str| Command::new(name).arg("--version").output().is_ok_and(|own| own.status.success());
-    let Some(browser) = BROWSERS.iter().find(runs) else {
-        eprintln!("skipped: there is no Chromium");
-        return;
-    };
-    let folder = tempfile::tempdir().unwrap();
-    let pages = pages().unwrap();
-    for (name, html) in &pages {
-        std::fs::write(folder.path().join(name), html.replacen("<head>", WATCH, 1)).unwrap();
-    }
-    let names: Vec<&str> = pages.iter().map(|(name, _)| *name).collect();
-    let harness = folder.path().join("harness.html");
-    for (scheme, widths) in SCHEMES {
-        let script =
-            HARNESS.replace("PAGES", &format!("{names:?}")).replace("WIDTHS", &format!("{widths:?}"));
-        std::fs::write(&harness, format!("<!DOCTYPE html><body><script>{script}</script></body>")).unwrap();
-        let found = found(browser, &harness, scheme, &folder.path().join("profile")).unwrap();
-        assert_eq!(found, format!("{} windows, none with a fault", widths.len() * pages.len()), "{scheme}");
-    }
-}
-
-/// What the harness says in the end.
-fn found(browser: &str, harness: &Path, scheme: &str, profile: &Path) -> std::io::Result<String> {
-    let output = Command::new(browser)
-        .args([
-            "--headless",
-            "--no-sandbox",
-            "--disable-gpu",
-            "--no-first-run",
-            "--disable-background-networking",
-        ])
-        .args(["--allow-file-access-from-files", "--virtual-time-budget=60000", "--dump-dom", scheme])
-        .arg(format!("--user-data-dir={}", profile.display()))
-        .arg(format!("file://{}", harness.display()))
-        .output()?;
-    let dom = String::from_utf8_lossy(&output.stdout).into_owned();
-    let told = dom.split_once("<pre id=\"faults\">").and_then(|(_, after)| after.split_once("</pre>"));
-    Ok(told.map_or_else(|| format!("no answer: {dom}"), |(told, _)| told.to_owned()))
+    assert_sound(&pages().unwrap()).unwrap();
 }
 
 /// Pages of all kinds: a movie of a fit, one frame, unknown numbers, a search, a simulation.

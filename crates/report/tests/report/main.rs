@@ -1,6 +1,7 @@
 //! Figures, pages and report files from synthetic data.
 
 mod browser;
+mod chromium;
 mod discover_figures;
 mod discover_pages;
 mod discover_sample;

@@ -2,7 +2,7 @@
 
 use crate::arguments::cell_frame;
 use crate::problem::Problem;
-use voronudge_geometry::{Vector, areas, perimeters};
+use voronudge_geometry::Vector;
 use voronudge_infer::Inference;
 use voronudge_io::{CellFrame, CellValues};
 
@@ -20,21 +20,15 @@ fn frame(prepared: &Problem, result: &Inference, index: usize) -> CellFrame {
     let (detections, chosen): (Vec<usize>, Vec<(usize, usize)>) = (of_detections.into_iter().enumerate())
         .filter_map(|(detection, own)| Some((detection, (own?, snapshot.cells[detection]))))
         .unzip();
-    let numbers = |all: Vec<f64>| CellValues::Numbers(chosen.iter().map(|&(own, _)| all[own]).collect());
     let vectors = |all: Vec<Vector<f64>>| {
         CellValues::Vectors(detections.iter().map(|&detection| all[detection]).collect())
     };
-    let mut written = cell_frame(prepared.frames[index], (&fitted.tessellation, &positions), &chosen);
     let nudged = prepared.nudged_positions(result, index);
     let nudges = nudged.iter().zip(&snapshot.positions).map(|(nudged, measured)| nudged - measured).collect();
-    written.values = vec![
-        ("area", numbers(areas(&fitted.tessellation, &positions))),
-        ("perimeter", numbers(perimeters(&fitted.tessellation, &positions))),
-        ("nudge", vectors(nudges)),
-        ("predicted_velocity", vectors(prepared.predicted(result, index))),
-    ];
+    let mut values =
+        vec![("nudge", vectors(nudges)), ("predicted_velocity", vectors(prepared.predicted(result, index)))];
     if prepared.velocities.flow().is_none() {
-        written.values.push(("residual_velocity", vectors(prepared.residual_data(result, index))));
+        values.push(("residual_velocity", vectors(prepared.residual_data(result, index))));
     }
-    written
+    cell_frame(prepared.frames[index], (&fitted.tessellation, &positions), &chosen, values)
 }
