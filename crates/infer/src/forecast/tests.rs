@@ -158,6 +158,7 @@ fn a_model_without_the_polarity_does_not_make_such_cells() {
 
 /// Cells that repel ever more strongly the larger they are do not stay together, and that is said.
 #[test]
+#[ignore = "slow"]
 fn a_tissue_without_a_state_of_rest_flies_apart() {
     let filmed = Filmed { size: [64, 8], step: 0.1, error: 0.0, seed: 5 };
     let (movie, [twist, ..]) = filmed.movie_of_driven(Driving::default());

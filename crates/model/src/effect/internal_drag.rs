@@ -1,8 +1,10 @@
 //! Friction between neighbouring cells.
 
+mod inverse_rows;
+
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{BlockMatrix, Exactness, Flow, FlowResponse, Linearisation, Parity, Stage, assemble};
-use std::collections::HashMap;
+use inverse_rows::inverse_rows;
 use voronudge_geometry::{Scalar, Vector};
 
 /// Friction between neighbours, in proportion to the difference of their velocities: `(I + ξ L) v = F` with the graph Laplacian
@@ -50,19 +52,13 @@ impl FlowResponse for InternalDrag {
     fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
         let Linearisation { flow, jacobian } = at;
         let graph = Graph::new(flow);
-        let rows = jacobian.rows();
-        let first = (0..rows).find(|&cell| flow.moves(cell)).unwrap_or(0);
-        let usual = graph.inverse_row(coefficient, first, 1).radius;
-        assemble(rows, |cell, row| {
+        let inverse = inverse_rows(&graph, coefficient);
+        assemble(jacobian.rows(), |cell, row| {
             if !flow.moves(cell) {
                 return;
             }
-            let InverseRow { cells, weights, .. } = graph.inverse_row(coefficient, cell, usual);
-            let largest = largest(&weights);
-            for (&j, &weight) in cells.iter().zip(&weights) {
-                if weight.abs() > TRUNCATION * largest {
-                    row.add_scaled_row(weight, jacobian, j);
-                }
+            for &(other, weight) in &inverse[cell] {
+                row.add_scaled_row(weight, jacobian, other as usize);
             }
             row.add_scaled_row(-1.0, jacobian, cell);
         })
@@ -76,9 +72,6 @@ impl FlowResponse for InternalDrag {
 /// Entries of the inverse that are left out of the Jacobian, relative to the largest of the row.
 const TRUNCATION: f64 = 1e-7;
 
-/// Entries of the inverse at which a part of the tissue ends that stands for all of it, in the same unit.
-const NEGLIGIBLE: f64 = 1e-9;
-
 /// The reduction of the error at which iteration ends. It is far below rounding, because derivatives converge later.
 const REDUCTION: f64 = 1e-20;
 
@@ -88,17 +81,7 @@ const MOST_ITERATIONS: usize = 20_000;
 /// Who has friction with whom.
 struct Graph {
     neighbours: Vec<Vec<u32>>,
-    /// Numbers of neighbours that are at rest.
-    at_rest: Vec<usize>,
     most: usize,
-}
-
-/// A row of the inverse of `I + ξ L`, which is symmetric: the response to a force on one cell.
-struct InverseRow {
-    /// Cells up to a distance in steps from neighbour to neighbour, by distance.
-    cells: Vec<usize>,
-    weights: Vec<f64>,
-    radius: usize,
 }
 
 impl Graph {
@@ -109,73 +92,24 @@ impl Graph {
         };
         let neighbours: Vec<Vec<u32>> = (0..flow.velocities.len()).map(of).collect();
         let most = neighbours.iter().map(Vec::len).max().unwrap_or(0);
-        Self { at_rest: vec![0; neighbours.len()], neighbours, most }
-    }
-
-    /// A row, from cells within a radius, larger than the given one where entries at its end are not negligible.
-    fn inverse_row(&self, drag: f64, cell: usize, mut radius: usize) -> InverseRow {
-        loop {
-            let (part, cells, last_ring) = self.around(cell, radius);
-            let mut force = vec![0.0; cells.len()];
-            force[0] = 1.0;
-            let weights = part.solve(drag, &force);
-            let largest = largest(&weights);
-            if weights[last_ring..].iter().any(|weight| weight.abs() > NEGLIGIBLE * largest) {
-                radius += 1;
-            } else {
-                return InverseRow { cells, weights, radius };
-            }
-        }
-    }
-
-    /// The cells up to a distance from one, by distance, what the graph is among them while all others are at rest, and where the last distance
-    /// begins.
-    fn around(&self, centre: usize, radius: usize) -> (Self, Vec<usize>, usize) {
-        let mut places = HashMap::from([(centre, 0)]);
-        let (mut cells, mut ring) = (vec![centre], 0);
-        for _ in 0..radius {
-            let begin = std::mem::replace(&mut ring, cells.len());
-            for k in begin..ring {
-                for &next in &self.neighbours[cells[k]] {
-                    places.entry(next as usize).or_insert_with(|| {
-                        cells.push(next as usize);
-                        cells.len() as u32 - 1
-                    });
-                }
-            }
-        }
-        let among = |cell: &usize| -> Vec<u32> {
-            self.neighbours[*cell].iter().filter_map(|next| places.get(&(*next as usize)).copied()).collect()
-        };
-        let neighbours: Vec<Vec<u32>> = cells.iter().map(among).collect();
-        let at_rest = cells
-            .iter()
-            .zip(&neighbours)
-            .map(|(&cell, own)| self.neighbours[cell].len() - own.len())
-            .collect();
-        (Self { neighbours, at_rest, most: self.most }, cells, ring)
+        Self { neighbours, most }
     }
 
     /// `(I + ξ L) x`
     fn apply<S: Scalar>(&self, drag: S, x: &[S]) -> Vec<S> {
-        let row = |((cell, &at_rest), own): ((&Vec<u32>, &usize), &S)| {
-            let sum = cell.iter().fold(*own * at_rest as f64, |sum, &j| sum + (*own - x[j as usize]));
+        let row = |(cell, own): (&Vec<u32>, &S)| {
+            let sum = cell.iter().fold(S::constant(0.0), |sum, &j| sum + (*own - x[j as usize]));
             *own + drag * sum
         };
-        self.neighbours.iter().zip(&self.at_rest).zip(x).map(row).collect()
+        self.neighbours.iter().zip(x).map(row).collect()
     }
 
     /// The solution of `(I + ξ L) x = f` by Chebyshev iteration on the interval that holds all eigenvalues.
     fn solve<S: Scalar>(&self, drag: S, force: &[S]) -> Vec<S> {
-        let end = 1.0 + 2.0 * drag.real() * self.most as f64;
-        let (low, high) = (end.min(1.0), end.max(1.0));
-        if low <= 0.0 {
+        let Some(Chebyshev { middle, half, convergence }) = Chebyshev::new(drag.real(), self.most) else {
             return vec![S::constant(f64::NAN); force.len()];
-        }
-        let middle = 0.5 * (high + low);
-        let half = (0.5 * (high - low)).max(1e-3 * middle);
+        };
         let ratio = middle / half;
-        let convergence = ratio - (ratio * ratio - 1.0).max(0.0).sqrt();
         let steps = ((REDUCTION.ln() / convergence.ln()).ceil() as usize + 4).min(MOST_ITERATIONS);
         let mut x = force.to_vec();
         let residual =
@@ -196,9 +130,26 @@ impl Graph {
     }
 }
 
-/// The largest size among numbers.
-fn largest(all: &[f64]) -> f64 {
-    all.iter().fold(0.0, |largest: f64, one| largest.max(one.abs()))
+/// The interval that holds all eigenvalues of `I + ξ L`, and by how much a step of the iteration reduces errors.
+struct Chebyshev {
+    middle: f64,
+    half: f64,
+    convergence: f64,
+}
+
+impl Chebyshev {
+    /// For a graph with at most so many neighbours; `None` where the interval holds zero.
+    fn new(drag: f64, most: usize) -> Option<Self> {
+        let end = 1.0 + 2.0 * drag * most as f64;
+        let (low, high) = (end.min(1.0), end.max(1.0));
+        if low <= 0.0 {
+            return None;
+        }
+        let middle = 0.5 * (high + low);
+        let half = (0.5 * (high - low)).max(1e-3 * middle);
+        let ratio = middle / half;
+        Some(Self { middle, half, convergence: ratio - (ratio * ratio - 1.0).max(0.0).sqrt() })
+    }
 }
 
 /// The catalogue's entry.
