@@ -101,7 +101,7 @@ const use = async (page, fault) => {
   const point = (kind) => canvas.dispatchEvent(new page.PointerEvent(kind, { clientX, clientY, bubbles: true, pointerType: "mouse" }));
   point("pointermove");
   const told = part("reading").textContent;
-  expect(/cell \d+.*: .*area [\d.]+ \S+²/.test(told), `pointing at a cell tells “${told}”`);
+  expect(/cell \d+.*: .*area [\d.]+ AREA/.test(told), `pointing at a cell tells “${told}”`);
   point("click");
   point("pointerleave");
   expect(part("reading").textContent.startsWith(told.split(/[:,]/)[0]), `${told} is not followed: ${part("reading").textContent}`);
@@ -149,12 +149,15 @@ const look = async (name, width, onPaper) => {
 };
 
 (async () => {
+  let windows = 0;
   for (const name of PAGES) {
-    for (const width of WIDTHS) await look(name, width, false);
-    await look(name, PAPER, true);
+    for (const [width, onPaper] of [...WIDTHS.map((width) => [width, false]), [PAPER, true]]) {
+      await look(name, width, onPaper);
+      windows += 1;
+    }
   }
   const told = document.createElement("pre");
   told.id = "faults";
-  told.textContent = faults.length ? faults.join("\n") : `${PAGES.length} pages without a fault`;
+  told.textContent = faults.length ? faults.join("\n") : `${windows} windows, none with a fault`;
   document.body.append(told);
 })();

@@ -8,7 +8,7 @@ use voronudge_report::{DiscoverFigures, DiscoverPage, FrameView, InferPage, Simu
 
 #[test]
 fn pages_fit_their_window_and_movies_play() {
-    assert_sound(&pages().unwrap()).unwrap();
+    assert_sound(&pages().unwrap(), "µm²").unwrap();
 }
 
 /// Pages of all kinds: a movie of a fit, one frame, unknown numbers, a search, a simulation.

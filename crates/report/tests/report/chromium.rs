@@ -17,8 +17,8 @@ const SCHEMES: [(&str, &[u32]); 2] = [
     ("--blink-settings=preferredColorScheme=0", &[400, 1400]),
 ];
 
-/// Looks at pages, each of a name and its text.
-pub fn assert_sound<N: AsRef<str>>(pages: &[(N, String)]) -> std::io::Result<()> {
+/// Looks at pages, each of a name and its text; the areas of cells in their movies have this unit, a pattern.
+pub fn assert_sound<N: AsRef<str>>(pages: &[(N, String)], area: &str) -> std::io::Result<()> {
     let runs =
         |name: &&&str| Command::new(name).arg("--version").output().is_ok_and(|own| own.status.success());
     let Some(browser) = BROWSERS.iter().find(runs) else {
@@ -32,11 +32,15 @@ pub fn assert_sound<N: AsRef<str>>(pages: &[(N, String)]) -> std::io::Result<()>
     let names: Vec<&str> = pages.iter().map(|(name, _)| name.as_ref()).collect();
     let harness = folder.path().join("harness.html");
     for (scheme, widths) in SCHEMES {
-        let script =
-            HARNESS.replace("PAGES", &format!("{names:?}")).replace("WIDTHS", &format!("{widths:?}"));
+        let script = HARNESS
+            .replace("PAGES", &format!("{names:?}"))
+            .replace("WIDTHS", &format!("{widths:?}"))
+            .replace("AREA", area);
         std::fs::write(&harness, format!("<!DOCTYPE html><body><script>{script}</script></body>"))?;
         let found = found(browser, &harness, scheme, &folder.path().join("profile"))?;
-        assert_eq!(found, format!("{} pages without a fault", pages.len()), "{scheme}");
+        // Paper is one more.
+        let windows = (widths.len() + 1) * pages.len();
+        assert_eq!(found, format!("{windows} windows, none with a fault"), "{scheme}");
     }
     Ok(())
 }
