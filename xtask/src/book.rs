@@ -46,7 +46,9 @@ fn build(root: &Path, source: &Path, site: &Path, references: &[Reference]) -> O
     let mut pages = Vec::new();
     within(site, &mut pages)?;
     for Reference { made, folder, .. } in references {
-        copy(made, &site.join(folder))?;
+        let mut files = Vec::new();
+        within(made, &mut files)?;
+        copy(&files, made, &site.join(folder))?;
     }
     let dead = dead_links(site, &pages)?;
     if dead.is_empty() { Ok(()) } else { Err(dead.join("\n").into()) }
@@ -82,11 +84,7 @@ fn gather(root: &Path, source: &Path, references: &[Reference]) -> Outcome {
     files.extend(pages.links_of(Path::new(CONTENTS)).map(|link| root.join(link.page)));
     let listed: Vec<PathBuf> = pages.links_of(Path::new(CONTENTS)).map(|link| link.page).collect();
     files.extend(listed.iter().flat_map(|page| pages.links_of(page)).map(|link| root.join(link.page)));
-    for file in files.iter().filter(|file| file.is_file()) {
-        let place = source.join(file.strip_prefix(root)?);
-        fs::create_dir_all(place.parent().unwrap_or(source))?;
-        fs::copy(file, place)?;
-    }
+    copy(files.iter().filter(|file| file.is_file()), root, source)?;
     // Paths of the table of contents are those from its folder.
     let mut contents = contents.replace("](", "](docs/").replace("](docs/../", "](");
     if !references.is_empty() {
@@ -113,10 +111,8 @@ fn within(folder: &Path, files: &mut Vec<PathBuf>) -> std::io::Result<()> {
     Ok(())
 }
 
-/// Copies a folder with all that is in it.
-fn copy(from: &Path, to: &Path) -> Outcome {
-    let mut files = Vec::new();
-    within(from, &mut files)?;
+/// Copies files of one folder to the same places in another.
+fn copy<'a>(files: impl IntoIterator<Item = &'a PathBuf>, from: &Path, to: &Path) -> Outcome {
     for file in files {
         let place = to.join(file.strip_prefix(from)?);
         fs::create_dir_all(place.parent().unwrap_or(to))?;
