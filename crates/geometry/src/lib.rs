@@ -73,7 +73,7 @@ pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
 pub use plane::{
     Corner, Outer, Vector, circumcentre, cross, dot, quarter_turn, side_direction, side_direction_slope,
 };
-pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons};
+pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons, shape_tensors};
 pub use raster::{Edge, smooth};
 pub use region::Region;
 pub use scalar::{Arithmetic, Scalar, lift};

@@ -140,6 +140,18 @@ impl<S: Arithmetic> CellPolygon<S> {
             .map(|((corner, previous), &direction)| dot(corner.centre - previous.centre, direction))
     }
 
+    /// Traceless shape tensor `Q = Σ ℓ t⊗t / P − ½` of the sides, of lengths ℓ along unit vectors t, as `(Q_xx, Q_xy)`: nought of a regular polygon; its
+    /// modulus, ½ at most, tells how long the cell is, and half its angle along which axis.
+    pub fn shape_tensor(&self) -> [S; 2] {
+        let mut sum = [S::constant(0.0); 2];
+        for (length, t) in self.side_lengths().zip(&self.directions) {
+            sum[0] += length * (t.x * t.x - t.y * t.y) * 0.5;
+            sum[1] += length * t.x * t.y;
+        }
+        let scale = self.shape.perimeter.inverse();
+        sum.map(|entry| entry * scale)
+    }
+
     #[inline(always)]
     fn following(&self, m: usize) -> usize {
         if m + 1 == self.len() { 0 } else { m + 1 }
@@ -164,12 +176,13 @@ impl<S: Arithmetic> CellPolygon<S> {
     }
 }
 
-/// A quantity of each closed cell's polygon; NaN for cells on the hull of an open field.
-fn per_cell(
+/// A quantity of each closed cell's polygon, and what cells on the hull of an open field have instead.
+fn per_cell<T: Copy + Send + Sync>(
     tessellation: &Tessellation,
     positions: &[Vector<f64>],
-    quantity: impl Fn(&CellPolygon<f64>) -> f64 + Sync,
-) -> Vec<f64> {
+    open: T,
+    quantity: impl Fn(&CellPolygon<f64>) -> T + Sync,
+) -> Vec<T> {
     (0..tessellation.len())
         .into_par_iter()
         .with_min_len(512)
@@ -178,7 +191,7 @@ fn per_cell(
                 polygon.fill(tessellation, positions, cell);
                 quantity(polygon)
             } else {
-                f64::NAN
+                open
             }
         })
         .collect()
@@ -186,12 +199,17 @@ fn per_cell(
 
 /// Area of every cell; NaN for cells on the hull of an open field.
 pub fn areas(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
-    per_cell(tessellation, positions, |polygon| polygon.shape().area)
+    per_cell(tessellation, positions, f64::NAN, |polygon| polygon.shape().area)
 }
 
 /// Perimeter of every cell; NaN for cells on the hull of an open field.
 pub fn perimeters(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<f64> {
-    per_cell(tessellation, positions, |polygon| polygon.shape().perimeter)
+    per_cell(tessellation, positions, f64::NAN, |polygon| polygon.shape().perimeter)
+}
+
+/// [Shape tensor](CellPolygon::shape_tensor) of every cell; NaN for cells on the hull of an open field.
+pub fn shape_tensors(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Vec<[f64; 2]> {
+    per_cell(tessellation, positions, [f64::NAN; 2], CellPolygon::shape_tensor)
 }
 
 /// Vertices of every cell's polygon, counter-clockwise, around its centre; none of an open one.

@@ -62,7 +62,7 @@ pub use parameters::{PARAMETER_NAMES, Parameters, parameter_derivatives};
 pub use products::{jvp, vjp};
 pub use response::{Exactness, Flow, FlowResponse, Linearisation, Response, Stage};
 pub use row_assembly::{RowAssembly, assemble};
-pub use stress::stress;
+pub use stress::{cell_stresses, stress};
 pub use structure::{Evaluation, Model, Structure, WeightedResponse, WeightedTerm, base_terms};
 pub use term::{
     Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, RingTerm, ShapeTerm, Term,

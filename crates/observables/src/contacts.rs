@@ -5,7 +5,7 @@ use crate::motion::at_lags;
 use crate::{Curve, Frame, Plan, Quantity, Recording};
 
 /// The pairs of cells of a frame that are in contact, both of which count, by the numbers of their tracks, the smaller first.
-fn contacts(frame: &Frame) -> Vec<[usize; 2]> {
+pub(crate) fn contacts(frame: &Frame) -> Vec<[usize; 2]> {
     let mut all: Vec<[usize; 2]> = frame
         .in_view()
         .flat_map(|cell| {
@@ -22,7 +22,7 @@ fn contacts(frame: &Frame) -> Vec<[usize; 2]> {
 }
 
 /// Whether both cells of a contact count in a frame.
-fn seen(frame: &Frame, pair: &[usize; 2]) -> bool {
+pub(crate) fn seen(frame: &Frame, pair: &[usize; 2]) -> bool {
     pair.iter().all(|track| frame.place(*track).is_some())
 }
 

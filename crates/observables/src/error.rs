@@ -34,6 +34,16 @@ pub enum Error {
         /// What the tessellation said.
         source: voronudge_geometry::Error,
     },
+    /// The director cannot be smoothed so.
+    #[error(
+        "the director is to be smoothed over {width} spacings, but the width must be positive and {largest:.3} at most"
+    )]
+    SmoothingWidth {
+        /// Standard deviation of the Gaussian, in mean spacings.
+        width: f64,
+        /// A quarter of a side of the periodic box.
+        largest: f64,
+    },
     /// Nothing can be said of any cell.
     #[error("no cell has all its neighbours in view")]
     NothingInView,
@@ -47,6 +57,9 @@ impl Error {
             Self::NothingInView => Some(
                 "a cell counts if it and all its neighbours lie well within the field of view; take a larger field, or state field_of_view in dataset.toml",
             ),
+            Self::SmoothingWidth { .. } => {
+                Some("1.5 spacings smooth over the next neighbours; small boxes need less")
+            }
             Self::Cells { .. } | Self::Frames { .. } => None,
         }
     }

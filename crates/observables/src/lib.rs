@@ -2,15 +2,18 @@
 //!
 //! Measurements of one state are functions of positions and tessellation. A [`Recording`] is cells followed over frames, in a periodic box or an open field of
 //! view, with gaps in their tracks, and [`observe`] measures all that can be measured on one, with standard errors. A simulated movie in
-//! which the same cells are seen as in a measured one is measured by the same [`Plan`], so that the two can be compared point by point.
+//! which the same cells are seen as in a measured one is measured by the same [`Plan`], so that the two can be compared point by point. [`nematic`] asks of the shapes of
+//! cells as a nematic: order and half-integer defects, and what cells do around these; [`exchanges`] of T1 transitions one by one.
 
 mod block_average;
 mod contacts;
 mod curve;
 mod displacement;
 mod error;
+mod exchanges;
 mod hexatic;
 mod motion;
+mod nematic;
 mod observe;
 mod pairs;
 mod plan;
@@ -30,7 +33,9 @@ pub use block_average::BlockAverage;
 pub use curve::Curve;
 pub use displacement::mean_square_displacement;
 pub use error::Error;
+pub use exchanges::{Exchange, exchange_statistics, exchanges};
 pub use hexatic::{Hexatic, hexatic, hexatic_among};
+pub use nematic::{Around, Defect, Nematic, SQUARES, Stresses, nematic};
 pub use observe::{correlations, observe};
 pub use plan::Plan;
 pub use quantity::{Dimensions, Quantity};

@@ -6,10 +6,10 @@ use crate::{Curve, Frame, Plan, Quantity, Recording};
 use rayon::prelude::*;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
-use voronudge_geometry::{Domain, Vector, areas};
+use voronudge_geometry::{Domain, Vector, areas, shape_tensors};
 
 /// Cells by where they are, with those images that come near the box.
-type Places = RTree<GeomWithData<[f64; 2], usize>>;
+pub(crate) type Places = RTree<GeomWithData<[f64; 2], usize>>;
 
 /// Correlations of velocities, of hexatic order and of places.
 pub(crate) fn correlations(recording: &Recording, plan: &Plan) -> [Curve; 3] {
@@ -40,14 +40,7 @@ fn of_frame(frame: &Frame, plan: &Plan) -> [Sums; 3] {
             let area = std::f64::consts::PI * bin * bin * (2 * ring + 1) as f64;
             density.add(ring, part, 0.0, area * per_area);
         }
-        for found in places.locate_within_distance([r.x, r.y], reach * reach) {
-            let [x, y] = *found.geom();
-            let distance = (Vector::new(x, y) - r).norm();
-            let ring = (distance / bin) as usize;
-            if distance <= 0.0 || ring >= plan.bins {
-                continue;
-            }
-            let other = found.data;
+        for (other, ring) in others(&places, r, plan) {
             // A cell that never counts goes with the one that does.
             let its_part = if frame.counted[other] { plan.parts[frame.tracks[other]] } else { part };
             let parts = [part, its_part];
@@ -68,6 +61,42 @@ fn of_frame(frame: &Frame, plan: &Plan) -> [Sums; 3] {
     [flow, order, density]
 }
 
+/// The cells around a place but at none, and in which bin of distances each is.
+fn others<'a>(places: &'a Places, r: Vector<f64>, plan: &Plan) -> impl Iterator<Item = (usize, usize)> + 'a {
+    let (bin, bins) = (plan.bin(), plan.bins);
+    let reach = bins as f64 * bin;
+    places.locate_within_distance([r.x, r.y], reach * reach).filter_map(move |found| {
+        let [x, y] = *found.geom();
+        let distance = (Vector::new(x, y) - r).norm();
+        let ring = (distance / bin) as usize;
+        (distance > 0.0 && ring < bins).then_some((found.data, ring))
+    })
+}
+
+/// How alike the shapes of two cells are, by their distance: `⟨Q_i : Q_j⟩` over the mean square of both.
+pub(crate) fn alike(recording: &Recording, plan: &Plan) -> Curve {
+    let of_frame = |number: &usize| {
+        let frame = &recording.frames()[*number];
+        let mut sums = Sums::new(plan.bins);
+        let shapes = shape_tensors(&frame.tessellation, &frame.positions);
+        let places = places(frame, plan.bins as f64 * plan.bin());
+        let part = |cell: usize| plan.parts[frame.tracks[cell]];
+        for cell in frame.in_view() {
+            for (other, ring) in others(&places, wrapped(frame, cell), plan) {
+                if frame.counted[other] {
+                    let [own, its] = [cell, other].map(|cell| Vector::from(shapes[cell]));
+                    let squares = 0.5 * (own.norm_squared() + its.norm_squared());
+                    sums.add_pair(ring, [part(cell), part(other)], own.dot(&its), squares);
+                }
+            }
+        }
+        sums
+    };
+    let all: Vec<Sums> = plan.stills.par_iter().map(of_frame).collect();
+    let total = all.iter().fold(Sums::new(plan.bins), Sums::merge);
+    total.curve(Quantity::NematicCorrelation, plan.distances())
+}
+
 /// Cells per area: one over the mean area of those that count.
 fn density_of(frame: &Frame) -> f64 {
     let areas = areas(&frame.tessellation, &frame.positions);
@@ -76,11 +105,13 @@ fn density_of(frame: &Frame) -> f64 {
     count / sum
 }
 
-fn wrapped(frame: &Frame, cell: usize) -> Vector<f64> {
+/// Where a cell is, in the box.
+pub(crate) fn wrapped(frame: &Frame, cell: usize) -> Vector<f64> {
     frame.tessellation.domain().wrap(frame.positions[cell])
 }
 
-fn places(frame: &Frame, reach: f64) -> Places {
+/// The cells of a frame, with their images within reach of the box.
+pub(crate) fn places(frame: &Frame, reach: f64) -> Places {
     let mut all = Vec::with_capacity(frame.tracks.len());
     for cell in 0..frame.tracks.len() {
         let r = wrapped(frame, cell);

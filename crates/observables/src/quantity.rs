@@ -39,6 +39,16 @@ pub enum Quantity {
     TransitionRate,
     /// Share of the contacts that are contacts still, or again, a lag later.
     ContactSurvival,
+    /// Share of cells that have kept all their neighbours for a lag.
+    ExchangeWaiting,
+    /// T1 transitions at a distance from another one between the same frames, over as many as if they knew nothing of each other.
+    ExchangeCorrelation,
+    /// Density of the angle φ from x of the contacts that are made in T1 transitions.
+    ExchangeDirection,
+    /// Mean of `cos 2φ`.
+    ExchangeAlignment,
+    /// Mean angle by which the four cells turn anticlockwise.
+    ExchangeTurn,
     /// Mean of `P/√A`.
     MeanShapeIndex,
     /// Density of the distribution of `P/√A`.
@@ -55,6 +65,22 @@ pub enum Quantity {
     HexaticCorrelation,
     /// Density of cells at a distance from a cell, over the mean density.
     PairCorrelation,
+    /// `2⟨|Q_i|⟩` of the shape tensors.
+    Elongation,
+    /// `|⟨Q_i⟩|/⟨|Q_i|⟩`, mean over frames.
+    NematicOrder,
+    /// `⟨Q_i : Q_j⟩` of cells at a distance, over the mean square of both.
+    NematicCorrelation,
+    /// Half-integer defects of either sign to a unit area.
+    DefectDensity,
+    /// Velocity of cells at +½ defects in the direction in which the head of the comet points.
+    DefectVelocityAlong,
+    /// The same to the left of that direction.
+    DefectVelocityAcross,
+    /// Anticlockwise velocity at a distance from +½ defects.
+    SwirlAroundPlus,
+    /// The same around −½ defects.
+    SwirlAroundMinus,
     /// `S(q)` of the density.
     Density,
     /// Structure factor of the velocity along the wave vector: compression.
@@ -65,7 +91,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 19] = [
+    pub const ALL: [Self; 32] = [
         Self::MeanSquareVelocity,
         Self::MeanSquareDisplacement,
         Self::VelocityAutocorrelation,
@@ -74,6 +100,11 @@ impl Quantity {
         Self::ResidualCorrelation,
         Self::TransitionRate,
         Self::ContactSurvival,
+        Self::ExchangeWaiting,
+        Self::ExchangeCorrelation,
+        Self::ExchangeDirection,
+        Self::ExchangeAlignment,
+        Self::ExchangeTurn,
         Self::MeanShapeIndex,
         Self::ShapeIndex,
         Self::Area,
@@ -82,6 +113,14 @@ impl Quantity {
         Self::HexaticModulus,
         Self::HexaticCorrelation,
         Self::PairCorrelation,
+        Self::Elongation,
+        Self::NematicOrder,
+        Self::NematicCorrelation,
+        Self::DefectDensity,
+        Self::DefectVelocityAlong,
+        Self::DefectVelocityAcross,
+        Self::SwirlAroundPlus,
+        Self::SwirlAroundMinus,
         Self::Density,
         Self::Compression,
         Self::Vortices,
@@ -98,6 +137,11 @@ impl Quantity {
             Self::ResidualCorrelation => "residual_correlation",
             Self::TransitionRate => "t1_rate",
             Self::ContactSurvival => "contact_survival",
+            Self::ExchangeWaiting => "t1_waiting",
+            Self::ExchangeCorrelation => "t1_correlation",
+            Self::ExchangeDirection => "t1_direction",
+            Self::ExchangeAlignment => "t1_alignment",
+            Self::ExchangeTurn => "t1_turn",
             Self::MeanShapeIndex => "mean_shape_index",
             Self::ShapeIndex => "shape_index",
             Self::Area => "area",
@@ -106,6 +150,14 @@ impl Quantity {
             Self::HexaticModulus => "hexatic_mean_modulus",
             Self::HexaticCorrelation => "hexatic_correlation",
             Self::PairCorrelation => "pair_correlation",
+            Self::Elongation => "mean_elongation",
+            Self::NematicOrder => "nematic_order",
+            Self::NematicCorrelation => "nematic_correlation",
+            Self::DefectDensity => "defect_density",
+            Self::DefectVelocityAlong => "defect_velocity_along",
+            Self::DefectVelocityAcross => "defect_velocity_across",
+            Self::SwirlAroundPlus => "swirl_around_plus_defects",
+            Self::SwirlAroundMinus => "swirl_around_minus_defects",
             Self::Density => "density_structure_factor",
             Self::Compression => "longitudinal_structure_factor",
             Self::Vortices => "transverse_structure_factor",
@@ -123,6 +175,11 @@ impl Quantity {
             Self::ResidualCorrelation => "correlation of residuals",
             Self::TransitionRate => "T1 transitions per cell and time",
             Self::ContactSurvival => "contacts that last",
+            Self::ExchangeWaiting => "cells that keep their neighbours",
+            Self::ExchangeCorrelation => "T1 transitions around another",
+            Self::ExchangeDirection => "directions of contacts that are made",
+            Self::ExchangeAlignment => "contacts made along x (⟨cos 2φ⟩)",
+            Self::ExchangeTurn => "turn of the cells of a T1, anticlockwise",
             Self::MeanShapeIndex => "mean shape index",
             Self::ShapeIndex => "distribution of the shape index",
             Self::Area => "distribution of the area",
@@ -131,6 +188,14 @@ impl Quantity {
             Self::HexaticModulus => "hexatic order of single cells",
             Self::HexaticCorrelation => "correlation of hexatic order",
             Self::PairCorrelation => "pair correlation",
+            Self::Elongation => "mean elongation",
+            Self::NematicOrder => "nematic order",
+            Self::NematicCorrelation => "correlation of shapes",
+            Self::DefectDensity => "defects to a unit area",
+            Self::DefectVelocityAlong => "velocity at +½ defects, ahead",
+            Self::DefectVelocityAcross => "velocity at +½ defects, to the left",
+            Self::SwirlAroundPlus => "swirl around +½ defects",
+            Self::SwirlAroundMinus => "swirl around −½ defects",
             Self::Density => "structure factor of the density",
             Self::Compression => "structure factor of compressing flow",
             Self::Vortices => "structure factor of swirling flow",
@@ -149,15 +214,28 @@ impl Quantity {
             | Self::TransitionRate
             | Self::MeanShapeIndex
             | Self::HexaticOrder
-            | Self::HexaticModulus => return None,
+            | Self::HexaticModulus
+            | Self::Elongation
+            | Self::NematicOrder
+            | Self::DefectDensity
+            | Self::DefectVelocityAlong
+            | Self::DefectVelocityAcross
+            | Self::ExchangeAlignment
+            | Self::ExchangeTurn => return None,
             Self::MeanSquareDisplacement
             | Self::VelocityAutocorrelation
             | Self::ResidualAutocorrelation
-            | Self::ContactSurvival => ("lag", Dimensions::TIME),
+            | Self::ContactSurvival
+            | Self::ExchangeWaiting => ("lag", Dimensions::TIME),
             Self::VelocityCorrelation
             | Self::ResidualCorrelation
             | Self::HexaticCorrelation
-            | Self::PairCorrelation => ("distance", Dimensions::LENGTH),
+            | Self::PairCorrelation
+            | Self::NematicCorrelation
+            | Self::ExchangeCorrelation
+            | Self::SwirlAroundPlus
+            | Self::SwirlAroundMinus => ("distance", Dimensions::LENGTH),
+            Self::ExchangeDirection => ("angle from x, radians", Dimensions::NONE),
             Self::ShapeIndex => ("shape index P/√A", Dimensions::NONE),
             Self::Area => ("area / mean area", Dimensions::NONE),
             Self::Neighbours => ("neighbours", Dimensions::NONE),
@@ -175,6 +253,11 @@ impl Quantity {
             }
             Self::MeanSquareDisplacement => Dimensions { length: 2, time: 0 },
             Self::TransitionRate => Dimensions { length: 0, time: -1 },
+            Self::DefectDensity => Dimensions { length: -2, time: 0 },
+            Self::DefectVelocityAlong
+            | Self::DefectVelocityAcross
+            | Self::SwirlAroundPlus
+            | Self::SwirlAroundMinus => Dimensions { length: 1, time: -1 },
             _ => Dimensions::NONE,
         }
     }

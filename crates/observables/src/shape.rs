@@ -67,7 +67,7 @@ pub(crate) fn configuration(recording: &Recording, plan: &Plan) -> Vec<Curve> {
 }
 
 /// Takes a value into the density of its distribution.
-fn distribute(sums: &mut Sums, (first, width, count): (f64, f64, usize), part: usize, value: f64) {
+pub(crate) fn distribute(sums: &mut Sums, (first, width, count): (f64, f64, usize), part: usize, value: f64) {
     let bin = ((value - first) / width).floor();
     (0..count).for_each(|k| sums.add(k, part, f64::from(u8::from(bin == k as f64)), width));
 }

@@ -28,10 +28,25 @@ pub struct ObserveReport {
     pub velocities: &'static str,
     /// Whether the median motion of the cells is taken for one of the stage.
     pub common_motion_removed: bool,
+    /// Shapes as a nematic; `None` where the director cannot be smoothed.
+    pub nematic: Option<ObservedNematic>,
     /// Single numbers, by name.
     pub numbers: BTreeMap<&'static str, ObservedNumber>,
     /// Functions, by name.
     pub curves: BTreeMap<&'static str, ObservedCurve>,
+}
+
+/// The director and its defects.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservedNematic {
+    /// Standard deviation of the Gaussian over which shapes are smoothed.
+    pub smoothing_width: Quantity,
+    /// Defects of +½ in the frames whose configurations are measured.
+    pub plus: usize,
+    /// Those of −½.
+    pub minus: usize,
+    /// Parameters of the model whose stresses are averaged around defects, if they are.
+    pub stress_of: Option<BTreeMap<&'static str, f64>>,
 }
 
 /// A measured number.

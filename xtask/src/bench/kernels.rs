@@ -1,6 +1,7 @@
 //! What is timed.
 
 use rand::Rng;
+use std::collections::BTreeSet;
 use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
@@ -221,6 +222,24 @@ pub fn reference() -> Result<f64, Box<dyn Error>> {
         Ok(())
     })?;
     Ok(least.as_secs_f64() * 1e9 / 102_400.0)
+}
+
+/// A measure of what cannot be foreseen: numbers in disorder put into a tree in order (ns each), with branches and places in memory that differ for each. Busy hours of a shared
+/// machine slow this, and tessellations, by factors by which divisions are not slowed.
+pub fn branching_reference() -> Result<f64, Box<dyn Error>> {
+    const NUMBERS: u64 = 1 << 16;
+    let [least, _] = times(|| {
+        let mut tree = BTreeSet::new();
+        let mut number = 1u64;
+        for _ in 0..NUMBERS {
+            // Knuth's generator modulo 2⁶⁴; upper bits are in disorder.
+            number = number.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+            tree.insert(number >> 20);
+        }
+        black_box(tree.len());
+        Ok(())
+    })?;
+    Ok(least.as_secs_f64() * 1e9 / NUMBERS as f64)
 }
 
 /// A measure of the memory: bytes per ns of `a = b + c`, three arrays of 64 MB.

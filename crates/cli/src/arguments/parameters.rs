@@ -39,6 +39,12 @@ impl ParameterArguments {
         self.resolve_over(Parameters::default())
     }
 
+    /// Whether any is given.
+    pub fn is_given(&self) -> bool {
+        self.parameters.is_some()
+            || [self.K_A, self.K_P, self.P_0, self.A_0, self.alpha].iter().any(Option::is_some)
+    }
+
     /// The file that they are read from, if there is one.
     pub fn file(&self) -> Option<&Path> {
         self.parameters.as_deref()

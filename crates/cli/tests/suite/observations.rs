@@ -4,7 +4,7 @@ use crate::program::{fixture, succeed};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
 use crate::shape_imports::assert_described;
-use ndarray::{Array2, Array3, Axis, Slice};
+use ndarray::{Array2, Array3, Array4, Axis, Slice};
 
 /// A run is measured while it goes, by `simulate`, and afterwards from its files: displacements and ⟨v²⟩ are the same to rounding, T1 transitions but for those that
 /// come and go between frames.
@@ -30,6 +30,10 @@ fn what_is_measured_on_a_run_is_measured_on_its_files() {
     let squares: Array2<f64> = read(&run.file("mean_square_velocity.npy"));
     let mean = squares.column(1).mean().unwrap();
     assert!((number(&after, "/numbers/mean_square_velocity/value") / mean - 1.0).abs() < 1e-9);
+    // Most contacts that are made belong to one transition that can be told.
+    let transitions: Array2<f64> = read(&out.file("t1.npy"));
+    let told = transitions.nrows() as f64 / (64.0 * 8.0) / number(&after, "/numbers/t1_rate/value");
+    assert!((0.7..1.01).contains(&told), "{told} of the transitions");
     succeed("observe --frames 200..400", &[("", run.path()), ("--out", out.path())]);
     let (steps, frames) =
         (number(&during, "/t1_rate"), number(&report(out.path()), "/numbers/t1_rate/value"));
@@ -99,6 +103,68 @@ fn one_frame_without_velocities_has_no_motion_and_says_so() {
     assert!(found["numbers"].get("mean_square_velocity").is_none());
     assert!(found["curves"].get("mean_square_displacement").is_none());
     assert!(out.names().contains(&"shape_index.npy".to_owned()));
+}
+
+/// In a periodic box comets and three-armed defects are as many as each other; a file whose y points down shows the same defects, seen in its axes.
+#[test]
+fn defects_are_told_with_what_cells_do_around_them() {
+    let (run, out, turned, seen) = (Folder::new(), Folder::new(), Folder::new(), Folder::new());
+    succeed("simulate --cells 400 --P_0 4 --alpha 1 --time 4 --frames 4 --seed 8", &[("--out", run.path())]);
+    let parameters = run.file("report.json");
+    succeed(
+        "observe --stress --director-width 1.2",
+        &[("", run.path()), ("--parameters", &parameters), ("--out", out.path())],
+    );
+    let found = report(out.path());
+    assert_described(&found, "observe.schema.json");
+    let [plus, minus] = ["plus", "minus"].map(|sign| found["nematic"][sign].as_u64().unwrap());
+    assert!(plus == minus && plus > 20, "{plus} and {minus}");
+    assert!((number(&found, "/nematic/stress_of/alpha") - 1.0).abs() < 1e-12);
+    let defects: Array2<f64> = read(&out.file("defects.npy"));
+    assert_eq!(defects.dim(), ((plus + minus) as usize, 5));
+    let expected = (plus + minus) as f64 / (4.0 * 400.0);
+    assert!((number(&found, "/numbers/defect_density/value") / expected - 1.0).abs() < 1e-9);
+    for (what, components) in [("flow", 2), ("stress", 4)] {
+        for sign in ["plus", "minus"] {
+            let own: Array4<f64> = read(&out.file(&format!("{what}_around_{sign}.npy")));
+            assert_eq!(own.dim(), (9, 9, components, 2));
+            assert!(own.iter().filter(|value| value.is_finite()).count() > 9 * 9 * components);
+        }
+    }
+    for name in ["positions.npy", "velocities.npy"] {
+        let mut array: Array3<f64> = read(&run.file(name));
+        array.index_axis_mut(Axis(2), 1).mapv_inplace(|y| -y);
+        turned.write_array(name, &array);
+    }
+    let settings = std::fs::read_to_string(run.file("dataset.toml")).unwrap();
+    turned.write("dataset.toml", settings.replace("y_axis = \"up\"", "y_axis = \"down\""));
+    succeed("observe --director-width 1.2", &[("", turned.path()), ("--out", seen.path())]);
+    let mut mirrored: Array2<f64> = read(&seen.file("defects.npy"));
+    let side = 20.0;
+    for mut row in mirrored.rows_mut() {
+        row[2] = (-row[2]).rem_euclid(side);
+        row[4] = -row[4];
+    }
+    let mut near = 0;
+    for own in defects.rows() {
+        let is_same = |other: &ndarray::ArrayView1<'_, f64>| {
+            let d = [1, 2].map(|axis| (own[axis] - other[axis] + 0.5 * side).rem_euclid(side) - 0.5 * side);
+            own[0] == other[0]
+                && own[3] == other[3]
+                && d[0].hypot(d[1]) < 1e-6
+                && (own[4] - other[4]).sin().abs() < 1e-6
+        };
+        near += usize::from(mirrored.rows().into_iter().any(|other| is_same(&other)));
+    }
+    assert_eq!(near, defects.nrows());
+}
+
+#[test]
+fn what_cannot_be_asked_of_shapes_is_refused() {
+    let cells = fixture("chiral-liquid");
+    assert_refused("observe", &cells, &["--director-width", "50"], &["smoothed over 50 spacings", "at most"]);
+    assert_refused("observe", &cells, &["--director-width", "-1"], &["must be positive"]);
+    assert_refused("observe", &cells, &["--P_0", "4"], &["nothing is asked of it"]);
 }
 
 #[test]

@@ -26,23 +26,10 @@ impl ForceTerm for NematicStress {
 impl RingTerm for NematicStress {
     fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let polygon = cell.polygon;
-        let [xx, xy] = shape_tensor(cell);
+        let [xx, xy] = polygon.shape_tensor();
         let stress = [xx * coefficient, xy * coefficient];
         forces.on_vertices(polygon, |m| -contract(stress, polygon.area_gradient(m)));
     }
-}
-
-/// Traceless shape tensor `Q = Σ ℓ t⊗t / P − ½` of the sides, as `(Q_xx, Q_xy)`.
-pub(super) fn shape_tensor<S: Scalar>(cell: &CellElement<'_, S>) -> [S; 2] {
-    let zero = S::constant(0.0);
-    let mut sum = [zero, zero];
-    for m in 0..cell.neighbours.len() {
-        let (length, t) = cell.side(m);
-        sum[0] += length * (t.x * t.x - t.y * t.y) * 0.5;
-        sum[1] += length * t.x * t.y;
-    }
-    let scale = cell.polygon.shape().perimeter.recip();
-    sum.map(|entry| entry * scale)
 }
 
 /// `Q g` for a traceless symmetric tensor.

@@ -1,6 +1,6 @@
 //! Stress at 45° to the long axis of a cell.
 
-use super::nematic_stress::{contract, shape_tensor};
+use super::nematic_stress::contract;
 use super::{Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
 use voronudge_geometry::Scalar;
@@ -26,7 +26,7 @@ impl ForceTerm for OddNematicStress {
 impl RingTerm for OddNematicStress {
     fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let polygon = cell.polygon;
-        let [xx, xy] = shape_tensor(cell);
+        let [xx, xy] = polygon.shape_tensor();
         let stress = [-xy * coefficient, xx * coefficient];
         forces.on_vertices(polygon, |m| -contract(stress, polygon.area_gradient(m)));
     }

@@ -2,8 +2,10 @@
 
 use crate::samples::{difference, jittered, largest, parameters, periodic, random};
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector, perimeters};
-use voronudge_model::{Model, Parameters, base_terms, columns, parameter_derivatives, stress, velocities};
+use voronudge_geometry::{CellPolygon, Domain, Error, Tessellation, Vector, areas, perimeters};
+use voronudge_model::{
+    Model, Parameters, base_terms, cell_stresses, columns, parameter_derivatives, stress, velocities,
+};
 
 #[test]
 fn the_preferred_area_is_a_gauge() -> Result<(), Error> {
@@ -106,9 +108,24 @@ fn the_antisymmetric_stress_is_the_density_of_torques() -> Result<(), Error> {
     let p = parameters();
     let sigma = stress(&tessellation, &positions, &Model::chiral_voronoi(&p), |_| true);
     let of_a_cell = |perimeter: f64| p.perimeter_elasticity * p.chirality * perimeter * perimeter;
-    let torque: f64 = perimeters(&tessellation, &positions).into_iter().map(of_a_cell).sum();
+    let perimeters = perimeters(&tessellation, &positions);
+    let torque: f64 = perimeters.iter().copied().map(of_a_cell).sum();
     let (found, expected) = (sigma[0][1] - sigma[1][0], torque / (side * side));
     assert!((found - expected).abs() < 1e-11 * expected.abs(), "{found} {expected}");
+    // So it is in each cell, and the stress of all is their mean, weighted by areas.
+    let (own, areas) = (
+        cell_stresses(&tessellation, &positions, &Model::chiral_voronoi(&p)),
+        areas(&tessellation, &positions),
+    );
+    for ((own, area), perimeter) in own.iter().zip(&areas).zip(&perimeters) {
+        let (found, expected) = ((own[0][1] - own[1][0]) * area, of_a_cell(*perimeter));
+        assert!((found - expected).abs() < 1e-11 * expected.abs(), "{found} {expected}");
+    }
+    for (row, column) in [(0, 0), (0, 1), (1, 0), (1, 1)] {
+        let mean: f64 =
+            own.iter().zip(&areas).map(|(own, area)| own[row][column] * area).sum::<f64>() / (side * side);
+        assert!((mean - sigma[row][column]).abs() < 1e-11 * torque, "{mean} {}", sigma[row][column]);
+    }
     Ok(())
 }
 

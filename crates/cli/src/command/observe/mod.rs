@@ -1,5 +1,6 @@
 //! `voronudge observe`: what can be measured on the cells of a data set, whatever moves them.
 
+mod nematic;
 mod page;
 mod report;
 
@@ -12,9 +13,12 @@ use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use ndarray::{Array2, Array3, Axis};
+use nematic::NematicArguments;
 use voronudge_geometry::{Domain, FieldOfView, Vector};
 use voronudge_io::{DataSet, FrameSelection};
-use voronudge_observables::{Error, Images, Plan, Recording, observe};
+use voronudge_observables::{
+    Error, Exchange, Images, Plan, Recording, exchange_statistics, exchanges, observe,
+};
 use voronudge_report::Units;
 
 /// What is measured on the cells of a data set, seen or simulated: how they move, who is next to whom, shapes, order, correlations and structure factors.
@@ -33,6 +37,8 @@ pub(crate) struct Arguments {
     /// In an open field of view, polygons larger than this multiple of the median area are taken for holes in the data.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     largest_area: f64,
+    #[command(flatten)]
+    nematic: NematicArguments,
     #[command(flatten)]
     common: CommonArguments,
 }
@@ -55,6 +61,7 @@ struct Recorded {
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("observe", &arguments.common)?;
     check_largest_area(arguments.largest_area)?;
+    let model = arguments.nematic.model()?;
     let data = arguments.data.load()?;
     let place = arguments.data.positions_file().display().to_string();
     let frames = match &arguments.frames {
@@ -65,14 +72,28 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     let (cells, count) = (data.cells(), frames.len());
     refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
-    let out = arguments.common.reserve(&data.inputs)?;
+    let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.nematic.parameters_file());
+    let out = arguments.common.reserve(inputs)?;
     let recorded = arguments.record(&data, &frames, &place)?;
     let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;
+    let nematic = arguments.nematic.measure(&recorded, &plan, model)?;
     let mut out = out.begin()?;
     if recorded.velocities == Velocities::None {
         run.warn("there are neither velocities nor several frames: nothing is said of motion");
     }
-    let curves = observe(&recorded.recording, &plan);
+    let mut curves = observe(&recorded.recording, &plan);
+    if frames.len() > 1 {
+        let all = exchanges(&recorded.recording);
+        out.write_array("t1.npy", rows(&all, &data, &frames).view())?;
+        curves.extend(exchange_statistics(&recorded.recording, &plan, &all));
+    }
+    if let Some(measured) = &nematic {
+        curves.extend(measured.nematic.curves.iter().cloned());
+        measured.write(&mut out, &data, &frames)?;
+    } else {
+        run.warn("the box is too small to smooth the director: nothing is said of defects");
+    }
+    curves.sort_by_key(|curve| curve.of);
     for curve in curves.iter().filter(|curve| !curve.of.is_number()) {
         let table = Array2::from_shape_fn((curve.at.len(), 4), |(row, column)| match column {
             0 => curve.at[row],
@@ -83,14 +104,40 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         out.write_array(&format!("{}.npy", curve.of.name()), table.view())?;
     }
     let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
-    let report = report::report(run.record(Some(&data)), &units, &frames, (&recorded, &plan), &curves);
+    let report = report::report(
+        run.record(Some(&data)),
+        &units,
+        &frames,
+        (&recorded, &plan),
+        (&curves, nematic.as_ref()),
+    );
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let title = arguments.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
-    out.write_text("report.html", &page::page(&title, &report, &recorded.recording, &curves, &units)?)?;
+    out.write_text(
+        "report.html",
+        &page::page(&title, &report, &recorded.recording, (&curves, nematic.as_ref()), &units)?,
+    )?;
     let summary = page::summary(&report, out.path());
     run.finish(Some(out), &json, &summary)?;
     Ok(Answer::Positive)
+}
+
+/// (transitions, 9): frame, x, y, directions of the contact lost and of the one made in the axes of the data, and the numbers of the cells of both.
+fn rows(all: &[Exchange], data: &DataSet, frames: &[usize]) -> Array2<f64> {
+    let flip = data.y_sign();
+    Array2::from_shape_fn((all.len(), 9), |(row, column)| {
+        let own = &all[row];
+        match column {
+            0 => frames[own.frame] as f64,
+            1 => own.position.x,
+            2 => flip * own.position.y,
+            3 => flip * own.lost_direction,
+            4 => flip * own.made_direction,
+            5 | 6 => own.lost[column - 5] as f64,
+            _ => own.made[column - 7] as f64,
+        }
+    })
 }
 
 impl Arguments {

@@ -1,5 +1,6 @@
 //! The result as a page and as a summary.
 
+use super::nematic::Measured;
 use crate::command::drawing::{borders, cells_view};
 use crate::failure::Failure;
 use std::fmt::Write as _;
@@ -40,13 +41,17 @@ const GUIDE: &[[&str; 2]] = &[
         "Hexatic order",
         "ψ = (1/z) Σ exp(6iθ) over the directions to the z neighbours of a cell; Ψ_6 is the modulus of its mean.",
     ],
+    [
+        "Defects",
+        "Shapes of cells, smoothed over a Gaussian, have a long axis everywhere but at defects, around which it turns by half a turn: one way (+½, a comet) or the other (−½, three arms).          Shapes that know nothing of each other have 1/(4πw²) of them to a unit area, w the width of the Gaussian; fewer are a sign of order.",
+    ],
 ];
 
 pub(super) fn page(
     title: &str,
     report: &ObserveReport,
     recording: &Recording,
-    curves: &[Curve],
+    (curves, nematic): (&[Curve], Option<&Measured>),
     units: &Units,
 ) -> Result<String, Failure> {
     let figures = |all: &[Quantity]| -> Vec<Figure> {
@@ -60,7 +65,13 @@ pub(super) fn page(
         Quantity::Vortices,
         Quantity::Compression,
     ];
-    let contacts = [Quantity::ContactSurvival, Quantity::Neighbours];
+    let contacts = [
+        Quantity::ContactSurvival,
+        Quantity::ExchangeWaiting,
+        Quantity::ExchangeCorrelation,
+        Quantity::ExchangeDirection,
+        Quantity::Neighbours,
+    ];
     let shapes = [Quantity::ShapeIndex, Quantity::Area];
     let order = [Quantity::PairCorrelation, Quantity::HexaticCorrelation, Quantity::Density];
     let section = |heading: &str, all: &[Quantity]| Section {
@@ -83,6 +94,8 @@ pub(super) fn page(
         .into_iter()
         .filter(|section| !section.figures.is_empty()),
     );
+    let first = recording.frames().first();
+    sections.extend(nematic.zip(first).map(|(own, frame)| own.section(frame, label(report), units)));
     sections.push(Section {
         heading: "Numbers".into(),
         table: Some(Table {
@@ -188,11 +201,14 @@ fn cards(report: &ObserveReport) -> Vec<Card> {
     of.into_iter().filter_map(card).collect()
 }
 
+fn label(report: &ObserveReport) -> String {
+    format!("frame {}", report.frames.first().copied().unwrap_or(0))
+}
+
 /// The cells of a frame, with their velocities.
 fn cells(frame: &Frame, report: &ObserveReport, units: &Units) -> Figure {
-    let label = format!("frame {}", report.frames.first().copied().unwrap_or(0));
     let mut view: FrameView =
-        cells_view(label, &frame.tessellation, &frame.positions, |cell| frame.counted[cell]);
+        cells_view(label(report), &frame.tessellation, &frame.positions, |cell| frame.counted[cell]);
     for (cell, v) in view.cells.iter_mut().zip(&frame.velocities) {
         cell.measured = v.map(|v: Vector<f64>| [v.x, v.y]);
     }
@@ -205,7 +221,7 @@ fn cells(frame: &Frame, report: &ObserveReport, units: &Units) -> Figure {
 }
 
 /// A function with bars of one standard error.
-fn figure(curve: &Curve, units: &Units) -> Option<Figure> {
+pub(super) fn figure(curve: &Curve, units: &Units) -> Option<Figure> {
     let (axis, of_axis) = curve.of.axis()?;
     let label = label_with_unit(axis, &units.powers(of_axis.length, of_axis.time));
     let dimensions = curve.of.dimensions();
@@ -254,9 +270,13 @@ fn symbol(of: Quantity) -> &'static str {
         Quantity::VelocityAutocorrelation => "⟨v(t)·v(t + τ)⟩/⟨v²⟩",
         Quantity::VelocityCorrelation => "⟨v_i·v_j⟩/⟨v²⟩",
         Quantity::ContactSurvival => "share that are contacts",
-        Quantity::ShapeIndex | Quantity::Area => "density of the distribution",
+        Quantity::ExchangeWaiting => "share of cells",
+        Quantity::ExchangeCorrelation => "density over the mean",
+        Quantity::ShapeIndex | Quantity::Area | Quantity::ExchangeDirection => "density of the distribution",
         Quantity::Neighbours => "share of cells",
         Quantity::HexaticCorrelation => "⟨ψ_i* ψ_j⟩",
+        Quantity::NematicCorrelation => "⟨Q_i : Q_j⟩/⟨Q²⟩",
+        Quantity::SwirlAroundPlus | Quantity::SwirlAroundMinus => "anticlockwise velocity",
         Quantity::PairCorrelation => "g(r)",
         Quantity::Density => "S(q) of density",
         Quantity::Compression | Quantity::Vortices => "S(q) of velocity",
@@ -272,6 +292,15 @@ fn caption(of: Quantity) -> &'static str {
         Quantity::VelocityAutocorrelation => "How long cells remember their velocity.",
         Quantity::VelocityCorrelation => "How alike the velocities of two cells are, by their distance.",
         Quantity::ContactSurvival => "Share of the contacts of a frame that are contacts in a later one.",
+        Quantity::ExchangeWaiting => {
+            "Share of the cells that have not changed neighbours for a lag. Transitions that come at random leave exp(−lag × rate)."
+        }
+        Quantity::ExchangeCorrelation => {
+            "T1 transitions at a distance from another one between the same frames, over as many as if they knew nothing of each other: above 1 they set off each other."
+        }
+        Quantity::ExchangeDirection => {
+            "Directions of the contacts that are made in T1 transitions; where no direction is preferred the density is 1/π."
+        }
         Quantity::ShapeIndex => {
             "Distribution of the shape index P/√A: 3.72 for a regular hexagon, more for longer cells."
         }
@@ -279,6 +308,13 @@ fn caption(of: Quantity) -> &'static str {
         Quantity::Neighbours => "How many neighbours cells have.",
         Quantity::HexaticCorrelation => {
             "How alike the orientations of the neighbourhoods of two cells are, by their distance."
+        }
+        Quantity::NematicCorrelation => "How alike the shapes of two cells are, by their distance.",
+        Quantity::SwirlAroundPlus => {
+            "Anticlockwise velocity around +½ defects, by distance. Without chirality there is none."
+        }
+        Quantity::SwirlAroundMinus => {
+            "Anticlockwise velocity around −½ defects, by distance. Without chirality there is none."
         }
         Quantity::PairCorrelation => "Density of cells at a distance from a cell, over the mean density.",
         Quantity::Density => "Structure factor of the density. Random places have 1.",

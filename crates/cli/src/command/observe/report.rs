@@ -1,5 +1,6 @@
 //! The result as a report.
 
+use super::nematic::Measured;
 use super::{Recorded, Velocities};
 use voronudge_observables::{Curve, Dimensions, Plan};
 use voronudge_report::Units;
@@ -11,7 +12,7 @@ pub(super) fn report(
     units: &Units,
     frames: &[usize],
     (recorded, plan): (&Recorded, &Plan),
-    curves: &[Curve],
+    (curves, nematic): (&[Curve], Option<&Measured>),
 ) -> ObserveReport {
     let unit = |of: Dimensions| units.powers(of.length, of.time);
     let number = |curve: &Curve| ObservedNumber {
@@ -46,6 +47,7 @@ pub(super) fn report(
             Velocities::None => "none",
         },
         common_motion_removed: recorded.common_motion_removed,
+        nematic: nematic.map(|own| own.record(units)),
         numbers: curves
             .iter()
             .filter(|curve| curve.of.is_number())
