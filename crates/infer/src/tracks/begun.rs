@@ -62,7 +62,10 @@ impl<'a, 'w> Begun<'a, 'w> {
                 states.own_motion = OwnMotion::at(&course.objective(&states), &at)?;
                 at
             }
-            None => course.foresee(&states, naive.clone())?,
+            None => {
+                let at = course.foresee(&states, naive.clone())?;
+                course.place_unseen(&states, at)?
+            }
         };
         let at = course.approach(&states, at)?;
         let at = course.settle(&states, at, ROUGH)?;

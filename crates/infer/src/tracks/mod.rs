@@ -56,6 +56,7 @@ mod tangent;
 #[cfg(test)]
 mod tests;
 mod turn;
+mod unseen;
 
 pub(crate) use alignment::weighted;
 pub(crate) use beside::Beside;

@@ -103,7 +103,8 @@ pub fn around_defects(around: &AroundDefects<'_>, units: &Units) -> String {
     let frame = FrameView { label: "on average".into(), ..FrameView::default() };
     let speeds = || around.velocities.iter().flatten().map(|v| length(*v));
     let scale = ArrowScale::of_speeds(speeds(), std::iter::empty(), around.square);
-    let (Some(view), Some(scale)) = (Viewport::around_with(&frame, &[[-half; 2], [half; 2]]), scale) else {
+    let centres: Vec<[f64; 2]> = (0..around.velocities.len()).map(place).collect();
+    let (Some(view), Some(scale)) = (Viewport::around_with(&frame, &centres), scale) else {
         return no_data(title);
     };
     let mut map = Map::with_view(view, &frame, title);

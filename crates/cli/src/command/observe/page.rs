@@ -293,10 +293,10 @@ fn caption(of: Quantity) -> &'static str {
         Quantity::VelocityCorrelation => "How alike the velocities of two cells are, by their distance.",
         Quantity::ContactSurvival => "Share of the contacts of a frame that are contacts in a later one.",
         Quantity::ExchangeWaiting => {
-            "Share of the cells that have not changed neighbours for a lag. Transitions that come at random leave exp(−lag × rate)."
+            "Share of the cells that have not changed neighbours for a lag. Transitions that come at random, each of four cells, leave exp(−4 × rate of T1 × lag)."
         }
         Quantity::ExchangeCorrelation => {
-            "T1 transitions at a distance from another one between the same frames, over as many as if they knew nothing of each other: above 1 they set off each other."
+            "T1 transitions at a distance from another one between the same frames, over as many as if they knew nothing of each other. Peaks at the distances of neighbours are those of the cells; above 1 beyond them, transitions set off each other."
         }
         Quantity::ExchangeDirection => {
             "Directions of the contacts that are made in T1 transitions; where no direction is preferred the density is 1/π."
@@ -334,7 +334,7 @@ pub(super) fn summary(report: &ObserveReport, out: &Path) -> String {
             String::new()
         };
         let line =
-            format!("  {:34}{:>10} {error:10} {}", of.words(), significant(number.value, 3), number.unit);
+            format!("  {:38}{:>10} {error:10} {}", of.words(), significant(number.value, 3), number.unit);
         let _ = writeln!(text, "{}", line.trim_end());
     }
     let _ = writeln!(text, "\n{}", headline(report));
