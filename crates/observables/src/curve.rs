@@ -64,9 +64,18 @@ impl Sums {
     }
 
     pub fn curve(&self, of: Quantity, at: Vec<f64>) -> Curve {
-        let (value, standard_error) = self.points.iter().map(share).unzip();
-        let count = self.points.iter().map(|(all, _)| all.count).collect();
-        Curve { of, at, value, standard_error, count }
+        let (value, standard_error) = self.shares().unzip();
+        Curve { of, at, value, standard_error, count: self.counts() }
+    }
+
+    /// The mean at each point, and its standard error.
+    pub fn shares(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
+        self.points.iter().map(share)
+    }
+
+    /// Samples at each point.
+    pub fn counts(&self) -> Vec<usize> {
+        self.points.iter().map(|(all, _)| all.count).collect()
     }
 }
 

@@ -74,7 +74,7 @@ fn others<'a>(places: &'a Places, r: Vector<f64>, plan: &Plan) -> impl Iterator<
 }
 
 /// How alike the shapes of two cells are, by their distance: `⟨Q_i : Q_j⟩` over the mean square of both.
-pub(crate) fn alike(recording: &Recording, plan: &Plan) -> Curve {
+pub(crate) fn shape_correlation(recording: &Recording, plan: &Plan) -> Curve {
     let of_frame = |number: &usize| {
         let frame = &recording.frames()[*number];
         let mut sums = Sums::new(plan.bins);

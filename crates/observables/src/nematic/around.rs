@@ -93,17 +93,16 @@ pub(super) fn around<T: Turning>(
             }
         });
     }
-    let curves: Vec<Curve> =
-        sums.iter().map(|own| own.curve(Quantity::DefectDensity, vec![0.0; SQUARES * SQUARES])).collect();
-    let rows = |of: fn(&Curve) -> &Vec<f64>| {
-        (0..SQUARES * SQUARES).map(|point| curves.iter().map(|own| of(own)[point]).collect()).collect()
+    let components: Vec<Vec<(f64, f64)>> = sums.iter().map(|own| own.shares().collect()).collect();
+    let rows = |of: fn(&(f64, f64)) -> f64| {
+        (0..SQUARES * SQUARES).map(|point| components.iter().map(|own| of(&own[point])).collect()).collect()
     };
     Around {
         defects: own().count(),
         square,
-        values: rows(|own| &own.value),
-        standard_errors: rows(|own| &own.standard_error),
-        counts: curves.first().map_or_else(Vec::new, |own| own.count.clone()),
+        values: rows(|own| own.0),
+        standard_errors: rows(|own| own.1),
+        counts: sums.first().map_or_else(Vec::new, Sums::counts),
     }
 }
 

@@ -10,8 +10,8 @@ use voronudge_geometry::{Domain, Vector};
 const STEPS: usize = 6;
 const FARTHEST: f64 = 0.5;
 
-/// Smoothing widths from the border of an open field within which no defect is told: cells that are not seen would have a say there.
-pub(super) const MARGIN: f64 = 2.0;
+/// Smoothing widths from the border of an open field within which no defect is told.
+const MARGIN: f64 = 2.0;
 
 /// A point where the director turns by half a turn on the way around it.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -28,6 +28,48 @@ pub struct Defect {
     pub cell: usize,
 }
 
+/// A triangle of neighbours that count.
+pub(super) struct Corners {
+    pub cells: [usize; 3],
+    /// Where the first is, in the box, and all three from there.
+    first: Vector<f64>,
+    from_first: [Vector<f64>; 3],
+}
+
+impl Corners {
+    pub fn area(&self) -> f64 {
+        let [_, a, b] = self.from_first;
+        0.5 * (a.x * b.y - a.y * b.x).abs()
+    }
+
+    /// The cell nearest to a place.
+    fn nearest(&self, place: Vector<f64>) -> usize {
+        let distance = |k: &usize| (self.first + self.from_first[*k] - place).norm_squared();
+        let nearest = (0..3).min_by(|a, b| distance(a).total_cmp(&distance(b)));
+        self.cells[nearest.unwrap_or(0)]
+    }
+}
+
+/// The triangles in which defects are told: of cells that count, far enough from the border of an open field, as cells that are not seen would have a say there.
+pub(super) fn triangles(frame: &Frame, width: f64) -> impl Iterator<Item = Corners> + '_ {
+    let domain = frame.tessellation.domain();
+    let all = frame.tessellation.triangles().into_iter();
+    all.filter_map(move |triangle| {
+        let cells = triangle.cells.map(|cell| cell as usize);
+        let first = wrapped(frame, cells[0]);
+        let from_first = std::array::from_fn(|k| {
+            domain.displacement(frame.positions[cells[0]], frame.positions[cells[k]], triangle.images[k])
+        });
+        let own = Corners { cells, first, from_first };
+        let middle = domain.wrap(first + (own.from_first[1] + own.from_first[2]) / 3.0);
+        let is_inside = match (&frame.region, domain) {
+            (Some(region), Domain::Open) => region.distance_from_border(middle) >= MARGIN * width,
+            _ => true,
+        };
+        (is_inside && cells.iter().all(|cell| frame.counted[*cell])).then_some(own)
+    })
+}
+
 /// The defects of a frame: triangles of neighbours around which the smoothed field turns. Those in a periodic box have charges that sum to nought.
 pub(super) fn of_frame(
     recording: &Recording,
@@ -37,46 +79,19 @@ pub(super) fn of_frame(
 ) -> Vec<Defect> {
     let frame = &recording.frames()[number];
     let values = field.at_cells();
-    let mut defects = Vec::new();
-    for triangle in frame.tessellation.triangles() {
-        let cells = triangle.cells.map(|cell| cell as usize);
-        if !cells.iter().all(|cell| frame.counted[*cell]) {
-            continue;
+    let defect = |triangle: Corners| {
+        let own = triangle.cells.map(|cell| values[cell]);
+        let charge = 0.5 * turns(own);
+        if charge == 0.0 {
+            return None;
         }
-        let own = cells.map(|cell| values[cell]);
-        let turns = turns(own);
-        if turns == 0.0 {
-            continue;
-        }
-        let first = wrapped(frame, cells[0]);
-        let corner = |k: usize| {
-            let [from, to] = [cells[0], cells[k]].map(|cell| frame.positions[cell]);
-            frame.tessellation.domain().displacement(from, to, triangle.images[k])
-        };
-        let corners = [Vector::zeros(), corner(1), corner(2)];
-        let start = first + zero(corners, own);
+        let start = triangle.first + zero(triangle.from_first, own);
         let place = polished(field, start, FARTHEST * width);
-        let nearest = (0..3).min_by(|a, b| {
-            let distance = |k: &usize| (first + corners[*k] - place).norm_squared();
-            distance(a).total_cmp(&distance(b))
-        });
-        let charge = 0.5 * turns;
         let position = frame.tessellation.domain().wrap(place);
-        if is_told(frame, position, width) {
-            let direction = field.at(position).direction(charge);
-            let cell = cells[nearest.unwrap_or(0)];
-            defects.push(Defect { frame: number, position, charge, direction, cell });
-        }
-    }
-    defects
-}
-
-/// Whether a place is far enough from the border of what was seen.
-pub(super) fn is_told(frame: &Frame, place: Vector<f64>, width: f64) -> bool {
-    match (&frame.region, frame.tessellation.domain()) {
-        (_, Domain::Periodic(_)) | (None, Domain::Open) => true,
-        (Some(region), Domain::Open) => region.distance_from_border(place) >= MARGIN * width,
-    }
+        let direction = field.at(position).direction(charge);
+        Some(Defect { frame: number, position, charge, direction, cell: triangle.nearest(place) })
+    };
+    triangles(frame, width).filter_map(defect).collect()
 }
 
 /// Turns of a vector on the way from one corner of a triangle to the next and back: 1, 0 or −1.

@@ -18,7 +18,7 @@ pub use around::{Around, SQUARES};
 pub use defects::Defect;
 use director::DirectorField;
 use rayon::prelude::*;
-use voronudge_geometry::{Domain, Vector, areas, shape_tensors};
+use voronudge_geometry::{Domain, Vector, shape_tensors};
 
 /// What is measured of the shapes of cells as a nematic.
 #[derive(Debug, Clone, PartialEq)]
@@ -79,7 +79,7 @@ pub fn nematic(
         Some(around::around((recording, plan), (&defects, charge), of_cell))
     });
     let mut curves = shapes(recording, plan);
-    curves.push(pairs::alike(recording, plan));
+    curves.push(pairs::shape_correlation(recording, plan));
     curves.push(density(recording, plan, &defects, own_width));
     if recording.has_velocities() && !defects.is_empty() {
         curves.extend(around::motion(recording, plan, &defects));
@@ -115,16 +115,13 @@ fn shapes(recording: &Recording, plan: &Plan) -> Vec<Curve> {
     vec![lengths.curve(Quantity::Elongation, vec![0.0]), order]
 }
 
-/// Defects of either sign to a unit area.
+/// Defects of either sign to a unit area of the triangles in which they are told.
 fn density(recording: &Recording, plan: &Plan, defects: &[Defect], width: f64) -> Curve {
     let mut sums = Sums::new(1);
-    for &number in &plan.stills {
-        let frame = &recording.frames()[number];
-        let areas = areas(&frame.tessellation, &frame.positions);
-        for cell in
-            frame.in_view().filter(|cell| defects::is_told(frame, pairs::wrapped(frame, *cell), width))
-        {
-            sums.add(0, plan.parts[frame.tracks[cell]], 0.0, areas[cell]);
+    for frame in plan.stills.iter().map(|frame| &recording.frames()[*frame]) {
+        for triangle in defects::triangles(frame, width) {
+            let part = plan.parts[frame.tracks[triangle.cells[0]]];
+            sums.add(0, part, 0.0, triangle.area());
         }
     }
     for defect in defects {

@@ -177,3 +177,25 @@ fn a_mirror_image_turns_left_into_right() {
         }
     }
 }
+
+/// In an open field they are told, and counted to an area, where all that has a say is seen.
+#[test]
+fn an_open_field_has_as_many_defects_to_a_unit_area() {
+    let mut rng = Pcg64::seed_from_u64(9);
+    let (mut ratios, sets, width) = (0.0, 40, 1.5);
+    for seed in 0..sets {
+        let cells = tissue(seed).frames()[0].positions.iter().copied().map(Some).collect();
+        let recording =
+            Recording::new(&[0.0], vec![cells], &[Domain::Open], &FieldOfView::default(), Images::Nearest)
+                .unwrap();
+        let plan = Plan::of(&recording).unwrap();
+        let shape = |_: &Vector<f64>| {
+            let angle = TAU * rng.random::<f64>();
+            [angle.cos(), angle.sin()]
+        };
+        let defects = found(&recording, shape, width);
+        ratios += super::density(&recording, &plan, &defects, width).value[0] * 4.0 * PI * width * width;
+    }
+    let ratio = ratios / sets as f64;
+    assert!((ratio - 1.0).abs() < 0.08, "{ratio}");
+}
