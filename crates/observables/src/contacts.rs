@@ -22,8 +22,25 @@ pub(crate) fn contacts(frame: &Frame) -> Vec<[usize; 2]> {
 }
 
 /// Whether both cells of a contact count in a frame.
-pub(crate) fn seen(frame: &Frame, pair: &[usize; 2]) -> bool {
+fn seen(frame: &Frame, pair: &[usize; 2]) -> bool {
     pair.iter().all(|track| frame.place(*track).is_some())
+}
+
+/// Contacts of two frames that are in one of them only, though all their cells count in both; ascending.
+pub(crate) struct Changes {
+    pub made: Vec<[usize; 2]>,
+    pub lost: Vec<[usize; 2]>,
+}
+
+impl Changes {
+    /// Given the frames with their [`contacts`].
+    pub fn between((before, own): (&Frame, &[[usize; 2]]), (after, next): (&Frame, &[[usize; 2]])) -> Self {
+        let only = |all: &[[usize; 2]], others: &[[usize; 2]], frame: &Frame| {
+            let is_new = |pair: &&[usize; 2]| others.binary_search(pair).is_err() && seen(frame, pair);
+            all.iter().filter(is_new).copied().collect()
+        };
+        Self { made: only(next, own, before), lost: only(own, next, after) }
+    }
 }
 
 /// The T1 transitions per cell and time from frame to frame, and the share of contacts that last, by lag.
@@ -46,7 +63,7 @@ pub(crate) fn exchange(recording: &Recording, plan: &Plan) -> [Curve; 2] {
                 made.add(0, plan.parts[track], 0.0, time);
             }
         }
-        for pair in all[to].iter().filter(|pair| seen(from, pair) && !has(to - 1, pair)) {
+        for pair in Changes::between((from, &all[to - 1]), (own, &all[to])).made {
             made.add_pair(0, pair.map(|track| plan.parts[track]), 1.0, 0.0);
         }
     }

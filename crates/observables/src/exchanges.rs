@@ -1,6 +1,6 @@
 //! T1 transitions one by one: where they happen, which way they turn contacts, and whether they set off each other.
 
-use crate::contacts::{contacts, seen};
+use crate::contacts::{Changes, contacts};
 use crate::curve::Sums;
 use crate::motion::at_lags;
 use crate::pairs::wrapped;
@@ -60,21 +60,7 @@ pub fn exchanges(recording: &Recording) -> Vec<Exchange> {
     (1..frames.len()).into_par_iter().flat_map_iter(between).collect()
 }
 
-/// Contacts of two frames that are in one of them only, though all their cells count in both.
-struct Changes {
-    made: Vec<[usize; 2]>,
-    lost: Vec<[usize; 2]>,
-}
-
 impl Changes {
-    fn between((before, own): (&Frame, &[[usize; 2]]), (after, next): (&Frame, &[[usize; 2]])) -> Self {
-        let only = |all: &[[usize; 2]], others: &[[usize; 2]], frame: &Frame| {
-            let is_new = |pair: &&[usize; 2]| others.binary_search(pair).is_err() && seen(frame, pair);
-            all.iter().filter(is_new).copied().collect()
-        };
-        Self { made: only(next, own, before), lost: only(own, next, after) }
-    }
-
     /// The one lost contact between cells that both were next to both of those that make one.
     fn lost_for(&self, before: &Frame, made: [usize; 2]) -> Option<[usize; 2]> {
         let around = |track: usize| {
@@ -83,10 +69,11 @@ impl Changes {
             Some(before.tessellation.neighbours(cell).iter().map(of).collect::<Vec<_>>())
         };
         let [first, second] = [around(made[0])?, around(made[1])?];
-        let is_common = |track: &usize| first.contains(track) && second.contains(track);
-        let mut found = self.lost.iter().filter(|pair| pair.iter().all(is_common));
+        let common: Vec<usize> = first.into_iter().filter(|track| second.contains(track)).collect();
+        let pairs = common.iter().flat_map(|one| common.iter().map(move |other| [*one, *other]));
+        let mut found = pairs.filter(|pair| pair[0] < pair[1] && self.lost.binary_search(pair).is_ok());
         let one = found.next()?;
-        found.next().is_none().then_some(*one)
+        found.next().is_none().then_some(one)
     }
 }
 
@@ -143,12 +130,9 @@ fn together(recording: &Recording, plan: &Plan, exchanges: &[Exchange]) -> Curve
         let domain = frame.tessellation.domain();
         for (k, own) in group.iter().enumerate() {
             let part = plan.parts[own.made[0]];
-            let border = |region: &voronudge_geometry::Region| region.distance_from_border(own.position);
-            let free = frame.region.as_ref().map_or(f64::INFINITY, border);
-            let rings = (0..plan.bins).take_while(|ring| (ring + 1) as f64 * bin <= free).count();
+            let rings = plan.rings_in_view(frame, own.position);
             for ring in 0..rings {
-                let share = PI * bin * bin * (2 * ring + 1) as f64 / area;
-                sums.add(ring, part, 0.0, others * share);
+                sums.add(ring, part, 0.0, others * plan.ring_area(ring) / area);
             }
             for other in group.iter().enumerate().filter(|(other, _)| *other != k).map(|(_, other)| other) {
                 let ring = (domain.shortest(other.position - own.position).norm() / bin) as usize;

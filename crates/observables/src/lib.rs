@@ -35,7 +35,7 @@ pub use displacement::mean_square_displacement;
 pub use error::Error;
 pub use exchanges::{Exchange, exchange_statistics, exchanges};
 pub use hexatic::{Hexatic, hexatic, hexatic_among};
-pub use nematic::{Around, Defect, Nematic, SQUARES, Stresses, nematic};
+pub use nematic::{Around, Defect, Nematic, SQUARES, Stresses, largest_width, nematic};
 pub use observe::{correlations, observe};
 pub use plan::Plan;
 pub use quantity::{Dimensions, Quantity};

@@ -25,8 +25,7 @@ pub(crate) fn correlations(recording: &Recording, plan: &Plan) -> [Curve; 3] {
 
 fn of_frame(frame: &Frame, plan: &Plan) -> [Sums; 3] {
     let [mut flow, mut order, mut density] = [(); 3].map(|()| Sums::new(plan.bins));
-    let (bin, reach) = (plan.bin(), plan.bins as f64 * plan.bin());
-    let places = places(frame, reach);
+    let places = places(frame, plan.bins as f64 * plan.bin());
     let hexatic: Vec<Option<Vector<f64>>> = (0..frame.tracks.len())
         .map(|cell| frame.counted[cell].then(|| of_cell(&frame.tessellation, &frame.positions, cell)))
         .collect();
@@ -34,17 +33,15 @@ fn of_frame(frame: &Frame, plan: &Plan) -> [Sums; 3] {
     for cell in frame.in_view() {
         let r = wrapped(frame, cell);
         let part = plan.parts[frame.tracks[cell]];
-        let free = frame.region.as_ref().map_or(f64::INFINITY, |region| region.distance_from_border(r));
-        // Rings around the cell in which every other would have been seen.
-        for ring in (0..plan.bins).take_while(|ring| (ring + 1) as f64 * bin <= free) {
-            let area = std::f64::consts::PI * bin * bin * (2 * ring + 1) as f64;
-            density.add(ring, part, 0.0, area * per_area);
+        let rings = plan.rings_in_view(frame, r);
+        for ring in 0..rings {
+            density.add(ring, part, 0.0, plan.ring_area(ring) * per_area);
         }
         for (other, ring) in others(&places, r, plan) {
             // A cell that never counts goes with the one that does.
             let its_part = if frame.counted[other] { plan.parts[frame.tracks[other]] } else { part };
             let parts = [part, its_part];
-            if (ring + 1) as f64 * bin <= free {
+            if ring < rings {
                 density.add_pair(ring, parts, 1.0, 0.0);
             }
             if let (Some(own), Some(its)) = (hexatic[cell], hexatic[other]) {

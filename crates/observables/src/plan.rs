@@ -2,7 +2,7 @@
 
 use crate::curve::PARTS;
 use crate::window::Window;
-use crate::{Error, Recording};
+use crate::{Error, Frame, Recording};
 use voronudge_geometry::{Domain, Vector, areas};
 
 /// Lags at most, and frames whose configurations are measured at most.
@@ -98,6 +98,17 @@ impl Plan {
     /// Width of a bin of distances.
     pub(crate) fn bin(&self) -> f64 {
         BIN * self.spacing
+    }
+
+    /// Area of the ring of a bin.
+    pub(crate) fn ring_area(&self, ring: usize) -> f64 {
+        std::f64::consts::PI * self.bin() * self.bin() * (2 * ring + 1) as f64
+    }
+
+    /// Rings around a place in which every cell would have been seen.
+    pub(crate) fn rings_in_view(&self, frame: &Frame, place: Vector<f64>) -> usize {
+        let free = frame.region.as_ref().map_or(f64::INFINITY, |region| region.distance_from_border(place));
+        (0..self.bins).take_while(|ring| (ring + 1) as f64 * self.bin() <= free).count()
     }
 
     /// The middle of each bin of distances.

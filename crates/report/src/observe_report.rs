@@ -28,8 +28,8 @@ pub struct ObserveReport {
     pub velocities: &'static str,
     /// Whether the median motion of the cells is taken for one of the stage.
     pub common_motion_removed: bool,
-    /// Shapes as a nematic; `None` where the director cannot be smoothed.
-    pub nematic: Option<ObservedNematic>,
+    /// Shapes as a nematic.
+    pub nematic: ObservedNematic,
     /// Single numbers, by name.
     pub numbers: BTreeMap<&'static str, ObservedNumber>,
     /// Functions, by name.

@@ -3,6 +3,7 @@
 use crate::failure::Failure;
 use clap::Args;
 use serde_json::Value;
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use voronudge_model::Parameters;
 
@@ -79,6 +80,17 @@ impl ParameterArguments {
         }
         Ok(parameters)
     }
+}
+
+/// The parameters by their names in files.
+pub(crate) fn named(p: &Parameters<f64>) -> BTreeMap<&'static str, f64> {
+    BTreeMap::from([
+        ("K_A", p.area_elasticity),
+        ("K_P", p.perimeter_elasticity),
+        ("P_0", p.preferred_perimeter),
+        ("A_0", p.preferred_area),
+        ("alpha", p.chirality),
+    ])
 }
 
 fn read(file: &Path) -> Result<Parameters<f64>, Failure> {

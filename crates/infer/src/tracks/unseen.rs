@@ -21,15 +21,14 @@ impl Course<'_, '_> {
     /// The point at which unseen cells are where the model leads them, if that is likelier.
     pub(super) fn place_unseen(&self, states: &States, at: Vec<f64>) -> Result<Vec<f64>, Error> {
         let objective = self.objective(states);
-        let placed = Unseen { objective, dimension: objective.space.dimension() }.led(at.clone())?;
-        let is_better = objective.value(&placed) < objective.value(&at);
+        let placed = Unseen { objective }.led(at.clone())?;
+        let is_better = placed != at && objective.value(&placed) < objective.value(&at);
         Ok(if is_better { placed } else { at })
     }
 }
 
 struct Unseen<'a> {
     objective: MovieObjective<'a>,
-    dimension: usize,
 }
 
 impl Unseen<'_> {
@@ -69,7 +68,7 @@ impl Unseen<'_> {
             for _ in 0..if unseen.is_empty() { 0 } else { ROUNDS } {
                 let interval = motions[0].interval;
                 let [moved, _] = self.moved(interval, &at)?;
-                let last = self.objective.positions(interval + 1, &at[self.dimension..]);
+                let last = self.objective.positions(interval + 1, self.objective.split(&at).1);
                 for (motion, place) in &unseen {
                     let from = last[motion.cells[1] as usize] - moved[motion.between as usize];
                     self.put(&mut at, (motion, 0, *place), from);
@@ -99,7 +98,7 @@ impl Unseen<'_> {
         let way = self.objective.movie.domain.shortest(to - room);
         let is_near = way.norm() <= FARTHEST;
         if is_near {
-            let own = self.dimension + 2 * place;
+            let own = self.objective.space.dimension() + 2 * place;
             (at[own], at[own + 1]) = (way.x, way.y);
         }
         is_near
@@ -143,7 +142,7 @@ mod tests {
         };
         let unit = chiral / TRUTH[1];
         let at = objective.start(&space.nearest(&[0.0, unit * TRUTH[0], unit, chiral]));
-        let led = Unseen { objective, dimension: space.dimension() }.led(at.clone()).unwrap();
+        let led = Unseen { objective }.led(at.clone()).unwrap();
         assert!(objective.value(&led) < objective.value(&at));
         let misses = |at: &[f64]| -> Vec<f64> {
             let miss = |&(frame, cell): &(usize, usize)| {

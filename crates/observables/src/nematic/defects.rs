@@ -1,6 +1,6 @@
 //! Half-integer defects of the director field.
 
-use super::director::DirectorField;
+use super::director::{DirectorField, Local};
 use crate::pairs::wrapped;
 use crate::{Frame, Recording};
 use std::f64::consts::{PI, TAU};
@@ -107,12 +107,11 @@ fn turns(values: [[f64; 2]; 3]) -> f64 {
 
 /// Where the linear interpolation between three corners vanishes.
 fn zero(corners: [Vector<f64>; 3], values: [[f64; 2]; 3]) -> Vector<f64> {
-    let [[u, v], [a, c], [b, d]] = values;
-    let [a, b, c, d] = [a - u, b - u, c - v, d - v];
-    let determinant = a * d - b * c;
-    let (s, t) = ((b * v - d * u) / determinant, (c * u - a * v) / determinant);
-    let place = corners[1] * s + corners[2] * t;
-    if (place.x + place.y).is_finite() { place } else { (corners[1] + corners[2]) / 3.0 }
+    let [first, second, third] = values;
+    let along = |other: [f64; 2]| [other[0] - first[0], other[1] - first[1]];
+    let shares = Local { value: first, gradient: [along(second), along(third)] }.step_to_zero();
+    let [s, t] = shares.map_or([1.0 / 3.0; 2], |shares| [shares.x, shares.y]);
+    corners[1] * s + corners[2] * t
 }
 
 /// The zero of the field near a place, or that place.

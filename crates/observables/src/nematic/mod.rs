@@ -40,23 +40,18 @@ pub type Stresses = Vec<[[f64; 2]; 2]>;
 /// if they are to be averaged around defects.
 ///
 /// # Errors
-/// [`Error::SmoothingWidth`] if the width is not positive, or more than a quarter of a side of a periodic box.
+/// [`Error::SmoothingWidth`] if the width is not positive, or more than the [`largest_width`].
 pub fn nematic(
     recording: &Recording,
     plan: &Plan,
     width: f64,
     stresses_of: Option<&(dyn Fn(&Frame) -> Stresses + Sync)>,
 ) -> Result<Nematic, Error> {
-    let own_width = width * plan.spacing;
-    for frame in recording.frames() {
-        let largest = match frame.tessellation.domain() {
-            Domain::Periodic(own) => 0.25 * own.lengths()[0].min(own.lengths()[1]),
-            Domain::Open => f64::INFINITY,
-        };
-        if !(own_width > 0.0 && own_width <= largest && own_width.is_finite()) {
-            return Err(Error::SmoothingWidth { width, largest: largest / plan.spacing });
-        }
+    let largest = largest_width(recording, plan);
+    if !(width > 0.0 && width <= largest && width.is_finite()) {
+        return Err(Error::SmoothingWidth { width, largest });
     }
+    let own_width = width * plan.spacing;
     let of_frame = |number: &usize| {
         let field = DirectorField::new(&recording.frames()[*number], own_width);
         defects::of_frame(recording, *number, &field, own_width)
@@ -86,6 +81,15 @@ pub fn nematic(
     }
     curves.retain(|curve| curve.value.iter().any(|value| value.is_finite()));
     Ok(Nematic { curves, defects, flow, stress })
+}
+
+/// The largest width over which a director can be smoothed, in mean spacings: a quarter of the side of a periodic box.
+pub fn largest_width(recording: &Recording, plan: &Plan) -> f64 {
+    let of_frame = |frame: &Frame| match frame.tessellation.domain() {
+        Domain::Periodic(own) => 0.25 * own.lengths()[0].min(own.lengths()[1]) / plan.spacing,
+        Domain::Open => f64::INFINITY,
+    };
+    recording.frames().iter().map(of_frame).fold(f64::INFINITY, f64::min)
 }
 
 /// How long cells are, and how much along one axis.

@@ -1,10 +1,10 @@
 //! What is read off the profiles: decays, conservation, the theory beside them, the chirality of the flow.
 
 use super::request::ChannelRequest;
+use crate::arguments::named;
 use crate::command::estimate_chirality::{Tissue, line_points, slope};
 use crate::failure::Failure;
 use crate::run::Run;
-use std::collections::BTreeMap;
 use voronudge_infer::{DecayFit, DecayPoint, DecayShape, Intercept, fit_decay};
 use voronudge_report::channel_report::{
     CellNumbers, ChannelReport, ConservationRecord, ContinuumRecord, DecayRecord, DisturbanceRecord,
@@ -91,13 +91,7 @@ pub(super) fn findings(
         length: request.cell_box.lengths()[1],
         walls: tissue.channel().is_walled().then_some("x"),
         cell_size: request.cell_size,
-        parameters: BTreeMap::from([
-            ("K_A", p.area_elasticity),
-            ("K_P", p.perimeter_elasticity),
-            ("P_0", p.preferred_perimeter),
-            ("A_0", p.preferred_area),
-            ("alpha", p.chirality),
-        ]),
+        parameters: named(p),
         turnover: TurnoverRecord {
             extrusion_rate: turnover.extrusion.rate,
             extrusion_length: turnover.extrusion.decay_length,

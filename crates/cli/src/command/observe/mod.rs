@@ -87,12 +87,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         out.write_array("t1.npy", rows(&all, &data, &frames).view())?;
         curves.extend(exchange_statistics(&recorded.recording, &plan, &all));
     }
-    if let Some(measured) = &nematic {
-        curves.extend(measured.nematic.curves.iter().cloned());
-        measured.write(&mut out, &data, &frames)?;
-    } else {
-        run.warn("the box is too small to smooth the director: nothing is said of defects");
-    }
+    curves.extend(nematic.nematic.curves.iter().cloned());
+    nematic.write(&mut out, &data, &frames)?;
     curves.sort_by_key(|curve| curve.of);
     for curve in curves.iter().filter(|curve| !curve.of.is_number()) {
         let table = Array2::from_shape_fn((curve.at.len(), 4), |(row, column)| match column {
@@ -104,19 +100,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         out.write_array(&format!("{}.npy", curve.of.name()), table.view())?;
     }
     let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
-    let report = report::report(
-        run.record(Some(&data)),
-        &units,
-        &frames,
-        (&recorded, &plan),
-        (&curves, nematic.as_ref()),
-    );
+    let report =
+        report::report(run.record(Some(&data)), &units, &frames, (&recorded, &plan), (&curves, &nematic));
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let title = arguments.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
     out.write_text(
         "report.html",
-        &page::page(&title, &report, &recorded.recording, (&curves, nematic.as_ref()), &units)?,
+        &page::page(&title, &report, &recorded.recording, (&curves, &nematic), &units)?,
     )?;
     let summary = page::summary(&report, out.path());
     run.finish(Some(out), &json, &summary)?;

@@ -2,17 +2,18 @@
 
 use super::Recorded;
 use super::page::figure;
-use crate::arguments::ParameterArguments;
+use crate::arguments::{ParameterArguments, named};
 use crate::command::drawing::{borders, cells_view};
 use crate::failure::Failure;
 use clap::Args;
 use ndarray::{Array2, Array4};
-use std::collections::BTreeMap;
 use std::path::Path;
-use voronudge_geometry::{Domain, shape_tensors};
+use voronudge_geometry::shape_tensors;
 use voronudge_io::{DataSet, OutputDirectory};
 use voronudge_model::{Model, Parameters, cell_stresses};
-use voronudge_observables::{Around, Defect, Frame, Nematic, Plan, Quantity, Recording, SQUARES, nematic};
+use voronudge_observables::{
+    Around, Defect, Frame, Nematic, Plan, Quantity, SQUARES, largest_width, nematic,
+};
 use voronudge_report::Units;
 use voronudge_report::figure::{AroundDefects, DefectMark, around_defects, defect_map};
 use voronudge_report::infer_report::Quantity as Amount;
@@ -58,34 +59,23 @@ impl NematicArguments {
         self.parameters.file()
     }
 
-    /// Order and defects; `None` if a box is too small for the usual width and no other is given.
+    /// Order and defects.
     pub fn measure(
         &self,
         recorded: &Recorded,
         plan: &Plan,
         model: Option<Parameters<f64>>,
-    ) -> Result<Option<Measured>, Failure> {
-        let width = self.director_width.unwrap_or_else(|| usual_width(&recorded.recording, plan));
+    ) -> Result<Measured, Failure> {
+        let usual = || WIDTH.min(largest_width(&recorded.recording, plan));
+        let width = self.director_width.unwrap_or_else(usual);
         let tissue = model.as_ref().map(Model::chiral_voronoi);
         let stresses = tissue
             .as_ref()
             .map(|tissue| move |frame: &Frame| cell_stresses(&frame.tessellation, &frame.positions, tissue));
         let stresses = stresses.as_ref().map(|of| of as _);
-        match nematic(&recorded.recording, plan, width, stresses) {
-            Ok(nematic) => Ok(Some(Measured { nematic, width: width * plan.spacing(), model })),
-            Err(_) if self.director_width.is_none() => Ok(None),
-            Err(error) => Err(Failure::from(error)),
-        }
+        let nematic = nematic(&recorded.recording, plan, width, stresses)?;
+        Ok(Measured { nematic, width: width * plan.spacing(), model })
     }
-}
-
-/// The usual width, or a quarter of the side of a smaller box.
-fn usual_width(recording: &Recording, plan: &Plan) -> f64 {
-    let largest = recording.frames().iter().map(|frame| match frame.tessellation.domain() {
-        Domain::Periodic(own) => 0.25 * own.lengths()[0].min(own.lengths()[1]) / plan.spacing(),
-        Domain::Open => WIDTH,
-    });
-    largest.fold(WIDTH, f64::min)
 }
 
 impl Measured {
@@ -95,15 +85,7 @@ impl Measured {
             smoothing_width: Amount { value: self.width, unit: units.length.clone() },
             plus: count(0.5),
             minus: count(-0.5),
-            stress_of: self.model.as_ref().map(|p| {
-                BTreeMap::from([
-                    ("K_A", p.area_elasticity),
-                    ("K_P", p.perimeter_elasticity),
-                    ("P_0", p.preferred_perimeter),
-                    ("A_0", p.preferred_area),
-                    ("alpha", p.chirality),
-                ])
-            }),
+            stress_of: self.model.as_ref().map(named),
         }
     }
 

@@ -43,7 +43,8 @@ const GUIDE: &[[&str; 2]] = &[
     ],
     [
         "Defects",
-        "Shapes of cells, smoothed over a Gaussian, have a long axis everywhere but at defects, around which it turns by half a turn: one way (+½, a comet) or the other (−½, three arms).          Shapes that know nothing of each other have 1/(4πw²) of them to a unit area, w the width of the Gaussian; fewer are a sign of order.",
+        "Shapes of cells, smoothed over a Gaussian, have a long axis everywhere but at defects, around which it turns by half a turn: one way (+½, a comet) or the other (−½, three arms). \
+         Shapes that know nothing of each other have 1/(4πw²) of them to a unit area, w the width of the Gaussian; fewer are a sign of order.",
     ],
 ];
 
@@ -51,7 +52,7 @@ pub(super) fn page(
     title: &str,
     report: &ObserveReport,
     recording: &Recording,
-    (curves, nematic): (&[Curve], Option<&Measured>),
+    (curves, nematic): (&[Curve], &Measured),
     units: &Units,
 ) -> Result<String, Failure> {
     let figures = |all: &[Quantity]| -> Vec<Figure> {
@@ -95,7 +96,7 @@ pub(super) fn page(
         .filter(|section| !section.figures.is_empty()),
     );
     let first = recording.frames().first();
-    sections.extend(nematic.zip(first).map(|(own, frame)| own.section(frame, label(report), units)));
+    sections.extend(first.map(|frame| nematic.section(frame, label(report), units)));
     sections.push(Section {
         heading: "Numbers".into(),
         table: Some(Table {

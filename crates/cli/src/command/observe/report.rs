@@ -12,7 +12,7 @@ pub(super) fn report(
     units: &Units,
     frames: &[usize],
     (recorded, plan): (&Recorded, &Plan),
-    (curves, nematic): (&[Curve], Option<&Measured>),
+    (curves, nematic): (&[Curve], &Measured),
 ) -> ObserveReport {
     let unit = |of: Dimensions| units.powers(of.length, of.time);
     let number = |curve: &Curve| ObservedNumber {
@@ -47,7 +47,7 @@ pub(super) fn report(
             Velocities::None => "none",
         },
         common_motion_removed: recorded.common_motion_removed,
-        nematic: nematic.map(|own| own.record(units)),
+        nematic: nematic.record(units),
         numbers: curves
             .iter()
             .filter(|curve| curve.of.is_number())
