@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Files that commands write whatever their options are, beside `report.json`.
-const WRITTEN: [(&str, &[&str]); 21] = [
+const WRITTEN: [(&str, &[&str]); 22] = [
     ("infer", &["report.html", "nudged_positions.npy", "predicted_velocities.npy"]),
     ("discover", &["report.html", "before_nudged_positions.npy", "after_nudged_positions.npy"]),
     ("evaluate", &["velocities.npy", "areas.npy", "perimeters.npy", "stress.npy"]),
@@ -22,6 +22,7 @@ const WRITTEN: [(&str, &[&str]); 21] = [
     ("merge", &["report.html"]),
     ("moduli", &["report.html"]),
     ("channel", &["report.html", "x.npy", "face.npy", "density.npy", "folded_profile.csv"]),
+    ("equation-of-state", &["report.html", "density.npy", "pressure.npy", "torque.npy"]),
     ("estimate-chirality", &["report.html"]),
     ("check-gradients", &[]),
     ("import trackmate", &["positions.npy", "dataset.toml"]),

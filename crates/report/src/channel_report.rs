@@ -60,6 +60,8 @@ pub struct ChannelReport {
     pub momentum: MomentumRecord,
     /// The continuum theory with the moduli of the honeycomb, where it has a steady state.
     pub continuum: Option<ContinuumRecord>,
+    /// The continuum theory with a measured equation of state, where one was given.
+    pub liquid: Option<LiquidRecord>,
     /// The chirality that the slope of v_y against v_x implies.
     pub chirality_from_flow: Option<SlopeRecord>,
     /// How much a birth changes velocities at once, by either way of injection, at the end of the run.
@@ -160,6 +162,23 @@ pub struct ContinuumRecord {
     pub velocity_x_difference: f64,
     /// The same of v_y, in units of the largest v_y of the simulation.
     pub velocity_y_difference: f64,
+}
+
+/// The theory of a liquid with an equation of state beside the simulation.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct LiquidRecord {
+    /// Lowest and highest density of the equation of state.
+    pub density_range: [f64; 2],
+    /// Strips whose simulated density is beyond them.
+    pub places_beyond: usize,
+    /// Root mean square difference of the density, in units of the largest deviation from its mean in the theory.
+    pub density_difference: f64,
+    /// Root mean square difference of v_x, in units of its largest value in the theory.
+    pub velocity_x_difference: f64,
+    /// The same of v_y, in units of the largest v_y of the simulation.
+    pub velocity_y_difference: f64,
+    /// ∫ ρ v_y dx from `momentum.distance` to the middle that the simulated density implies: ½ (τ(ρ) − τ(ρ in the middle)).
+    pub transport: f64,
 }
 
 /// A line through the points (v_x, v_y).

@@ -27,6 +27,7 @@ pub mod colour;
 pub mod colour_bar;
 pub mod contour;
 pub mod discover_report;
+pub mod equation_of_state_report;
 mod error;
 pub mod figure;
 pub mod histogram;
@@ -54,6 +55,7 @@ pub const SIMULATE_SCHEMA: &str = include_str!("../schema/simulate.schema.json")
 pub use before_after::BeforeAfter;
 pub use channel_report::{CHANNEL_SCHEMA, CHIRALITY_SCHEMA, ChannelReport, ChiralityReport};
 pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
+pub use equation_of_state_report::{EQUATION_OF_STATE_SCHEMA, EquationOfStateReport};
 pub use error::ReportError;
 pub use infer_report::{INFER_SCHEMA, InferReport};
 pub use moduli_report::{MODULI_SCHEMA, ModuliReport};

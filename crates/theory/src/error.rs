@@ -32,6 +32,12 @@ pub enum Error {
         /// What was given.
         value: f64,
     },
+    /// Densities, pressures and torques that make no equation of state.
+    #[error("an equation of state cannot have {reason}")]
+    EquationOfState {
+        /// What it has.
+        reason: &'static str,
+    },
     /// A grid too coarse to have a face inside.
     #[error("{cells} grid cells from the edge to the middle, but at least 2 are needed")]
     Grid {

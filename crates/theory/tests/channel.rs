@@ -2,7 +2,7 @@
 
 #![allow(clippy::unwrap_used, reason = "a test may fail anywhere")]
 
-use voronudge_theory::{ChannelEvolution, ChannelMedium, ChannelTurnover, Error};
+use voronudge_theory::{ChannelEvolution, ChannelMedium, ChannelTurnover, EquationOfState, Error};
 
 fn turnover(extrusion_rate: f64) -> ChannelTurnover {
     ChannelTurnover { width: 12.0, extrusion_rate, extrusion_length: 1.4, proliferation_length: 0.5 }
@@ -94,4 +94,75 @@ fn senseless_channels_are_refused() {
     assert_eq!(ChannelEvolution::new(medium, turnover(1.0), 1), Err(Error::Grid { cells: 1 }));
     let backwards = ChannelMedium { shear_viscosity: -1.0, ..medium };
     assert!(backwards.checked().is_err());
+}
+
+/// Pressure and torques that grow as the square of the density are the elastic medium.
+#[test]
+fn an_equation_of_state_of_parabolas_is_the_elastic_medium() {
+    let turnover = turnover(0.3);
+    let points: Vec<[f64; 3]> = (0..8)
+        .map(|k| 0.7 + 0.17 * f64::from(k))
+        .map(|rho| [rho, 0.5 * 3.0 * rho * rho, 4.5 * rho * rho])
+        .collect();
+    let equation = EquationOfState::new(&points).unwrap();
+    let [mut liquid, mut elastic] = [
+        ChannelEvolution::of_liquid(equation, turnover, 40).unwrap(),
+        ChannelEvolution::new(ChannelMedium::elastic(3.0, 4.5).unwrap(), turnover, 40).unwrap(),
+    ];
+    liquid.advance(5.0);
+    elastic.advance(5.0);
+    let [edge, middle] = [elastic.density()[0], elastic.density()[39]];
+    assert!(edge > 1.02 && middle < 0.99, "{edge} {middle}");
+    for (a, b) in liquid.density().iter().zip(elastic.density()) {
+        assert!((a - b).abs() < 1e-9, "{a} for {b}");
+    }
+    for (a, b) in liquid.velocities().iter().flatten().zip(elastic.velocities().iter().flatten()) {
+        assert!((a - b).abs() < 1e-9, "{a} for {b}");
+    }
+}
+
+/// In the steady state the pressure makes up for the flow of cells, and transport along the channel is half the difference of torques.
+#[test]
+fn a_liquid_comes_to_the_state_that_its_pressure_implies() {
+    // Stiff where it is dense; torques that rise and fall.
+    let (p, tau) = (|rho: f64| rho.powi(3), |rho: f64| 5.0 * rho - 2.0 * rho * rho);
+    let points: Vec<[f64; 3]> =
+        (0..60).map(|k| 0.5 + 0.03 * f64::from(k)).map(|rho| [rho, p(rho), tau(rho)]).collect();
+    let equation = EquationOfState::new(&points).unwrap();
+    let mut flow = ChannelEvolution::of_liquid(equation, turnover(0.3), 60).unwrap();
+    assert!(flow.settle(1e-8, 400.0));
+    let (density, [v_x, v_y], width) = (flow.density(), flow.velocities(), flow.faces()[1]);
+    let (mut along, mut across) = (0.0, 0.0);
+    for face in 1..density.len() {
+        let mean = 0.5 * (density[face - 1] + density[face]);
+        across += mean * v_x[face] * width;
+        along += mean * v_y[face] * width;
+    }
+    let last = density.len() - 1;
+    assert!((across - (p(density[0]) - p(density[last]))).abs() < 1e-4, "{across}");
+    assert!((along - 0.5 * (tau(density[0]) - tau(density[last]))).abs() < 1e-4, "{along}");
+    assert!((density.iter().sum::<f64>() / density.len() as f64 - 1.0).abs() < 1e-12);
+}
+
+#[test]
+fn what_is_no_equation_of_state_is_refused() {
+    let refused = |points: &[[f64; 3]]| EquationOfState::new(points).unwrap_err().to_string();
+    assert!(refused(&[[1.0; 3], [2.0; 3]]).contains("fewer than three"));
+    assert!(refused(&[[1.0; 3], [3.0; 3], [2.0; 3]]).contains("do not rise"));
+    assert!(refused(&[[1.0; 3], [2.0, f64::NAN, 0.0], [3.0; 3]]).contains("not finite"));
+    let falling = EquationOfState::new(&[[1.0, 3.0, 0.0], [2.0, 2.0, 0.0], [3.0, 1.0, 0.0]]).unwrap();
+    assert!(ChannelEvolution::of_liquid(falling, turnover(0.3), 40).is_err());
+}
+
+/// Where the edge becomes far stiffer than the uniform channel was, steps stay stable.
+#[test]
+fn a_channel_that_stiffens_settles() {
+    let p = |rho: f64| (6.0 * (rho - 1.0)).exp();
+    let points: Vec<[f64; 3]> =
+        (0..30).map(|k| 0.8 + 0.03 * f64::from(k)).map(|rho| [rho, p(rho), rho]).collect();
+    let turnover = ChannelTurnover { extrusion_rate: 4.0, ..turnover(0.3) };
+    let mut flow = ChannelEvolution::of_liquid(EquationOfState::new(&points).unwrap(), turnover, 40).unwrap();
+    assert!(flow.settle(1e-6, 200.0));
+    let density = flow.density();
+    assert!(density[0] > 1.2 && density.windows(2).all(|pair| pair[1] < pair[0] + 1e-6), "{density:?}");
 }

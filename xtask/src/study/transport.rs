@@ -1,15 +1,14 @@
 //! What drives the flow along a channel: the transport against the torques of uniform liquids of the same density, and the shapes of
 //! cells against their age.
 
-use super::flows::random;
 use super::seeds::{Replicas, mean, on_one_core_each};
 use crate::Outcome;
 use claims::channel::{Case, RELAXATION};
 use std::error::Error;
-use voronudge_geometry::perimeters;
-use voronudge_model::Parameters;
+use std::ops::ControlFlow;
 use voronudge_observables::shape_indices;
 use voronudge_simulate::measure::ChannelProfile;
+use voronudge_simulate::moduli::{UniformState, UniformTissue};
 use voronudge_simulate::{LivingTissue, recommended_time_step};
 
 /// HT1080, 20 cells wide and long.
@@ -28,34 +27,23 @@ const APART: f64 = 1.0;
 const BANDS: [f64; 6] = [0.5, 1.0, 1.8, 2.4, 4.0, 10.0];
 const AGES: [f64; 4] = [0.25, 1.0, 4.0, f64::INFINITY];
 
-/// Torque density and shape index of a uniform liquid.
-#[derive(Debug, Clone, Copy)]
+/// Torque density and shape index of uniform liquids of a density.
+#[derive(Debug, Clone, Copy, PartialEq)]
 struct Uniform {
     density: f64,
     torque: f64,
     shape: f64,
 }
 
-/// In units of its own cells a liquid of density ρ has P_0 √ρ; K_A is zero.
-fn uniform(density: f64, seed: u64) -> Result<Uniform, Box<dyn Error>> {
-    let p: Parameters<f64> = CASE.parameters();
-    let at = Parameters { preferred_perimeter: p.preferred_perimeter * density.sqrt(), ..p };
-    let mut simulation = random(UNIFORM_CELLS, &at, seed)?;
-    let time_step = recommended_time_step(&at, 1.0);
-    let [settle, average] = UNIFORM.map(|time| (time / time_step).round() as usize);
-    let every = (0.5 / time_step).round() as usize;
-    let (mut square, mut shape, mut looks) = (0.0, 0.0, 0.0);
-    for step in 1..=settle + average {
-        simulation.step(time_step)?;
-        if step > settle && step.is_multiple_of(every) {
-            let (tessellation, positions) = (simulation.tessellation(), simulation.positions());
-            square += perimeters(tessellation, positions).iter().map(|p| p * p).sum::<f64>();
-            shape += shape_indices(tessellation, positions).iter().sum::<f64>();
-            looks += positions.len() as f64;
-        }
-    }
-    let torque = at.chirality * at.perimeter_elasticity * square / looks;
-    Ok(Uniform { density, torque, shape: shape / looks })
+fn uniform(density: f64, seed: u64) -> Result<UniformState, Box<dyn Error>> {
+    let tissue = UniformTissue {
+        parameters: CASE.parameters(),
+        density,
+        cells: UNIFORM_CELLS,
+        times: UNIFORM,
+        time_step: None,
+    };
+    Ok(tissue.measure(seed, &|| ControlFlow::Continue(()))?)
 }
 
 /// A value of the uniform liquids at a density, by linear interpolation.
@@ -112,14 +100,12 @@ pub fn run(replicas: Replicas) -> Outcome {
     println!("uniform liquids\n\n| ρ/ρ_0 | τ (K_P) | P/√A |\n|---|---|---|");
     let equations: Vec<Uniform> = liquids
         .chunks(count)
-        .map(|own| {
-            let of = |of: fn(&Uniform) -> f64| mean(&own.iter().map(of).collect::<Vec<_>>());
-            let (torque, shape) = (of(|own| own.torque), of(|own| own.shape));
-            println!(
-                "| {} | {:.3} ± {:.3} | {:.4} ± {:.4} |",
-                own[0].density, torque.0, torque.1, shape.0, shape.1
-            );
-            Uniform { density: own[0].density, torque: torque.0, shape: shape.0 }
+        .zip(DENSITIES)
+        .map(|(own, density)| {
+            let of = |of: fn(&UniformState) -> f64| mean(&own.iter().map(of).collect::<Vec<_>>());
+            let (torque, shape) = (of(|own| own.torque), of(|own| own.shape_index));
+            println!("| {density} | {:.3} ± {:.3} | {:.4} ± {:.4} |", torque.0, torque.1, shape.0, shape.1);
+            Uniform { density, torque: torque.0, shape: shape.0 }
         })
         .collect();
     let runs = on_one_core_each(count as u64, |task| channel(seeds[task as usize]))?;

@@ -5,6 +5,7 @@ pub(crate) mod check_gradients;
 pub(crate) mod completions;
 pub(crate) mod discover;
 mod drawing;
+pub(crate) mod equation_of_state;
 pub(crate) mod estimate_chirality;
 pub(crate) mod evaluate;
 mod fit;

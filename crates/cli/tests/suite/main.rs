@@ -11,6 +11,7 @@ mod browser;
 mod channels;
 mod configurations;
 mod discoveries;
+mod equations_of_state;
 mod evaluations;
 mod exports;
 #[cfg(target_os = "linux")]

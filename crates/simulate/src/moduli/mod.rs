@@ -31,12 +31,14 @@ mod dynamic;
 mod relaxation;
 mod settled;
 mod step;
+mod uniform;
 mod viscosity;
 
 pub use dynamic::{Dynamic, DynamicModulus, DynamicProtocol, FEWEST_PERIODS, FEWEST_STEPS};
 pub use relaxation::Relaxation;
 pub use settled::Settled;
 pub use step::after_a_step;
+pub use uniform::{UniformState, UniformTissue};
 pub use viscosity::{Viscosity, ViscosityProtocol, viscous};
 
 use crate::{Error, Simulation};

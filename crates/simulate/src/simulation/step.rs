@@ -17,7 +17,28 @@ const LEAST_PART: f64 = 1e-6;
 /// Cells per task in sums over fields.
 pub(super) const CHUNK: usize = 1024;
 
+/// Parts into which a step is cut at most if a cell moves too far in it.
+const MOST_PARTS: u32 = 1024;
+
 impl<S: Scalar> Simulation<S> {
+    /// As [`step`](Self::step); a step in which a cell would move by more than the mean spacing is cut into 2, 4, … 1024 parts.
+    ///
+    /// # Errors
+    /// Those of [`step`](Self::step), of a step that cannot be cut further. What was made of its parts stays.
+    pub fn step_or_parts(&mut self, time_step: f64) -> Result<(), Error> {
+        self.halved(time_step, 1)
+    }
+
+    fn halved(&mut self, time_step: f64, parts: u32) -> Result<(), Error> {
+        match self.step(time_step) {
+            Err(Error::StepTooLarge { .. }) if parts < MOST_PARTS => {
+                self.halved(0.5 * time_step, 2 * parts)?;
+                self.halved(0.5 * time_step, 2 * parts)
+            }
+            other => other,
+        }
+    }
+
     pub(super) fn runge_kutta(&mut self, stage: &mut Stage<S>, time_step: f64) -> Result<(), Error> {
         let Stage { positions, headings, slopes: [slope, sum, _] } = stage;
         sum.clone_from(&self.velocities);

@@ -14,9 +14,6 @@ use places::{Birth, Demand, Places};
 use rand::Rng;
 use voronudge_geometry::Vector;
 
-/// Parts into which a step is cut at most if a cell moves too far in it.
-const MOST_PARTS: u32 = 1024;
-
 /// A simulation whose cells are extruded and born, in a channel.
 ///
 /// A step moves the cells and then draws the events of the step, each cell with the probability `1 − exp(−k Δt)`. The cells of the
@@ -121,8 +118,7 @@ impl LivingTissue {
 
     /// Moves the cells by a step `Δt` and then extrudes and adds cells.
     ///
-    /// A step in which a cell would move by more than the mean spacing, as may happen next to a new cell, is cut into 2, 4, … 1024
-    /// parts.
+    /// A step in which a cell would move too far, as may happen next to a new cell, is [cut into parts](Simulation::step_or_parts).
     ///
     /// # Errors
     /// Those of [`Simulation::step`]; [`Error::Extinct`], [`Error::TooManyCells`] and [`Error::NoPlace`] if the events of the
@@ -133,23 +129,13 @@ impl LivingTissue {
         self.last.from.extend_from_slice(self.simulation.positions());
         self.last.extrusions.clear();
         self.last.births.clear();
-        let moved = self.move_in_parts(time_step, 1);
+        let moved = self.simulation.step_or_parts(time_step);
         self.last.to.clear();
         self.last.to.extend_from_slice(self.simulation.positions());
         self.last.bonds.clear();
         moved?;
         self.last.bonds.extend(self.simulation.bonds());
         self.turn_over(time_step)
-    }
-
-    fn move_in_parts(&mut self, time_step: f64, parts: u32) -> Result<(), Error> {
-        match self.simulation.step(time_step) {
-            Err(Error::StepTooLarge { .. }) if parts < MOST_PARTS => {
-                self.move_in_parts(0.5 * time_step, 2 * parts)?;
-                self.move_in_parts(0.5 * time_step, 2 * parts)
-            }
-            other => other,
-        }
     }
 
     fn turn_over(&mut self, time_step: f64) -> Result<(), Error> {

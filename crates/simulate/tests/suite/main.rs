@@ -7,4 +7,5 @@ mod measures;
 mod phases;
 mod sensitivity;
 mod turnover;
+mod uniform;
 mod walls;

@@ -1,7 +1,7 @@
 //! The continuum equations of a channel in time, on a grid.
 
 use super::{ChannelMedium, ChannelTurnover};
-use crate::Error;
+use crate::{EquationOfState, Error};
 
 /// Density and velocities from an edge to the middle of a channel, in time:
 ///
@@ -9,7 +9,7 @@ use crate::Error;
 /// ∂_t ρ + ∂_x(ρ v_x) = (k_prolif − k_extr) ρ
 /// ```
 ///
-/// with the force balance of [`ChannelMedium`]. At the edge and in the middle both velocities vanish, by the symmetry of the
+/// with the force balance of [`ChannelMedium`] or of an [`EquationOfState`]. At the edge and in the middle both velocities vanish, by the symmetry of the
 /// periodic box under rotations by π.
 ///
 /// Between torque-free walls `v_x` vanishes at the edge too, since no cell passes, and without viscosities the theory is the same. `v_y` of
@@ -20,7 +20,7 @@ use crate::Error;
 /// cells are conserved to rounding. Second order in space, classical Runge–Kutta steps in time.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ChannelEvolution {
-    medium: ChannelMedium,
+    tissue: Tissue,
     turnover: ChannelTurnover,
     spacing: f64,
     /// Means of `exp(−d/d_extr)` and `exp(−d/d_prolif)` over each grid cell.
@@ -28,6 +28,13 @@ pub struct ChannelEvolution {
     /// `ρ/ρ₀` of each grid cell.
     density: Vec<f64>,
     time: f64,
+}
+
+/// What gradients of the density push with.
+#[derive(Debug, Clone, PartialEq)]
+enum Tissue {
+    Medium(ChannelMedium),
+    Liquid(EquationOfState),
 }
 
 /// Largest eigenvalue times step for which the classical Runge–Kutta method is stable, with a margin.
@@ -52,7 +59,26 @@ impl ChannelEvolution {
     /// # Ok::<(), voronudge_theory::Error>(())
     /// ```
     pub fn new(medium: ChannelMedium, turnover: ChannelTurnover, cells: usize) -> Result<Self, Error> {
-        let (medium, turnover) = (medium.checked()?, turnover.checked()?);
+        Self::of(Tissue::Medium(medium.checked()?), turnover, cells)
+    }
+
+    /// The same of a liquid that gradients of pressure and torques move.
+    ///
+    /// # Errors
+    /// [`Error::EquationOfState`] where the pressure does not rise with the density; otherwise as [`new`](Self::new).
+    pub fn of_liquid(
+        equation: EquationOfState,
+        turnover: ChannelTurnover,
+        cells: usize,
+    ) -> Result<Self, Error> {
+        if equation.stiffness()[0] <= 0.0 {
+            return Err(Error::EquationOfState { reason: "a pressure that does not rise with the density" });
+        }
+        Self::of(Tissue::Liquid(equation), turnover, cells)
+    }
+
+    fn of(tissue: Tissue, turnover: ChannelTurnover, cells: usize) -> Result<Self, Error> {
+        let turnover = turnover.checked()?;
         if cells < 2 {
             return Err(Error::Grid { cells });
         }
@@ -64,7 +90,7 @@ impl ChannelEvolution {
             };
             (0..cells).map(mean).collect()
         });
-        Ok(Self { medium, turnover, spacing, decays, density: vec![1.0; cells], time: 0.0 })
+        Ok(Self { tissue, turnover, spacing, decays, density: vec![1.0; cells], time: 0.0 })
     }
 
     /// Time since the beginning.
@@ -96,8 +122,11 @@ impl ChannelEvolution {
     pub fn advance(&mut self, time: f64) {
         let highest = self.density.iter().copied().fold(1.0, f64::max);
         // The density at the edge can still rise; a tenth is room for that in each of these pieces.
-        let rate = 4.4 * self.medium.longitudinal * highest / (self.spacing * self.spacing)
-            + self.turnover.extrusion_rate;
+        let stiffest = match &self.tissue {
+            Tissue::Medium(medium) => medium.longitudinal * highest,
+            Tissue::Liquid(equation) => equation.stiffness()[1],
+        };
+        let rate = 4.4 * stiffest / (self.spacing * self.spacing) + self.turnover.extrusion_rate;
         let steps = (time * rate / STABLE).ceil().max(1.0) as usize;
         let step = time / steps as f64;
         for _ in 0..steps {
@@ -154,24 +183,40 @@ impl ChannelEvolution {
     }
 
     fn velocities_of(&self, density: &[f64]) -> [Vec<f64>; 2] {
-        let (medium, cells) = (&self.medium, density.len());
-        let gradient = |face: usize| {
-            if face == 0 || face == cells { 0.0 } else { (density[face] - density[face - 1]) / self.spacing }
+        let cells = density.len();
+        // On the cells between two grid cells, per cell.
+        let force = |face: usize| {
+            if face == 0 || face == cells {
+                return [0.0; 2];
+            }
+            let (before, after) = (density[face - 1], density[face]);
+            match &self.tissue {
+                Tissue::Medium(medium) => [medium.longitudinal, medium.transverse]
+                    .map(|modulus| -modulus * ((after - before) / self.spacing)),
+                Tissue::Liquid(equation) => [
+                    equation.pressure(after) - equation.pressure(before),
+                    0.5 * (equation.torque(after) - equation.torque(before)),
+                ]
+                .map(|rise| -rise / (0.5 * (before + after) * self.spacing)),
+            }
         };
-        let forces: Vec<[f64; 2]> = (0..=cells)
-            .map(|face| [medium.longitudinal, medium.transverse].map(|modulus| -modulus * gradient(face)))
-            .collect();
-        let viscosities = [
-            [medium.longitudinal_viscosity, medium.odd_shear_viscosity],
-            [medium.odd_bulk_viscosity - medium.odd_shear_viscosity, medium.shear_viscosity],
-        ];
-        let velocities =
-            if viscosities == [[0.0; 2]; 2] { forces } else { self.viscous(viscosities, forces) };
+        let forces: Vec<[f64; 2]> = (0..=cells).map(force).collect();
+        let velocities = match &self.tissue {
+            Tissue::Medium(medium) => self.viscous(medium, forces),
+            Tissue::Liquid(_) => forces,
+        };
         [0, 1].map(|axis| velocities.iter().map(|v| v[axis]).collect())
     }
 
     /// Solves `v − η ∂_x² v = f` with `v = 0` at both ends: block elimination (Thomas).
-    fn viscous(&self, viscosities: [[f64; 2]; 2], mut forces: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+    fn viscous(&self, medium: &ChannelMedium, mut forces: Vec<[f64; 2]>) -> Vec<[f64; 2]> {
+        let viscosities = [
+            [medium.longitudinal_viscosity, medium.odd_shear_viscosity],
+            [medium.odd_bulk_viscosity - medium.odd_shear_viscosity, medium.shear_viscosity],
+        ];
+        if viscosities == [[0.0; 2]; 2] {
+            return forces;
+        }
         let share = viscosities.map(|row| row.map(|eta| eta / (self.spacing * self.spacing)));
         let diagonal =
             [[1.0 + 2.0 * share[0][0], 2.0 * share[0][1]], [2.0 * share[1][0], 1.0 + 2.0 * share[1][1]]];

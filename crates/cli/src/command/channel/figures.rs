@@ -34,8 +34,12 @@ impl Figures<'_> {
                 "continuum, mean-field moduli",
                 GREY,
                 Stroke::Dashed,
-                continuum.density.clone(),
+                continuum.flow.density.clone(),
             ));
+        }
+        if let Some(liquid) = &self.findings.liquid {
+            let points = liquid.flow.density.clone();
+            curves.push(curve("continuum, equation of state", VERMILLION, Stroke::Solid, points));
         }
         let svg = self.chart("density across the channel", [&self.distance(), &label], &points, &curves);
         Figure::new(
@@ -54,9 +58,14 @@ impl Figures<'_> {
         let mut curves = self.decay("velocity_x", "exponential decay", BLUE);
         curves.extend(self.decay("velocity_y", "", VERMILLION));
         if let Some(continuum) = &self.findings.continuum {
-            let [x, y] = continuum.velocity.clone();
+            let [x, y] = continuum.flow.velocity.clone();
             curves.push(curve("continuum, mean-field moduli", BLUE, Stroke::Dashed, x));
             curves.push(curve("", VERMILLION, Stroke::Dashed, y));
+        }
+        if let Some(liquid) = &self.findings.liquid {
+            let [x, y] = liquid.flow.velocity.clone();
+            curves.push(curve("continuum, equation of state", BLUE, Stroke::Dotted, x));
+            curves.push(curve("", VERMILLION, Stroke::Dotted, y));
         }
         let svg = self.chart("velocities", [&self.distance(), &self.velocity("velocity")], &points, &curves);
         let caption = "Mean velocities against the distance from the edge, both halves together, with signs as at the left edge: the \
@@ -114,8 +123,18 @@ impl Figures<'_> {
             series("torques of the cells", VERMILLION, Marker::Diamond, faces, &self.folded.torque),
         ];
         self.leave_out_edge_current(&mut points);
-        let svg =
-            self.chart("what drives the flow along the channel", [&self.distance(), &label], &points, &[]);
+        let curves: Vec<_> = (self.findings.liquid.iter())
+            .map(|liquid| {
+                let name = "torques of uniform tissues of the density there";
+                curve(name, INK, Stroke::Dotted, liquid.transport.clone())
+            })
+            .collect();
+        let svg = self.chart(
+            "what drives the flow along the channel",
+            [&self.distance(), &label],
+            &points,
+            &curves,
+        );
         let caption = "Cells that flow along the channel between a distance and the middle, per time; the difference of the shear stress \
                        between the ends of that stretch, which balances their friction in the steady state; and half the difference of \
                        the density of torques, the part of the stress that cells bring about by turning.";

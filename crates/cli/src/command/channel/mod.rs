@@ -1,6 +1,7 @@
 //! `voronudge channel`: flows that extrusion and proliferation near the edges of a channel drive.
 
 mod arrays;
+mod continuum;
 mod figures;
 mod frames;
 mod page;
@@ -49,7 +50,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let request = arguments.channel.resolve(&arguments.parameters, arguments.common.seed)?;
     let mut frames = Frames::new(arguments.frames, &request.schedule)?;
     let mut tissue = tissue(&request, arguments.common.seed)?;
-    let mut out = arguments.common.output(arguments.parameters.file())?;
+    let inputs = arguments.parameters.file().into_iter().chain(arguments.channel.equation_of_state());
+    let mut out = arguments.common.output(inputs)?;
     request.doubtful_step().into_iter().for_each(|warning| run.warn(warning));
     let mut progress = Progress::new(arguments.common.verbosity());
     let mut interrupted = false;
@@ -92,7 +94,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         vertex_mean: mean(vertex),
         division_mean: mean(division),
     });
-    let findings = report::findings(&run, &request, (&tissue, &outcome), &folded, record)?;
+    let findings = report::findings(&mut run, &request, (&tissue, &outcome), &folded, record)?;
     arrays::write(&mut out, &full, &folded)?;
     frames.write(&mut out, &tissue, &request.named)?;
     if let Some([vertex, division]) = &disturbance {

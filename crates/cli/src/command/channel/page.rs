@@ -61,7 +61,7 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
         },
         Section {
             heading: "What drives the flow along the channel".into(),
-            text: vec![momentum(report)],
+            text: std::iter::once(momentum(report)).chain(liquid(report)).collect(),
             figures: vec![figures.momentum()],
             ..Section::default()
         },
@@ -213,6 +213,21 @@ fn momentum(report: &ChannelReport) -> String {
     )
 }
 
+/// What an equation of state predicts.
+fn liquid(report: &ChannelReport) -> Option<String> {
+    let liquid = report.liquid?;
+    let percent = |share: f64| format!("{} %", significant(100.0 * share, 2));
+    Some(format!(
+        "With the equation of state and the rates alone, the density comes out with a root mean square difference of {} of its range, v_x of {} and v_y of {} of \
+         their peaks. Uniform tissues of the simulated density there would make the transport {} {}.",
+        percent(liquid.density_difference),
+        percent(liquid.velocity_x_difference),
+        percent(liquid.velocity_y_difference),
+        significant(liquid.transport, 3),
+        rate_unit(report)
+    ))
+}
+
 fn interval(decay: &DecayRecord) -> String {
     let end = |end: Option<f64>| end.map_or("?".into(), |end| significant(end, 3));
     format!("{} to {}", end(decay.length_ci95[0]), end(decay.length_ci95[1]))
@@ -275,6 +290,9 @@ pub(super) fn summary(report: &ChannelReport, out: &Path) -> String {
         rate_unit(report),
         significant(report.conservation.largest_in_errors, 2)
     );
+    if let Some(text_of_liquid) = liquid(report) {
+        let _ = writeln!(text, "{text_of_liquid}");
+    }
     if let Some(record) = &report.birth_disturbance {
         let _ = writeln!(
             text,

@@ -1,5 +1,6 @@
 //! What is read off the profiles: decays, conservation, the theory beside them, the chirality of the flow.
 
+use super::continuum::{Continuum, Liquid, Theory};
 use super::request::ChannelRequest;
 use crate::arguments::named;
 use crate::command::estimate_chirality::{Tissue, line_points, slope};
@@ -7,24 +8,18 @@ use crate::failure::Failure;
 use crate::run::Run;
 use voronudge_infer::{DecayFit, DecayPoint, DecayShape, Intercept, fit_decay};
 use voronudge_report::channel_report::{
-    CellNumbers, ChannelReport, ConservationRecord, ContinuumRecord, DecayRecord, DisturbanceRecord,
-    MomentumRecord, TurnoverRecord,
+    CellNumbers, ChannelReport, ConservationRecord, DecayRecord, DisturbanceRecord, MomentumRecord,
+    TurnoverRecord,
 };
+use voronudge_report::infer_report::InputFile;
 use voronudge_simulate::measure::{ChannelProfile, Estimate};
 use voronudge_simulate::{ChannelRun, Injection, LivingTissue, Proliferation};
-use voronudge_theory::{ChannelEvolution, ChannelMedium, ChannelTurnover, MeanField, Parameters};
-
-/// The steady state of the continuum theory, in the units of the request: distances and `ρ`, distances and velocities.
-pub(super) struct Continuum {
-    pub record: ContinuumRecord,
-    pub density: Vec<[f64; 2]>,
-    pub velocity: [Vec<[f64; 2]>; 2],
-}
 
 /// Everything that is derived from the folded profile.
 pub(super) struct Findings {
     pub report: ChannelReport,
     pub continuum: Option<Continuum>,
+    pub liquid: Option<Liquid>,
     pub fits: Vec<(&'static str, DecayFit, DecayShape)>,
     /// Distance from the edge from which on decays and the slope are fitted.
     pub from: f64,
@@ -34,12 +29,9 @@ pub(super) struct Findings {
 const BIRTH_LAYER: f64 = 3.0;
 /// Cells within this many cell sizes of a wall are in rows along it, and flow with the edge current.
 const WALL_LAYER: f64 = 2.0;
-/// Grid cells of the theory for the shorter of both decay lengths, and how many it has at most.
-const RESOLUTION: f64 = 4.0;
-const FINEST: usize = 400;
 
 pub(super) fn findings(
-    run: &Run,
+    run: &mut Run,
     request: &ChannelRequest,
     (tissue, outcome): (&LivingTissue, &ChannelRun),
     folded: &ChannelProfile,
@@ -70,7 +62,17 @@ pub(super) fn findings(
         })
         .collect();
     let decays = fits.iter().map(|(name, fit, _)| (*name, decay(fit, from))).collect();
-    let continuum = continuum(request, folded);
+    let theory = Theory::of(request, folded);
+    let continuum = theory.as_ref().and_then(Theory::mean_field);
+    let liquid = (theory.as_ref().zip(request.equation.as_ref()))
+        .map(|(theory, own)| theory.liquid(&own.equation, from))
+        .transpose()?;
+    if let Some(beyond) = liquid.as_ref().map(|own| own.record.places_beyond).filter(|count| *count > 0) {
+        run.warn(format!(
+            "in {beyond} of {} strips the density is beyond the equation of state, which goes on there as a straight line",
+            folded.centres.len()
+        ));
+    }
     let p = &request.parameters;
     let shape_index = p.preferred_perimeter / request.cell_size;
     let about = Tissue {
@@ -84,8 +86,12 @@ pub(super) fn findings(
         (record.alpha, record.alpha_ci95) = (None, None);
     }
     let turnover = &request.turnover;
+    let mut record = run.record(None);
+    record.inputs = (request.equation.iter())
+        .map(|own| InputFile { path: own.input.path.display().to_string(), sha256: own.input.sha256.clone() })
+        .collect();
     let report = ChannelReport {
-        run: run.record(None),
+        run: record,
         units: request.units.clone(),
         width,
         length: request.cell_box.lengths()[1],
@@ -132,10 +138,11 @@ pub(super) fn findings(
         conservation: conservation(folded),
         momentum: momentum(folded, from),
         continuum: continuum.as_ref().map(|continuum| continuum.record),
+        liquid: liquid.as_ref().map(|liquid| liquid.record),
         chirality_from_flow,
         birth_disturbance: disturbance,
     };
-    Ok(Findings { report, continuum, fits, from })
+    Ok(Findings { report, continuum, liquid, fits, from })
 }
 
 fn decay(fit: &DecayFit, from: f64) -> DecayRecord {
@@ -173,63 +180,4 @@ fn momentum(folded: &ChannelProfile, from: f64) -> MomentumRecord {
         shear_stress: at(&folded.shear_stress),
         torque: at(&folded.torque),
     }
-}
-
-/// The theory has lengths in ℓ₀ and times in 1/K_P.
-fn continuum(request: &ChannelRequest, folded: &ChannelProfile) -> Option<Continuum> {
-    let Proliferation::Replacing { decay_length } = request.turnover.proliferation else {
-        return None;
-    };
-    let (size, p) = (request.cell_size, &request.parameters);
-    let theory = MeanField::new(Parameters {
-        area_elasticity: p.area_elasticity * size * size / p.perimeter_elasticity,
-        perimeter_elasticity: 1.0,
-        preferred_perimeter: p.preferred_perimeter / size,
-        chirality: p.chirality,
-    });
-    let medium = ChannelMedium::mean_field(&theory.ok()?).ok()?;
-    let extrusion = request.turnover.extrusion;
-    let width = request.cell_box.lengths()[0] / size;
-    let turnover = ChannelTurnover {
-        width,
-        extrusion_rate: extrusion.rate / p.perimeter_elasticity,
-        // Far longer than the channel is the same everywhere.
-        extrusion_length: (extrusion.decay_length / size).min(1e6 * width),
-        proliferation_length: (decay_length / size).min(1e6 * width),
-    };
-    let shortest = turnover.extrusion_length.min(turnover.proliferation_length);
-    let cells = ((RESOLUTION * 0.5 * width / shortest).ceil() as usize).clamp(40, FINEST);
-    let mut flow = ChannelEvolution::new(medium, turnover, cells).ok()?;
-    flow.settle(1e-4 * turnover.extrusion_rate, 20.0 * width * width / medium.longitudinal);
-    let speed = size * p.perimeter_elasticity;
-    let mean = 1.0 / (size * size);
-    let [v_x, v_y] = flow.velocities();
-    let faces = flow.faces();
-    let scaled =
-        |v: &[f64]| -> Vec<[f64; 2]> { faces.iter().zip(v).map(|(d, v)| [d * size, v * speed]).collect() };
-    let velocity = [scaled(&v_x), scaled(&v_y)];
-    let centres = flow.centres();
-    let density = centres.iter().zip(flow.density()).map(|(d, rho)| [d * size, rho * mean]).collect();
-    let difference = |axis: usize, unit: f64| {
-        let off = folded.centres.iter().zip(&folded.velocity[axis]);
-        let squares: Vec<f64> =
-            off.map(|(d, at)| ((at.value - interpolated(&velocity[axis], *d)) / unit).powi(2)).collect();
-        (squares.iter().sum::<f64>() / squares.len() as f64).sqrt()
-    };
-    let peak = |values: &mut dyn Iterator<Item = f64>| values.map(f64::abs).fold(0.0, f64::max);
-    let record = ContinuumRecord {
-        longitudinal: medium.longitudinal * size * size * p.perimeter_elasticity,
-        transverse: medium.transverse * size * size * p.perimeter_elasticity,
-        ratio: medium.transverse / medium.longitudinal,
-        velocity_x_difference: difference(0, peak(&mut velocity[0].iter().map(|at| at[1]))),
-        velocity_y_difference: difference(1, peak(&mut folded.velocity[1].iter().map(|at| at.value))),
-    };
-    Some(Continuum { record, density, velocity })
-}
-
-/// Between points of a curve with ascending places, on a line.
-fn interpolated(curve: &[[f64; 2]], x: f64) -> f64 {
-    let after = curve.partition_point(|at| at[0] < x).clamp(1, curve.len() - 1);
-    let ([x0, y0], [x1, y1]) = (curve[after - 1], curve[after]);
-    y0 + (y1 - y0) * (x - x0) / (x1 - x0)
 }

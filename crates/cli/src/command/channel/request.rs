@@ -2,9 +2,11 @@
 
 use crate::arguments::ParameterArguments;
 use crate::command::drawing::units_of_model;
+use crate::command::equation_of_state::{self, MeasuredEquation};
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
+use std::path::{Path, PathBuf};
 use voronudge_geometry::PeriodicBox;
 use voronudge_model::Parameters;
 use voronudge_report::Units;
@@ -69,6 +71,9 @@ pub(super) struct ChannelArguments {
     /// Pieces of time whose scatter tells the errors.
     #[arg(long, default_value_t = 32, allow_negative_numbers = true)]
     samples: usize,
+    /// Also the flow that an equation of state predicts: a folder written by `equation-of-state` for a tissue of these parameters.
+    #[arg(long, value_name = "DIR")]
+    equation_of_state: Option<PathBuf>,
     /// Bins across the channel, an even number [default: four for each cell size].
     #[arg(long, allow_negative_numbers = true)]
     bins: Option<usize>,
@@ -108,6 +113,7 @@ pub(super) struct ChannelRequest {
     pub turnover: Turnover,
     pub schedule: ChannelSchedule,
     pub division_distance: f64,
+    pub equation: Option<MeasuredEquation>,
     pub title: String,
 }
 
@@ -118,6 +124,11 @@ const MOST_BINS: usize = 100_000;
 const LARGEST_RUN: f64 = 1e13;
 
 impl ChannelArguments {
+    /// What is read beside parameters.
+    pub fn equation_of_state(&self) -> Option<&Path> {
+        self.equation_of_state.as_deref()
+    }
+
     pub fn resolve(&self, parameters: &ParameterArguments, seed: u64) -> Result<ChannelRequest, Failure> {
         let ht1080 = self.preset == Some(Preset::Ht1080);
         if self.samples == 0 {
@@ -202,6 +213,15 @@ impl ChannelArguments {
         let unit = |given: &Option<String>, of_preset: &str, own: &str| {
             given.clone().unwrap_or_else(|| if ht1080 { of_preset } else { own }.to_owned())
         };
+        let equation = (self.equation_of_state.as_deref())
+            .map(|path| equation_of_state::read(path, &parameters, cell_size))
+            .transpose()?;
+        if equation.is_some() && self.proliferation_rate.is_some() {
+            return Err(Failure::new(
+                "--equation-of-state with --proliferation-rate: there is no steady state to predict",
+            )
+            .with_hint("leave one of them out"));
+        }
         let named = Units {
             length: unit(&self.length_unit, "um", "length"),
             time: unit(&self.time_unit, "h", "time"),
@@ -217,6 +237,7 @@ impl ChannelArguments {
             turnover,
             schedule,
             division_distance,
+            equation,
             title: if ht1080 { "channel of HT1080 cells".into() } else { "channel".into() },
         })
     }

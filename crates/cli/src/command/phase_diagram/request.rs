@@ -1,6 +1,6 @@
 //! What a diagram is asked for.
 
-use crate::arguments::{LARGEST_PARAMETER, Shard};
+use crate::arguments::{LARGEST_PARAMETER, Range, Shard};
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
@@ -12,6 +12,8 @@ use voronudge_simulate::{MOST_STEPS, recommended_time_step, seed_of_run};
 
 /// Points along an axis, and runs at each, that nobody means.
 const MOST_POINTS: usize = 1000;
+/// A range as it is typed.
+const EXAMPLE: &str = "3.4 4 13: thirteen values, 0.05 apart";
 /// Cells up to which all modes are computed.
 const MOST_CELLS_WITH_MODES: usize = 1000;
 
@@ -95,43 +97,6 @@ impl Quantity {
             }
             _ => (AxisScale::Linear, Palette::Sequential),
         }
-    }
-}
-
-/// Evenly spaced values.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
-pub(crate) struct Range {
-    pub from: f64,
-    pub to: f64,
-    pub count: usize,
-}
-
-impl Range {
-    fn new(name: &str, typed: &[f64]) -> Result<Self, Failure> {
-        let hint = format!("write for example --{name} 3.4 4 13: thirteen values, 0.05 apart");
-        let fault = |text: String| Failure::new(format!("--{name} {text}")).with_hint(hint.clone());
-        let &[from, to, count] = typed else {
-            return Err(fault("needs three numbers".into()));
-        };
-        if from.abs().max(to.abs()) > LARGEST_PARAMETER || from.is_nan() || to.is_nan() {
-            return Err(fault(format!(
-                "{from:e} {to:e}: both ends must be finite, and at most {LARGEST_PARAMETER:e} in magnitude"
-            )));
-        }
-        if !(1.0..=MOST_POINTS as f64).contains(&count) || count.fract() != 0.0 {
-            return Err(fault(format!("has a count of {count}, but it must be 1 to {MOST_POINTS}")));
-        }
-        if (count == 1.0) != (from == to) || from > to {
-            return Err(fault(format!("{from} {to} {count}: values must rise, or be a single one")));
-        }
-        Ok(Self { from, to, count: count as usize })
-    }
-
-    pub fn values(&self) -> Vec<f64> {
-        let step = (self.to - self.from) / (self.count.max(2) - 1) as f64;
-        // Rounded so that 3 + 7 × 0.1 is 3.7.
-        let round = |value: f64| (value * 1e12).round() / 1e12;
-        (0..self.count).map(|index| round(self.from + index as f64 * step)).collect()
     }
 }
 
@@ -240,8 +205,8 @@ impl Request {
         }
         let request = Self {
             version: env!("CARGO_PKG_VERSION").into(),
-            preferred_perimeters: Range::new("P_0", &typed.P_0)?,
-            chiralities: Range::new("alpha", &typed.alpha)?,
+            preferred_perimeters: Range::new("P_0", &typed.P_0, EXAMPLE)?,
+            chiralities: Range::new("alpha", &typed.alpha, EXAMPLE)?,
             quantities,
             replicas: typed.replicas,
             cells: typed.cells,

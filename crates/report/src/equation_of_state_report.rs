@@ -1,0 +1,94 @@
+//! `report.json` of the command `equation-of-state`.
+//!
+//! Field names are the interface that scripts use; [`EQUATION_OF_STATE_SCHEMA`] describes them. Numbers that are not finite are written as `null`.
+
+use std::collections::BTreeMap;
+
+use serde::Serialize;
+
+use crate::error::ReportError;
+use crate::infer_report::RunRecord;
+use crate::units::Units;
+
+/// JSON Schema (draft 2020-12) of [`EquationOfStateReport`].
+pub const EQUATION_OF_STATE_SCHEMA: &str = include_str!("../schema/equation-of-state.schema.json");
+
+/// Everything `equation-of-state` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct EquationOfStateReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// Parameters of the model, by the names of the interface.
+    pub parameters: BTreeMap<&'static str, f64>,
+    /// The cell size ℓ₀ that `relative_density` refers to.
+    pub cell_size: f64,
+    /// Cells of each run.
+    pub cells: usize,
+    /// Runs at each density.
+    pub replicas: usize,
+    /// Time before the averages.
+    pub relaxation: f64,
+    /// Time of the averages.
+    pub time: f64,
+    /// One for each density.
+    pub points: Vec<UniformRecord>,
+}
+
+impl EquationOfStateReport {
+    /// The report as indented JSON.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if serialisation fails.
+    pub fn to_json(&self) -> Result<String, ReportError> {
+        Ok(serde_json::to_string_pretty(self)?)
+    }
+}
+
+/// A uniform tissue of some density.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct UniformRecord {
+    /// Cells per area ρ.
+    pub density: f64,
+    /// ρ ℓ₀².
+    pub relative_density: f64,
+    /// p = −(σ_xx + σ_yy)/2, in 1/time: friction is absorbed.
+    pub pressure: Measured,
+    /// τ = σ_xy − σ_yx, in 1/time.
+    pub torque: Measured,
+    /// ⟨P/√A⟩.
+    pub shape_index: Measured,
+    /// ⟨v²⟩.
+    pub mean_square_velocity: Measured,
+    /// B = ρ dp/dρ, from the parabola through neighbouring densities.
+    pub bulk_modulus: Measured,
+    /// A = ½ ρ dτ/dρ.
+    pub odd_bulk_modulus: Measured,
+    /// The honeycomb of this density in mean-field theory, where there is one.
+    pub honeycomb: Option<Honeycomb>,
+}
+
+/// A mean over runs and its standard error.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Measured {
+    /// The mean.
+    pub value: f64,
+    /// Its standard error.
+    pub error: f64,
+}
+
+/// Stress and moduli of a honeycomb.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct Honeycomb {
+    /// p.
+    pub pressure: f64,
+    /// τ.
+    pub torque: f64,
+    /// B.
+    pub bulk_modulus: f64,
+    /// A.
+    pub odd_bulk_modulus: f64,
+}
