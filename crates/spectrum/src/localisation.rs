@@ -84,7 +84,13 @@ impl Rows {
         }
         Self {
             row: bins,
-            place: sums.iter().zip(&members).map(|(sum, n)| sum / n).collect(),
+            // A row without cells has a place, too.
+            place: (0..count)
+                .map(|bin| {
+                    let middle = (bin as f64 + 0.5) * spacing;
+                    if members[bin] > 0.0 { sums[bin] / members[bin] } else { middle }
+                })
+                .collect(),
             end: (0..cells).map(|cell| near(cell).then(|| side(cell))).collect(),
             cells: members,
         }

@@ -152,7 +152,8 @@ fn results_do_not_depend_on_threads() {
     let data = fixture("chiral-liquid");
     let [one, two] = ["1", "2"].map(|threads| {
         let out = Folder::new();
-        let line = format!("spectrum --lattice 5 12 --ends held --wave-numbers 9 --P_0 3.2 --threads {threads}");
+        let line =
+            format!("spectrum --lattice 5 12 --ends held --wave-numbers 9 --P_0 3.2 --threads {threads}");
         succeed(&line, &[("--out", out.path())]);
         ["strip_eigenvalues.npy", "strip_localisation.npy"].map(|name| fs::read(out.file(name)).unwrap())
     });
