@@ -28,7 +28,7 @@ fn strip(rows: usize, ends: Ends, p: &Parameters<f64>) -> Strip {
     let lattice = Honeycomb::new(COLUMNS, rows, Arrangement::RowsAlongY).unwrap();
     let jacobian = lattice.jacobian(&Model::chiral_voronoi(p));
     let row_of = rows_of_honeycomb(COLUMNS, rows, ends);
-    Strip::new(&jacobian, lattice.positions(), lattice.lengths(), &row_of).unwrap()
+    Strip::new(&jacobian, lattice.positions(), lattice.lengths(), &row_of, false).unwrap()
 }
 
 /// The largest distance of a value from the nearest of others.

@@ -224,7 +224,7 @@ pub struct StripRecord {
     pub of_edges: usize,
     /// Modes around whose value the spectrum of the periodic tissue winds.
     pub winding: usize,
-    /// Largest rate of growth across the strip of modes that are not of an edge (1/length); the shortest localisation length is its inverse.
+    /// Largest rate of growth across the strip of modes that are not of an edge (1/length), if it is more than a factor e; the shortest localisation length is its inverse.
     pub largest_growth: Option<f64>,
     /// Root mean square difference of the growth from that of the generalised Brillouin zone, over the root mean square of the latter.
     pub difference_from_zone: Option<f64>,

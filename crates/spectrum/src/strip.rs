@@ -32,6 +32,7 @@ pub struct Strip {
     places: Vec<f64>,
     period: f64,
     couplings: Vec<Coupling>,
+    centred: bool,
 }
 
 /// A block of the Jacobian between cells of two rows.
@@ -95,7 +96,8 @@ const EDGE_GAP: f64 = 10.0;
 
 impl Strip {
     /// From the Jacobian of a tissue of rows that are periodic along y, at positions (N) in a box with these side lengths. `row_of` has the row of each
-    /// cell that moves, from left to right.
+    /// cell that moves, from left to right. `centred` says that each cell of the lattice is a centre of inversion, as it is where forces know
+    /// no direction.
     ///
     /// # Errors
     /// [`Error::FewRows`], [`Error::CrookedRow`] if the cells of a row do not lie on a line along y at equal distances.
@@ -104,6 +106,7 @@ impl Strip {
         positions: &[Vector<f64>],
         lengths: [f64; 2],
         row_of: &[Option<usize>],
+        centred: bool,
     ) -> Result<Self, Error> {
         let rows = row_of.iter().flatten().max().map_or(0, |last| last + 1);
         let mut members: Vec<Vec<usize>> = vec![Vec::new(); rows];
@@ -138,7 +141,7 @@ impl Strip {
                 }
             }
         }
-        Ok(Self { places, period, couplings })
+        Ok(Self { places, period, couplings, centred })
     }
 
     /// Places of the rows that move (length), from left to right.
@@ -176,7 +179,8 @@ impl Strip {
         matrix
     }
 
-    /// The tissue that repeats the middle row of the strip.
+    /// The tissue that repeats the middle row of the strip. Where cells are centres of inversion, `J_{−m}` is the conjugate of `J_m`; what the
+    /// ends leave of a difference is taken out.
     pub fn periodic(&self, q: f64) -> BlochMatrix {
         let middle = self.places.len() / 2;
         let of_middle = || self.couplings.iter().filter(|own| own.rows[0] == middle);
@@ -186,6 +190,15 @@ impl Strip {
             let phase = Complex64::from_polar(1.0, q * along);
             let sum = &mut blocks[to + range - middle];
             sum.iter_mut().zip(block).for_each(|(sum, entry)| *sum += phase * entry);
+        }
+        if self.centred {
+            for m in 0..=range {
+                let (ahead, behind) = (blocks[range + m], blocks[range - m]);
+                for (entry, (a, b)) in ahead.iter().zip(behind).enumerate() {
+                    let mean = 0.5 * (a + b.conj());
+                    (blocks[range + m][entry], blocks[range - m][entry]) = (mean, mean.conj());
+                }
+            }
         }
         BlochMatrix::new(blocks)
     }

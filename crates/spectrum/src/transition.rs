@@ -37,7 +37,8 @@ impl TransitionDistance {
             let (ring, corners) = (polygon.ring(), polygon.corners());
             for ((m, h), length) in tessellation.ring(cell).enumerate().zip(polygon.side_lengths()) {
                 let other = tessellation.neighbour(h);
-                let at_wall = other >= cells && other % cells != cell;
+                // Of images, only a cell's own in one mirror has a side with it that has a length; that in both is met in a corner.
+                let at_wall = other >= cells && (other % cells != cell || (other / cells).count_ones() > 1);
                 // Each side once, from the lower number, unless the other cell is not looked at.
                 if at_wall || h > tessellation.twin(h) && other < cells && counts(other) {
                     continue;

@@ -240,7 +240,7 @@ fn a_strip_has_its_modes_at_each_wave_number() {
     assert!(page.contains("A strip with ends") && page.contains("winds by"));
     // Between walls the honeycomb first comes to rest, where it can.
     let walls = Folder::new();
-    let line = "spectrum --lattice 5 14 --ends walls --P_0 3 --alpha 0.08 --wave-numbers 4 --wave-number 2.2";
+    let line = "spectrum --lattice 5 14 --ends walls --P_0 3 --alpha 0.05 --wave-numbers 4 --wave-number 2.2";
     succeed(line, &[("--out", walls.path())]);
     let record = crate::scratch::report(walls.path());
     assert_described(&record);

@@ -91,7 +91,8 @@ pub fn strip_spectrum(
     chart.finish_with_key(&key)
 }
 
-/// The modes of a strip at each wave number along it, over those of the periodic tissue.
+/// The modes of a strip at each wave number along it, over those of the periodic tissue. Rates are those of waves of no negative frequency:
+/// those of the opposite one are the same, at the other end.
 #[must_use]
 pub fn strip_bands(
     wave_numbers: &[f64],
@@ -110,6 +111,7 @@ pub fn strip_bands(
         .collect();
     let own: Vec<([f64; 2], StripPoint)> = (wave_numbers.iter().zip(modes))
         .flat_map(|(&q, points)| points.iter().map(move |&point| (at(q, point.value), point)))
+        .filter(|(_, point)| part == BandPart::Frequency || point.value[1] > -ROUNDING)
         .collect();
     let all = || bulk.iter().copied().chain(own.iter().map(|(place, _)| *place));
     let axis = |label: &str, which: usize| {
@@ -134,6 +136,9 @@ pub fn strip_bands(
     key.extend(key_of(own.iter().map(|(_, point)| point)));
     chart.finish_with_key(&key)
 }
+
+/// Frequencies that are none.
+const ROUNDING: f64 = 1e-9;
 
 /// Where the spectrum winds to the left end, and where to the right.
 const SHADES: [&str; 2] = [r##"fill="#d3e5f2""##, r##"fill="#fadfcc""##];

@@ -57,7 +57,10 @@ impl StripFigures {
                 bands(BandPart::Frequency),
                 "Frequencies at each wave number along the rows, over those of the periodic tissue at all wave numbers across.",
             ),
-            Figure::new(bands(BandPart::Rate), "Rates of growth likewise."),
+            Figure::new(
+                bands(BandPart::Rate),
+                "Rates of growth likewise, of modes whose frequency is not negative; those with the opposite frequency have the same, at the other end.",
+            ),
         ]
     }
 

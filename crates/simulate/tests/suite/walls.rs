@@ -235,7 +235,7 @@ fn a_honeycomb_between_walls_comes_to_rest() {
     let [width, height] = cell_box.lengths();
     let gap = 0.25 * height / (positions.iter().filter(|r| r.x < 1e-9).count() as f64);
     let turned: Vec<_> = positions.iter().map(|r| Vector::new(r.y + gap, width - r.x)).collect();
-    let simulation = between(Walls::X, turned, [height, width], &parameters(3.0, 0.08));
+    let simulation = between(Walls::X, turned, [height, width], &parameters(3.0, 0.05));
     let settled = Settled::new(&simulation, &Relaxation::default(), &|| ControlFlow::Continue(())).unwrap();
     assert_eq!(settled.motion(), Motion::AtRest);
     assert!(settled.speed() < 1e-10 && settled.simulation().time() < 50.0);

@@ -9,6 +9,9 @@ use voronudge_spectrum::{Localisation, Mode};
 /// What a file says of each mode.
 type Column = fn(&Mode) -> Option<f64>;
 
+/// What a file says of where between walls each mode is.
+type Columns = fn(&Localisation) -> [f64; 2];
+
 /// Files with the modes along the axis behind that of frames, which a data set with a single frame does not have.
 pub(super) fn write(
     out: &mut OutputDirectory,
@@ -47,7 +50,7 @@ pub(super) fn write(
         let of = |frame: usize, row: usize| {
             solved[frame].localised.as_ref().and_then(|own| own.modes.get(row).copied())
         };
-        let tables: [(&str, fn(&Localisation) -> [f64; 2]); 2] =
+        let tables: [(&str, Columns); 2] =
             [("edge.npy", |own| [own.edge, own.side]), ("localisation.npy", |own| [own.centre, own.growth])];
         for (name, columns) in tables {
             let array = Array3::from_shape_fn((solved.len(), most, 2), |(frame, row, column)| {

@@ -56,6 +56,8 @@ const GRID: usize = 81;
 const CHUNK: usize = 8;
 /// Time in 1/K_P that a honeycomb between walls is given to come to rest.
 const LONGEST: f64 = 100.0;
+/// Speed of the fastest cell, in ℓ₀ K_P, below which implicit steps are tried.
+const SLOW: f64 = 0.1;
 /// Most wave numbers that are looked at.
 const MOST: usize = 10_000;
 
@@ -98,7 +100,7 @@ impl EndedLattice {
             lattice.honeycomb.jacobian(&model)
         };
         let row_of = rows_of_honeycomb(columns, rows, ends.ends());
-        let strip = Strip::new(&jacobian, &positions, lengths, &row_of)?;
+        let strip = Strip::new(&jacobian, &positions, lengths, &row_of, effects.is_empty())?;
         let held = row_of.iter().map(Option::is_none).collect();
         Ok(Self { strip, ends, rows, positions, held, speed })
     }
@@ -134,7 +136,7 @@ fn at_rest(
         time_step: recommended_time_step(parameters, 1.0),
         longest: LONGEST / rate,
         tolerance: usual.tolerance * rate,
-        slow: usual.slow * rate,
+        slow: SLOW * rate,
     };
     let simulation = Simulation::new(positions, domain, model)?.with_walls(Walls::X)?;
     let settled = Settled::new(&simulation, &relaxation, &|| ControlFlow::Continue(()))?;
@@ -261,7 +263,8 @@ fn around(periodic: &BlochMatrix, steps: usize) -> Vec<[Complex64; 2]> {
 /// The wave number, not below zero, at which the periodic tissue has modes grow fastest across the strip, in the mean square.
 fn most_piled_up(wave_numbers: &[f64], modes: &[Vec<StripMode>]) -> f64 {
     let size = |modes: &[StripMode]| -> f64 {
-        modes.iter().filter_map(|mode| mode.middle_roots).map(|roots| roots.growth().powi(2)).sum()
+        let of_strip = modes.iter().filter(|mode| !mode.is_of_edge(mode.profile.len()));
+        of_strip.filter_map(|mode| mode.middle_roots).map(|roots| roots.growth().powi(2)).sum()
     };
     let own = wave_numbers.iter().zip(modes).filter(|(q, _)| **q >= 0.0);
     let largest = own.max_by(|(_, a), (_, b)| size(a).total_cmp(&size(b)));

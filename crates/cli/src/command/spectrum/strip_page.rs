@@ -20,7 +20,8 @@ impl Bands {
         let (strip, modes) = (&ended.strip, &self.shown);
         let side = |wanted: StripSide| modes.iter().filter(|mode| side_of(mode, strip) == wanted).count();
         let of_edge = |mode: &&StripMode| mode.is_of_edge(strip.places().len());
-        let growth = self.steepest(strip).map(|mode| mode.localisation.growth.abs());
+        let steepest = self.steepest(strip).filter(|mode| side_of(mode, strip) != StripSide::Neither);
+        let growth = steepest.map(|mode| mode.localisation.growth.abs());
         StripRecord {
             ends: ended.ends.name(),
             rows: ended.rows,
