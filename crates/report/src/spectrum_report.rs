@@ -212,6 +212,8 @@ pub struct StripRecord {
     pub speed: f64,
     /// Wave numbers in the files.
     pub wave_numbers: usize,
+    /// The largest rate of growth at any of them, and the wave number (1/length).
+    pub fastest: [f64; 2],
     /// The wave number of what follows (1/length).
     pub wave_number: f64,
     /// Modes at it.

@@ -77,11 +77,11 @@ impl StripMode {
         })
     }
 
-    /// Whether it is a mode of an edge: more than half of it is at the ends, and no two waves of the periodic tissue that make a mode of the whole
+    /// Whether it is a mode of an edge: more than a third of it is at the ends, and no two waves of the periodic tissue that make a mode of the whole
     /// strip decay alike.
     pub fn is_of_edge(&self, rows: usize) -> bool {
         let gap = self.middle_roots.map_or(f64::INFINITY, |roots| roots.gap());
-        self.localisation.edge > 0.5 && gap * rows as f64 > EDGE_GAP
+        self.localisation.edge > EDGE_SHARE && gap * rows as f64 > EDGE_GAP
     }
 
     /// Whether it grows by more than a factor e from one end to the other, and if so whether to the right.
@@ -93,6 +93,9 @@ impl StripMode {
 
 /// In modes that fill a strip the two waves differ at one end by what they are reflected with: `rows × gap` is the logarithm of that.
 const EDGE_GAP: f64 = 10.0;
+
+/// Share within two rows of the ends.
+const EDGE_SHARE: f64 = 1.0 / 3.0;
 
 impl Strip {
     /// From the Jacobian of a tissue of rows that are periodic along y, at positions (N) in a box with these side lengths. `row_of` has the row of each

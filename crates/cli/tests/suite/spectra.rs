@@ -209,14 +209,14 @@ fn cells_between_walls_have_modes() {
 #[test]
 fn a_strip_has_its_modes_at_each_wave_number() {
     let out = Folder::new();
-    let line = "spectrum --lattice 5 16 --ends held --P_0 3.2 --alpha 0.4 --wave-numbers 8";
+    let line = "spectrum --lattice 5 20 --ends held --P_0 3.2 --alpha 0.4 --wave-numbers 8 --wave-number 2.5";
     let outcome = succeed(line, &[("--out", out.path())]);
-    assert!(outcome.stdout.contains("strip of 14 rows"), "{}", outcome.stdout);
+    assert!(outcome.stdout.contains("strip of 18 rows"), "{}", outcome.stdout);
     let report = report(out.path());
     assert_described(&report);
     let strip = &report["strip"];
-    assert_eq!((strip["moving_rows"].as_u64(), strip["modes"].as_u64()), (Some(14), Some(28)));
-    assert_eq!(report["frames"][0]["counted"], 70);
+    assert_eq!((strip["moving_rows"].as_u64(), strip["modes"].as_u64()), (Some(18), Some(36)));
+    assert_eq!(report["frames"][0]["counted"], 90);
     // A wave with the conjugate value is the mirror image: as many pile up left as right.
     assert!(strip["left"] == strip["right"] && strip["left"].as_u64() > Some(3), "{strip}");
     assert!(strip["difference_from_zone"].as_f64().unwrap() < 0.3);
@@ -224,7 +224,7 @@ fn a_strip_has_its_modes_at_each_wave_number() {
     let edge: ndarray::Array3<f64> = read(&out.file("strip_edge.npy"));
     let place: ndarray::Array3<f64> = read(&out.file("strip_localisation.npy"));
     let q: Array1<f64> = read(&out.file("strip_wave_numbers.npy"));
-    assert_eq!((values.dim(), edge.dim(), place.dim()), ((9, 28, 2), (9, 28, 2), (9, 28, 5)));
+    assert_eq!((values.dim(), edge.dim(), place.dim()), ((9, 36, 2), (9, 36, 2), (9, 36, 5)));
     assert!((q[0] + q[8]).abs() < 1e-12 && q[4].abs() < 1e-12);
     // Turned by half a circle, the strip has the modes of −q on the other side.
     let [ahead, behind] = [6, 2].map(|k| values.index_axis(Axis(0), k).to_owned());

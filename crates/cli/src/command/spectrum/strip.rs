@@ -55,7 +55,7 @@ const GRID: usize = 81;
 /// Wave numbers between two looks at whether to go on.
 const CHUNK: usize = 8;
 /// Time in 1/K_P that a honeycomb between walls is given to come to rest.
-const LONGEST: f64 = 100.0;
+const LONGEST: f64 = 50.0;
 /// Speed of the fastest cell, in ℓ₀ K_P, below which implicit steps are tried.
 const SLOW: f64 = 0.1;
 /// Most wave numbers that are looked at.

@@ -11,6 +11,9 @@ use voronudge_spectrum::{Complex64, Strip, StripMode};
 /// Modes whose profile is drawn.
 const PROFILES: usize = 4;
 
+/// Rates of growth below this are those of translations.
+const GROWING: f64 = 1e-8;
+
 /// Growth across the strip, as a power of e, beyond which rounding moves values: they depend on both ends.
 const TOO_LOCALISED: f64 = 14.0;
 
@@ -30,6 +33,7 @@ impl Bands {
             period: strip.period(),
             speed: ended.speed,
             wave_numbers: self.wave_numbers.len(),
+            fastest: self.fastest(),
             wave_number: self.shown_at,
             modes: modes.len(),
             left: side(StripSide::Left),
@@ -39,6 +43,13 @@ impl Bands {
             largest_growth: growth,
             difference_from_zone: self.difference(strip),
         }
+    }
+
+    /// The largest rate of growth in time, and its wave number, the first of those not below zero.
+    fn fastest(&self) -> [f64; 2] {
+        let rates = self.wave_numbers.iter().zip(&self.modes).filter(|(q, _)| **q >= 0.0);
+        let rates = rates.filter_map(|(q, modes)| Some([modes.first()?.value.re, *q]));
+        rates.reduce(|most, own| if own[0] > most[0] { own } else { most }).unwrap_or([f64::NAN; 2])
     }
 
     /// The mode that grows fastest across the strip, other than those of an edge.
@@ -68,6 +79,14 @@ impl Bands {
         let growth = self.modes.iter().flatten().filter_map(|mode| mode.middle_roots);
         let steepest = growth.map(|roots| roots.growth().abs()).fold(0.0, f64::max);
         let mut warnings = Vec::new();
+        let [rate, q] = self.fastest();
+        if rate > GROWING {
+            warnings.push(format!(
+                "a mode of the strip grows at the rate {} at the wave number {}: the lattice gives way to it, where it is long enough along its rows",
+                significant(rate, 3),
+                significant(q, 3)
+            ));
+        }
         if steepest * rows > TOO_LOCALISED && ended.ends != EndsName::Periodic {
             warnings.push(format!(
                 "modes grow by up to a factor {:.0e} across the strip: rounding then moves values at such wave numbers; take fewer rows than {}",
