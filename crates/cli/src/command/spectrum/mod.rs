@@ -75,6 +75,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let effects = arguments.effects.resolve()?;
     let parameters = arguments.parameters.resolve()?;
     let lattice = arguments.lattice.as_deref().map(Lattice::new).transpose()?;
+    let count = arguments.wave_numbers.unwrap_or(WAVE_NUMBERS);
+    strip::check(count, arguments.wave_number)?;
     let model = (&parameters, &effects);
     let ended = match (&lattice, arguments.ends) {
         (Some(lattice), Some(ends)) => Some(EndedLattice::new(lattice, ends, model)?),
@@ -107,7 +109,6 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .map_err(|failure| failure.at_unless_interrupted(at()))?;
         solved.push(one);
     }
-    let count = arguments.wave_numbers.unwrap_or(WAVE_NUMBERS);
     let scan = |ended: &EndedLattice, progress: &mut Progress| {
         Bands::new(&ended.strip, (count, arguments.wave_number), progress)
     };

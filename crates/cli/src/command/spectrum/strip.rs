@@ -167,20 +167,25 @@ pub(super) struct Bands {
     pub winding: WindingGrid,
 }
 
+/// Refuses wave numbers that cannot be.
+pub(super) fn check(count: usize, shown_at: Option<f64>) -> Result<(), Failure> {
+    if !(1..=MOST).contains(&count) {
+        return Err(Failure::new(format!("--wave-numbers {count} is not between 1 and {MOST}"))
+            .with_hint("64 shows the bands; --wave-number Q looks at one"));
+    }
+    if let Some(q) = shown_at.filter(|q| !q.is_finite()) {
+        return Err(Failure::new(format!("--wave-number {q} is not finite"))
+            .with_hint("give a wave number along the rows in 1/ℓ₀; 0 to 2.92 is all there is"));
+    }
+    Ok(())
+}
+
 impl Bands {
     pub fn new(
         strip: &Strip,
         (count, shown_at): (usize, Option<f64>),
         progress: &mut Progress,
     ) -> Result<Self, Failure> {
-        if !(1..=MOST).contains(&count) {
-            return Err(Failure::new(format!("--wave-numbers {count} is not between 1 and {MOST}"))
-                .with_hint("64 shows the bands; --wave-number Q looks at one"));
-        }
-        if let Some(q) = shown_at.filter(|q| !q.is_finite()) {
-            return Err(Failure::new(format!("--wave-number {q} is not finite"))
-                .with_hint("give a wave number along the rows in 1/ℓ₀; 0 to 2.92 is all there is"));
-        }
         let wave_numbers = strip.wave_numbers(count);
         let mut modes = Vec::new();
         for chunk in wave_numbers.chunks(CHUNK) {
