@@ -11,3 +11,4 @@ mod measured;
 mod moduli;
 mod recovery;
 mod spectrum;
+mod strips;

@@ -19,7 +19,7 @@ pub(crate) fn unknown(error: Error) -> Failure {
     let hint = match &error {
         Error::Setting(SettingFault::Sheared) => "evaluate, spectrum and simulate --start do",
         Error::Setting(SettingFault::Walled { .. }) => {
-            "only simulate and channel do; without the line walls the box would be periodic, which is another tissue"
+            "only simulate, channel and spectrum do; without the line walls the box would be periodic, which is another tissue"
         }
         _ => return error.into(),
     };

@@ -4,7 +4,7 @@ use crate::eigenpairs::Vectors;
 use crate::{Eigenpairs, Error};
 use faer::diag::DiagMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
-use faer::linalg::evd::{ComputeEigenvectors, evd_real, evd_scratch};
+use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
 use faer::{Mat, MatMut, MatRef, Par};
 use num_complex::Complex64;
 
@@ -74,6 +74,50 @@ pub fn eigen(matrix: &[f64], n: usize, wanted: Wanted) -> Result<Eigenpairs, Err
     };
     let mut pairs =
         Eigenpairs { right: vectors(right, of_right, 1.0), left: vectors(left, of_left, LEFT_SIGN), values };
+    pairs.sort();
+    Ok(pairs)
+}
+
+/// All eigenvalues of a complex matrix of order `n`, given row by row, with right vectors if these are wanted, by the QR algorithm.
+///
+/// # Errors
+/// As [`eigen`].
+///
+/// ```
+/// use voronudge_linalg::{Complex64, eigen_complex};
+/// let pairs = eigen_complex(&[Complex64::I, Complex64::ONE, Complex64::ZERO, Complex64::ONE], 2, true)?;
+/// assert!((pairs.values[0] - 1.0).norm() < 1e-15 && (pairs.values[1] - Complex64::I).norm() < 1e-15);
+/// # Ok::<(), voronudge_linalg::Error>(())
+/// ```
+pub fn eigen_complex(matrix: &[Complex64], n: usize, vectors: bool) -> Result<Eigenpairs, Error> {
+    if matrix.len() != n * n {
+        return Err(Error::Malformed("a square matrix has as many columns as rows"));
+    }
+    if let Some(at) = matrix.iter().position(|entry| !entry.is_finite()) {
+        return Err(Error::NotFinite { row: at / n });
+    }
+    let out_of_memory = || Error::OutOfMemory { order: n };
+    let compute = if vectors { ComputeEigenvectors::Yes } else { ComputeEigenvectors::No };
+    let room = evd_scratch::<Complex64>(n, ComputeEigenvectors::No, compute, Par::Seq, Default::default());
+    let mut scratch = MemBuffer::try_new(room).map_err(|_| out_of_memory())?;
+    let mut values = vec![Complex64::ZERO; n];
+    let mut columns = vec![Complex64::ZERO; if vectors { n * n } else { 0 }];
+    evd_cplx(
+        MatRef::from_row_major_slice(matrix, n, n),
+        DiagMut::from_slice_mut(&mut values),
+        None,
+        vectors.then(|| MatMut::from_column_major_slice_mut(&mut columns, n, n)),
+        Par::Seq,
+        MemStack::new(&mut scratch),
+        Default::default(),
+    )
+    .map_err(|_| Error::NoConvergence { order: n })?;
+    let right = vectors.then(|| {
+        let mut right = Vectors { order: n, ..Vectors::default() };
+        columns.chunks_exact(n.max(1)).for_each(|column| right.push(column));
+        right
+    });
+    let mut pairs = Eigenpairs { values, right, left: None };
     pairs.sort();
     Ok(pairs)
 }
@@ -183,6 +227,28 @@ mod tests {
         for k in 0..4 {
             assert!((pairs.condition(k, 1e-9).unwrap() - 50f64.sqrt()).abs() < 1e-10);
         }
+    }
+
+    /// A turned into Tᴴ A T, with the same values, and vectors that satisfy their equation.
+    #[test]
+    fn complex_matrices_have_the_values_of_the_real_ones_they_come_from() {
+        let matrix = sample::lattice(4, 0.6).to_dense();
+        let n = 32;
+        let phase = |k: usize| Complex64::from_polar(1.0, (k * k) as f64);
+        let turned: Vec<Complex64> =
+            (0..n * n).map(|at| phase(at / n) * matrix[at] * phase(at % n).conj()).collect();
+        let (expected, found) =
+            (eigen(&matrix, n, Wanted::Values).unwrap(), eigen_complex(&turned, n, true).unwrap());
+        for (k, value) in found.values.iter().enumerate() {
+            let nearest = expected.values.iter().map(|other| (other - value).norm());
+            assert!(nearest.fold(f64::INFINITY, f64::min) < 1e-10);
+            let x = found.right(k).unwrap();
+            for row in 0..n {
+                let product: Complex64 = turned[row * n..][..n].iter().zip(&x).map(|(a, x)| a * x).sum();
+                assert!((product - value * x[row]).norm() < 1e-10);
+            }
+        }
+        assert!(eigen_complex(&turned[1..], n, false).is_err());
     }
 
     #[test]

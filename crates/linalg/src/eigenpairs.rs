@@ -44,7 +44,7 @@ impl Vectors {
     }
 }
 
-/// Eigenvalues of a real matrix, the largest real part first, with vectors of unit length.
+/// Eigenvalues of a matrix, the largest real part first, with vectors of unit length.
 ///
 /// Of a conjugate pair, where both were found, the value with the positive imaginary part comes first.
 #[derive(Debug, Clone, Default, PartialEq)]

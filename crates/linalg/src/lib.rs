@@ -33,7 +33,7 @@ mod symmetric_matrix;
 
 pub use block_sparse::BlockSparse;
 pub use cholesky::Cholesky;
-pub use dense_eigen::{Wanted, eigen};
+pub use dense_eigen::{Wanted, eigen, eigen_complex};
 pub use dissected_cholesky::{DissectedCholesky, DissectedPattern};
 pub use eigenpairs::Eigenpairs;
 pub use error::Error;

@@ -4,6 +4,7 @@
 //! about it, in the order of its ring. No two threads write to one place and no sum depends on their number.
 
 use crate::element_lanes::{elements_in_lanes, fit_lanes};
+use crate::mirrored_jacobian::signs_of;
 use crate::response::respond;
 use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces};
 use rayon::prelude::*;
@@ -98,17 +99,12 @@ impl<S: Scalar> HalfEdgeForces<S> {
             *v = VertexForces::of_cell(model, cell, polygon.shape()).on_ring(&polygon, own);
         }
         for image in 0..tessellation.len() {
-            let (block, cell) = (image / cells, image % cells);
+            let ([x, y], cell) = (signs_of(image / cells, mirrors), image % cells);
             for h in tessellation.ring(image) {
                 if (tessellation.neighbours(image)[h - tessellation.half_edge_start(image)] as usize) < cells
                 {
-                    let mut force = self.forces[tessellation.twin(h)];
-                    for (bit, &axis) in mirrors.iter().enumerate() {
-                        if block >> bit & 1 == 1 {
-                            force[axis] = -force[axis];
-                        }
-                    }
-                    velocities[cell] += force;
+                    let force = self.forces[tessellation.twin(h)];
+                    velocities[cell] += Vector::new(force.x * x, force.y * y);
                 }
             }
         }

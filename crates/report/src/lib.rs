@@ -61,7 +61,7 @@ pub use infer_report::{INFER_SCHEMA, InferReport};
 pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
 pub use page::{
     DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SectionPage, SimulatePage, SpectrumPage,
-    SpreadView, Uncertainty,
+    SpreadView, StripFigures, Uncertainty,
 };
 pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
 pub use phase_report::{PHASE_SCHEMA, PhaseReport};

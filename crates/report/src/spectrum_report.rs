@@ -35,6 +35,8 @@ pub struct SpectrumReport {
     pub frames: Vec<FrameSpectrum>,
     /// The comparison on a lattice, where asked for.
     pub lattice: Option<LatticeRecord>,
+    /// The modes of a strip of the lattice, where it has ends.
+    pub strip: Option<StripRecord>,
 }
 
 impl SpectrumReport {
@@ -131,6 +133,8 @@ pub struct FrameSpectrum {
     pub largest_residual: Option<f64>,
     /// How near the snapshot is to a T1 transition.
     pub transition: Option<TransitionRecord>,
+    /// Where between walls the modes are, if there are walls and vectors.
+    pub walls: Option<WallsRecord>,
 }
 
 /// One mode.
@@ -176,4 +180,54 @@ pub struct LatticeRecord {
     pub points: usize,
     /// Largest difference of the dynamical matrices, relative to the largest entry on the path; null with effects.
     pub largest_difference: Option<f64>,
+}
+
+/// Where between walls the modes are.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WallsRecord {
+    /// `x` or `both`.
+    pub sides: &'static str,
+    /// Share of the cells within two rows of a wall.
+    pub cells: f64,
+    /// Mean over the modes of their share of |u|² there.
+    pub mean_share: f64,
+    /// Modes that have more than half of their |u|² there.
+    pub mostly: usize,
+}
+
+/// The modes of a strip of the honeycomb at one wave number along it.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct StripRecord {
+    /// `periodic`, `held` or `walls`.
+    pub ends: &'static str,
+    /// Rows.
+    pub rows: usize,
+    /// Rows that move.
+    pub moving_rows: usize,
+    /// Mean distance of the rows that move.
+    pub spacing: f64,
+    /// Period along the rows.
+    pub period: f64,
+    /// Largest speed of a cell after coming to rest between walls.
+    pub speed: f64,
+    /// Wave numbers in the files.
+    pub wave_numbers: usize,
+    /// The largest rate of growth at any of them, and the wave number (1/length).
+    pub fastest: [f64; 2],
+    /// The wave number of what follows (1/length).
+    pub wave_number: f64,
+    /// Modes at it.
+    pub modes: usize,
+    /// Modes that grow by more than a factor e towards the left end.
+    pub left: usize,
+    /// Modes that do so towards the right end.
+    pub right: usize,
+    /// Modes of an edge.
+    pub of_edges: usize,
+    /// Modes around whose value the spectrum of the periodic tissue winds.
+    pub winding: usize,
+    /// Largest rate of growth across the strip of modes that are not of an edge (1/length), if it is more than a factor e; the shortest localisation length is its inverse.
+    pub largest_growth: Option<f64>,
+    /// Root mean square difference of the growth from that of the generalised Brillouin zone, over the root mean square of the latter.
+    pub difference_from_zone: Option<f64>,
 }

@@ -113,8 +113,8 @@ impl<S: Scalar> Simulation<S> {
     /// # Errors
     /// [`Error::Walls`] as in [`Simulation::with_walls`].
     pub fn with_model(mut self, model: Model<S>) -> Result<Self, Error> {
-        if self.mirrored.is_some() {
-            walls::check(&model, &self.cell_box, &self.driving)?;
+        if let Some(walls) = self.walls() {
+            walls::check(walls, &model, &self.cell_box, &self.driving)?;
         }
         self.model = model;
         self.settle()?;
@@ -127,8 +127,8 @@ impl<S: Scalar> Simulation<S> {
     /// [`Error::Driving`] if an amount is negative or not finite; [`Error::Tessellation`] if the sheared box is not usable.
     pub fn with_driving(mut self, driving: Driving) -> Result<Self, Error> {
         driving.check()?;
-        if self.mirrored.is_some() {
-            walls::check(&self.model, &self.cell_box, &driving)?;
+        if let Some(walls) = self.walls() {
+            walls::check(walls, &self.model, &self.cell_box, &driving)?;
         }
         if let Some(Shear::Step { strain }) = driving.shear {
             for r in &mut self.now.positions {
@@ -148,7 +148,7 @@ impl<S: Scalar> Simulation<S> {
     /// [`Error::Walls`] if the box is sheared, or the model has effects that are not functions of areas and perimeters;
     /// [`Error::Tessellation`] if a cell lies on a wall.
     pub fn with_walls(mut self, walls: Walls) -> Result<Self, Error> {
-        walls::check(&self.model, &self.cell_box, &self.driving)?;
+        walls::check(walls, &self.model, &self.cell_box, &self.driving)?;
         let (mirrored, tessellation) = Mirrored::of(walls, &self.cell_box, &mut self.now.positions)
             .map_err(|source| Error::Tessellation { time: self.now.time, source })?;
         (self.mirrored, self.tessellation) = (Some(mirrored), tessellation);

@@ -25,8 +25,8 @@ pub enum Walls {
 }
 
 impl Walls {
-    /// The axes across which there are walls.
-    pub(crate) fn mirrors(self) -> &'static [usize] {
+    /// The axes across which there are walls: mirror `k` reverses component `mirrors()[k]`.
+    pub fn mirrors(self) -> &'static [usize] {
         match self {
             Self::X => &[0],
             Self::Both => &[0, 1],
@@ -38,7 +38,12 @@ impl Walls {
         1 << self.mirrors().len()
     }
 
-    /// Cells in front of the walls of a box at positions (N) with velocities (N): the tessellation of them and their mirror images, and
+    /// Whether cells can move between walls under a model: its terms are functions of the cells' shapes.
+    pub fn admit<S: Scalar>(self, model: &Model<S>) -> bool {
+        !model.has_ring_terms() && model.responses.is_empty()
+    }
+
+    /// Cells in front of the walls of a box at positions (N) with velocities (N, or none): the tessellation of them and their mirror images, and
     /// the positions and velocities of all, the cells themselves first.
     ///
     /// # Errors
@@ -195,6 +200,7 @@ pub(crate) fn fold(x: f64, length: f64) -> (f64, f64) {
 
 /// Walls need forces that are defined by the shapes of cells alone.
 pub(crate) fn check<S: Scalar>(
+    walls: Walls,
     model: &Model<S>,
     cell_box: &PeriodicBox,
     driving: &Driving,
@@ -203,7 +209,7 @@ pub(crate) fn check<S: Scalar>(
         "the box is sheared"
     } else if driving.speed != 0.0 {
         "cells propel themselves"
-    } else if model.has_ring_terms() || !model.responses.is_empty() {
+    } else if !walls.admit(model) {
         "the model has effects that are not functions of the cells' shapes"
     } else {
         return Ok(());

@@ -50,6 +50,20 @@ pub enum Error {
         /// Rows.
         rows: usize,
     },
+    /// Fewer rows that move than a strip needs.
+    #[error("a strip of {rows} rows that move, but at least {least} are needed")]
+    FewRows {
+        /// Rows that move.
+        rows: usize,
+        /// The least.
+        least: usize,
+    },
+    /// A row whose cells are no lattice along y.
+    #[error("the cells of row {row} do not lie on a line along the strip at equal distances")]
+    CrookedRow {
+        /// The row that moves, from the left.
+        row: usize,
+    },
     /// The lattice could not be tessellated.
     #[error("the honeycomb: {0}")]
     Tessellation(voronudge_geometry::Error),
@@ -74,6 +88,8 @@ impl Error {
                 "give rates in 1/time of the data; frequencies are angular"
             }
             Self::NotFinite { .. } => "two vertices may lie at one point there, or a parameter is too large",
+            Self::FewRows { .. } => "give more rows; a row at each end is held with --ends held",
+            Self::CrookedRow { .. } => "the tissue gives way at these parameters; lower P_0 or the chirality",
             Self::Honeycomb { .. } | Self::Tessellation(_) => "use the default lattice",
             Self::LinearAlgebra(voronudge_linalg::Error::OutOfMemory { .. }) => {
                 "ask for fewer modes, or for --largest, whose real shift needs half the memory of --near"

@@ -2,16 +2,17 @@
 
 use voronudge_geometry::{Tessellation, Vector, cross, dot};
 use voronudge_linalg::Complex64;
+use voronudge_model::signs_of;
 
 /// The affine map that fits the displacements of a cell's neighbours relative to it, for each cell that moves.
 ///
 /// `G = Σ_n (u_n − u_0) ⊗ w_n` with `w_n = (Σ_m d_m ⊗ d_m)⁻¹ d_n` and the displacements `d_n` to the neighbours. It is exact
-/// for affine fields.
+/// for affine fields. Mirror images move with their cells.
 #[derive(Debug, Clone)]
 pub(crate) struct Gradients {
     start: Vec<usize>,
-    /// Number among the cells that move, if it does, and weight.
-    neighbour: Vec<(Option<u32>, Vector<f64>)>,
+    /// Number among the cells that move, if it does, what its displacement is multiplied by, as an image, and weight.
+    neighbour: Vec<(Option<u32>, [f64; 2], Vector<f64>)>,
 }
 
 impl Gradients {
@@ -20,6 +21,7 @@ impl Gradients {
         positions: &[Vector<f64>],
         cells: &[usize],
         number: &[Option<u32>],
+        mirrors: &[usize],
     ) -> Self {
         let mut gradients = Self { start: vec![0], neighbour: Vec::new() };
         for &cell in cells {
@@ -35,7 +37,9 @@ impl Gradients {
             for h in ring() {
                 let d = across(h);
                 let weight = Vector::new(yy * d.x - xy * d.y, xx * d.y - xy * d.x) / determinant;
-                gradients.neighbour.push((number[tessellation.neighbour(h)], weight));
+                let (image, cell) =
+                    (tessellation.neighbour(h) / number.len(), tessellation.neighbour(h) % number.len());
+                gradients.neighbour.push((number[cell], signs_of(image, mirrors), weight));
             }
             gradients.start.push(gradients.neighbour.len());
         }
@@ -47,10 +51,10 @@ impl Gradients {
         let mut sums = [0.0; 2];
         for (own, range) in self.start.windows(2).enumerate() {
             let (mut divergence, mut curl) = (Complex64::ZERO, Complex64::ZERO);
-            for &(number, weight) in &self.neighbour[range[0]..range[1]] {
+            for &(number, signs, weight) in &self.neighbour[range[0]..range[1]] {
                 let at = |axis: usize| {
                     let other = number.map_or(Complex64::ZERO, |number| u[2 * number as usize + axis]);
-                    other - u[2 * own + axis]
+                    other * signs[axis] - u[2 * own + axis]
                 };
                 let (x, y) = (at(0), at(1));
                 let (real, imaginary) = (Vector::new(x.re, y.re), Vector::new(x.im, y.im));

@@ -8,6 +8,9 @@
 //! - [`modes`]: all eigenvalues, or those a [`Selection`] names, each as a [`Mode`] with what it is like.
 //! - [`TransitionDistance`]: how far the snapshot is from the next T1 transition, where J jumps.
 //! - [`Honeycomb`]: the exact dispersion on a lattice.
+//! - [`Strip`]: rows with ends, at each wave number along them, beside the periodic tissue ([`BlochMatrix`]): winding numbers, the
+//!   generalised Brillouin zone, the non-Hermitian skin effect.
+//! - [`Localisation`]: where between ends or walls a mode is.
 //!
 //! ```
 //! use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
@@ -28,18 +31,24 @@
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 
+mod bloch;
 mod error;
 mod gradient;
 mod honeycomb;
+mod localisation;
 mod mode;
 mod problem;
 mod selection;
+mod strip;
 mod transition;
 
+pub use bloch::{BlochMatrix, MiddleRoots};
 pub use error::Error;
 pub use honeycomb::{Arrangement, Honeycomb, bloch_matrix};
+pub use localisation::{Localisation, Rows};
 pub use mode::{Growth, Mode};
 pub use problem::LinearProblem;
 pub use selection::{Character, Counts, Modes, Request, Scope, Selection, dense_memory, modes};
+pub use strip::{Ends, Strip, StripMode, rows_of_honeycomb};
 pub use transition::TransitionDistance;
 pub use voronudge_linalg::{Complex64, Progress};

@@ -4,7 +4,7 @@ use crate::Error;
 use crate::gradient::Gradients;
 use voronudge_geometry::{Domain, Tessellation, Vector};
 use voronudge_linalg::BlockSparse;
-use voronudge_model::{Model, jacobian};
+use voronudge_model::{BlockMatrix, Model, jacobian, jacobian_with_images};
 
 /// `∂_t u = J u` for the cells that may move, the others held where they are.
 #[derive(Debug, Clone)]
@@ -27,15 +27,41 @@ impl LinearProblem {
         model: &Model<f64>,
         moves: impl Fn(usize) -> bool,
     ) -> Result<Self, Error> {
-        let cells: Vec<usize> = (0..positions.len()).filter(|&cell| moves(cell)).collect();
+        let all = jacobian(tessellation, positions, model);
+        Self::with_jacobian(tessellation, positions, &all, &[], moves)
+    }
+
+    /// The Jacobian of cells between walls, all of which move: the first `cells` of a tessellation whose others are their mirror images
+    /// in `mirrors`, as [`jacobian_with_images`] has them.
+    ///
+    /// # Errors
+    /// As [`LinearProblem::new`].
+    pub fn with_images(
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        model: &Model<f64>,
+        mirrors: &[usize],
+        cells: usize,
+    ) -> Result<Self, Error> {
+        let all = jacobian_with_images(tessellation, positions, model, mirrors, cells);
+        Self::with_jacobian(tessellation, positions, &all, mirrors, |_| true)
+    }
+
+    fn with_jacobian(
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        all: &BlockMatrix,
+        mirrors: &[usize],
+        moves: impl Fn(usize) -> bool,
+    ) -> Result<Self, Error> {
+        let cells: Vec<usize> = (0..all.rows()).filter(|&cell| moves(cell)).collect();
         if cells.is_empty() {
             return Err(Error::NoCells);
         }
-        let mut number = vec![None; positions.len()];
+        let mut number = vec![None; all.rows()];
         for (index, &cell) in cells.iter().enumerate() {
             number[cell] = Some(index as u32);
         }
-        let all = jacobian(tessellation, positions, model);
         let mut row_start = vec![0];
         let (mut column, mut block) = (Vec::new(), Vec::new());
         for &cell in &cells {
@@ -57,7 +83,7 @@ impl LinearProblem {
         Ok(Self {
             matrix: BlockSparse::new(row_start, column, block)?,
             places: cells.iter().map(|&cell| wrapped(positions[cell])).map(|r| [r.x, r.y]).collect(),
-            gradients: Gradients::new(tessellation, positions, &cells, &number),
+            gradients: Gradients::new(tessellation, positions, &cells, &number, mirrors),
             cells,
         })
     }

@@ -20,22 +20,27 @@ pub struct TransitionDistance {
 }
 
 impl TransitionDistance {
-    /// Looks at the sides of the cells that count; those shorter than `short` are counted. `None` if there are none.
+    /// Looks at the sides of the cells that count, of the first `cells` of a tessellation; those shorter than `short` are counted. `None` if
+    /// there are none. Cells beyond are mirror images of these: at a wall a cell has one side with its own image, and sides without
+    /// length with those of its neighbours, which stay so whatever the cells do and are passed over.
     pub fn new(
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
+        cells: usize,
         counts: impl Fn(usize) -> bool,
         short: f64,
     ) -> Option<Self> {
         let mut polygon = CellPolygon::default();
         let mut found: Option<Self> = None;
-        for cell in (0..positions.len()).filter(|&cell| tessellation.is_closed(cell) && counts(cell)) {
+        for cell in (0..cells).filter(|&cell| tessellation.is_closed(cell) && counts(cell)) {
             polygon.fill(tessellation, positions, cell);
             let (ring, corners) = (polygon.ring(), polygon.corners());
             for ((m, h), length) in tessellation.ring(cell).enumerate().zip(polygon.side_lengths()) {
                 let other = tessellation.neighbour(h);
+                // Of images, only a cell's own in one mirror has a side with it that has a length; that in both is met in a corner.
+                let at_wall = other >= cells && (other % cells != cell || (other / cells).count_ones() > 1);
                 // Each side once, from the lower number, unless the other cell is not looked at.
-                if h > tessellation.twin(h) && counts(other) {
+                if at_wall || h > tessellation.twin(h) && other < cells && counts(other) {
                     continue;
                 }
                 let count = ring.len();
@@ -43,7 +48,7 @@ impl TransitionDistance {
                 let gap = ((ring[(m + 1) % count] - circle).norm() - circle.norm()).abs();
                 let side = Self {
                     shortest_side: length.abs(),
-                    cells: [cell, other],
+                    cells: [cell, other % cells],
                     smallest_gap: gap,
                     short_sides: usize::from(length < short),
                     sides: 1,
@@ -83,7 +88,7 @@ mod tests {
                 .collect();
             let domain = Domain::Periodic(PeriodicBox::new([4.0, 4.0]).unwrap());
             let tessellation = Tessellation::new(&positions, domain).unwrap();
-            let found = TransitionDistance::new(&tessellation, &positions, |_| true, 0.01).unwrap();
+            let found = TransitionDistance::new(&tessellation, &positions, 16, |_| true, 0.01).unwrap();
             assert_eq!((found.sides, found.short_sides), (48, short));
             assert!(found.shortest_side < 2.0 * e && found.smallest_gap < 2.0 * e);
             assert!(found.shortest_side > 0.2 * e && found.smallest_gap > 0.1 * e);

@@ -150,6 +150,14 @@ fn a_lattice_is_compared_with_the_theory() {
 #[test]
 fn results_do_not_depend_on_threads() {
     let data = fixture("chiral-liquid");
+    let [one, two] = ["1", "2"].map(|threads| {
+        let out = Folder::new();
+        let line =
+            format!("spectrum --lattice 5 12 --ends held --wave-numbers 9 --P_0 3.2 --threads {threads}");
+        succeed(&line, &[("--out", out.path())]);
+        ["strip_eigenvalues.npy", "strip_localisation.npy"].map(|name| fs::read(out.file(name)).unwrap())
+    });
+    assert!(one == two);
     for flags in ["", "--largest 6"] {
         let [one, two] = ["1", "2"].map(|threads| {
             let out = Folder::new();
@@ -159,6 +167,94 @@ fn results_do_not_depend_on_threads() {
         });
         assert!(one == two, "{flags}");
     }
+}
+
+/// A tissue between walls that came to rest: all its modes decay but for what walls leave free, and without chirality none oscillates.
+#[test]
+fn cells_between_walls_have_modes() {
+    for (walls, free) in [("x", 1), ("both", 0)] {
+        let (run, out) = (Folder::new(), Folder::new());
+        let line = format!(
+            "simulate --cells 48 --box 8 6 --P_0 3.2 --alpha 0 --walls {walls} --time 60 --frames 1 --seed 4"
+        );
+        succeed(&line, &[("--out", run.path())]);
+        succeed("spectrum --P_0 3.2 --alpha 0", &[("", run.path()), ("--out", out.path())]);
+        let report = report(out.path());
+        assert_described(&report);
+        let frame = &report["frames"][0];
+        assert_eq!(frame["counted"], 48);
+        assert_eq!(frame["oscillating"], 0, "{walls}");
+        assert_eq!(frame["growing"], 0, "{walls}");
+        // Free to slide along a pair of walls.
+        assert_eq!(frame["zero"], free, "{walls}");
+        assert_eq!(frame["walls"]["sides"], walls);
+        let (edge, place): (Array2<f64>, Array2<f64>) =
+            (read(&out.file("edge.npy")), read(&out.file("localisation.npy")));
+        assert!(edge.dim() == (96, 2) && place.dim() == (96, 2));
+        // Modes of a symmetric matrix are orthogonal and complete: the mean share is that of the cells.
+        let cells = frame["walls"]["cells"].as_f64().unwrap();
+        assert!((edge.column(0).mean().unwrap() - cells).abs() < 1e-9);
+        assert!(cells > 0.3 && cells < 1.0 + 1e-12);
+        for row in edge.rows() {
+            assert!(if walls == "x" { row[1].abs() <= row[0] + 1e-12 } else { row[1].is_nan() });
+        }
+        // Sides at the walls that have no length are no transitions.
+        assert!(frame["transition"]["shortest_side"].as_f64().unwrap() > 1e-4);
+        let page = fs::read_to_string(out.file("report.html")).unwrap();
+        assert!(page.contains("ends at walls"));
+        assert_refused("spectrum", run.path(), &["--effect", "drift=0.1,0"], &["--effect", "walls"]);
+    }
+}
+
+#[test]
+fn a_strip_has_its_modes_at_each_wave_number() {
+    let out = Folder::new();
+    let line = "spectrum --lattice 5 20 --ends held --P_0 3.2 --alpha 0.4 --wave-numbers 8 --wave-number 2.5";
+    let outcome = succeed(line, &[("--out", out.path())]);
+    assert!(outcome.stdout.contains("strip of 18 rows"), "{}", outcome.stdout);
+    let report = report(out.path());
+    assert_described(&report);
+    let strip = &report["strip"];
+    assert_eq!((strip["moving_rows"].as_u64(), strip["modes"].as_u64()), (Some(18), Some(36)));
+    assert_eq!(report["frames"][0]["counted"], 90);
+    // A wave with the conjugate value is the mirror image: as many pile up left as right.
+    assert!(strip["left"] == strip["right"] && strip["left"].as_u64() > Some(3), "{strip}");
+    assert!(strip["difference_from_zone"].as_f64().unwrap() < 0.3);
+    let values: ndarray::Array3<f64> = read(&out.file("strip_eigenvalues.npy"));
+    let edge: ndarray::Array3<f64> = read(&out.file("strip_edge.npy"));
+    let place: ndarray::Array3<f64> = read(&out.file("strip_localisation.npy"));
+    let q: Array1<f64> = read(&out.file("strip_wave_numbers.npy"));
+    assert_eq!((values.dim(), edge.dim(), place.dim()), ((9, 36, 2), (9, 36, 2), (9, 36, 5)));
+    assert!((q[0] + q[8]).abs() < 1e-12 && q[4].abs() < 1e-12);
+    // Turned by half a circle, the strip has the modes of −q on the other side.
+    let [ahead, behind] = [6, 2].map(|k| values.index_axis(Axis(0), k).to_owned());
+    assert!(ahead.rows().into_iter().all(|value| nearest(&behind, [value[0], value[1]]) < 1e-8));
+    let sum = |k: usize| place.index_axis(Axis(0), k).column(1).iter().map(|x| x.abs()).sum::<f64>();
+    assert!((sum(6) - sum(2)).abs() < 1e-6 * sum(6) && sum(6) > 10.0 * sum(4));
+    let profiles: Array2<f64> = read(&out.file("strip_profiles.npy"));
+    assert!(profiles.rows().into_iter().all(|own| (own.sum() - 1.0).abs() < 1e-9));
+    let winding: Array2<f64> = read(&out.file("winding.npy"));
+    let [most, least] = [f64::max, f64::min].map(|of| winding.column(2).iter().fold(0.0, |a, b| of(a, *b)));
+    assert!(most >= 1.0 && least <= -1.0);
+    let page = fs::read_to_string(out.file("report.html")).unwrap();
+    assert!(page.contains("A strip with ends") && page.contains("winds by"));
+    // Between walls the honeycomb first comes to rest, where it can.
+    let walls = Folder::new();
+    let line = "spectrum --lattice 5 14 --ends walls --P_0 3 --alpha 0.05 --wave-numbers 4 --wave-number 2.2";
+    succeed(line, &[("--out", walls.path())]);
+    let record = crate::scratch::report(walls.path());
+    assert_described(&record);
+    assert!(record["strip"]["speed"].as_f64().unwrap() < 1e-9);
+    assert_eq!(record["strip"]["wave_number"].as_f64(), Some(2.2));
+    assert_eq!(record["frames"][0]["walls"]["sides"], "x");
+    assert_eq!((&record["frames"][0]["growing"], &record["frames"][0]["zero"]), (&0.into(), &1.into()));
+    assert!(fs::read_to_string(walls.file("dataset.toml")).unwrap().contains("walls = \"x\""));
+    let refuse = |line: &str, facts: &[&str]| assert_arguments_refused(line.split_whitespace(), facts);
+    refuse("spectrum --lattice 5 12 --ends walls --P_0 3.6 --alpha 1", &["come to rest"]);
+    refuse("spectrum --lattice 5 6 --ends held", &["4 rows"]);
+    refuse("spectrum --lattice 5 12 --ends held --wave-numbers 0", &["--wave-numbers 0"]);
+    refuse("spectrum --lattice 5 12 --ends held --wave-number inf", &["--wave-number inf"]);
+    refuse("spectrum --ends held", &["--lattice"]);
 }
 
 #[test]

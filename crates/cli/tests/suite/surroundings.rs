@@ -59,7 +59,7 @@ fn cells_between_walls_stay_there_and_other_commands_say_so() {
     let report = report(run.path());
     assert_eq!(report["walls"], "both");
     assert!((number(&report, "/area/mean") - 1.0).abs() < 1e-9);
-    for command in ["infer", "discover", "evaluate", "spectrum"] {
+    for command in ["infer", "discover", "evaluate"] {
         assert_refused(command, run.path(), &[], &["walls"]);
     }
 }

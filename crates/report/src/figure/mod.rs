@@ -38,6 +38,7 @@ mod predicted_against_measured;
 mod profile;
 mod residual_maps;
 mod shape_scatter;
+mod strip;
 mod trails;
 mod velocity_map;
 
@@ -77,6 +78,7 @@ pub use predicted_against_measured::{Prediction, VelocityPair, predicted_against
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
 pub use shape_scatter::{ShapeMeasure, shape_scatter};
+pub use strip::{BandPart, StripPoint, StripSide, WindingGrid, strip_bands, strip_spectrum};
 pub use trails::{Trails, trails};
 pub use velocity_map::{VelocityField, polarity_map, velocity_map};
 

@@ -15,6 +15,7 @@ mod sections;
 mod simulate;
 mod spectrum;
 mod spreads;
+mod strip;
 mod uncertainty;
 mod words;
 
@@ -26,6 +27,7 @@ pub use sections::{Section, SectionPage, Table};
 pub use simulate::SimulatePage;
 pub use spectrum::SpectrumPage;
 pub use spreads::SpreadView;
+pub use strip::StripFigures;
 pub use uncertainty::Uncertainty;
 
 use minijinja::{AutoEscape, Environment, Value};

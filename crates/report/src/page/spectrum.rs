@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::strip::StripFigures;
 use super::{Card, Figure, PageHead, Template, render};
 use crate::error::ReportError;
 use crate::figure::{
@@ -17,7 +18,7 @@ const TEMPLATE: Template =
     Template { name: "spectrum.html", source: include_str!("../../templates/spectrum.html") };
 
 /// Everything the page of `spectrum` shows, of the first frame.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub struct SpectrumPage<'a> {
     /// Title, for example the name of the data set.
     pub title: &'a str,
@@ -35,6 +36,8 @@ pub struct SpectrumPage<'a> {
     pub modes: &'a [(DrawnMode, String)],
     /// Waves on the lattice, where asked for.
     pub dispersion: &'a [DispersionPoint],
+    /// The strip, where there is one.
+    pub strip: Option<StripFigures>,
 }
 
 #[derive(Serialize)]
@@ -46,6 +49,7 @@ struct Context<'a> {
     modes: Vec<Figure>,
     rows: Vec<Row>,
     dispersion: Vec<Figure>,
+    strip: Vec<Figure>,
     rate_unit: String,
 }
 
@@ -87,6 +91,7 @@ impl SpectrumPage<'_> {
                 .collect(),
             rows: report.frames.first().map(rows).unwrap_or_default(),
             dispersion: self.dispersion_figures(&unit),
+            strip: self.strip.as_ref().map(|own| own.figures(&report.units)).unwrap_or_default(),
             rate_unit: unit,
         };
         render(TEMPLATE, &context)

@@ -1,8 +1,8 @@
 //! Figures of linear modes.
 
 use voronudge_report::figure::{
-    DispersionPart, DispersionPoint, DrawnMode, SpectrumPoint, complex_spectrum, density_of_states,
-    dispersion, mode_map,
+    BandPart, DispersionPart, DispersionPoint, DrawnMode, SpectrumPoint, StripPoint, StripSide, WindingGrid,
+    complex_spectrum, density_of_states, dispersion, mode_map, strip_bands, strip_spectrum,
 };
 use voronudge_report::{CellStatus, CellView, FrameView, Units};
 
@@ -98,4 +98,35 @@ fn modes_that_oscillate_move_unless_there_are_too_many_cells() {
     assert!(!still.contains("<circle") && !still.contains("clockwise"));
     let absent = DrawnMode { displacements: vec![[[f64::NAN; 2]; 2]; 100], ..mode(100, 1.0) };
     assert!(mode_map(&frame(100), &absent, &units()).contains("no data"));
+}
+
+#[test]
+fn strips_have_keys_for_what_is_in_them() {
+    let point = |k: usize| StripPoint {
+        value: [-(k as f64), (k as f64).cos()],
+        side: [StripSide::Left, StripSide::Right, StripSide::Neither][k % 3],
+        of_edge: k == 4,
+    };
+    let points: Vec<_> = (0..9).map(point).collect();
+    let circle = |k: usize| [-4.0 + 3.0 * (0.1 * k as f64).cos(), (0.1 * k as f64).sin()];
+    let loops = vec![(0..63).map(circle).collect()];
+    let grid = WindingGrid {
+        real: vec![-5.0, -4.0, -3.0],
+        imaginary: vec![0.0, 0.3],
+        numbers: vec![1, 1, 0, 0, 1, -1],
+    };
+    let svg = strip_spectrum(&points, &loops, &grid, "1/h");
+    for label in
+        ["piles up left", "piles up right", "fills the strip", "right edge", "winds by +1", "winds by −1"]
+    {
+        assert!(svg.contains(label), "{label}");
+    }
+    assert!(!svg.contains("left edge"));
+    assert!(strip_spectrum(&[], &[], &WindingGrid::default(), "1/h").contains("no data"));
+    for part in [BandPart::Rate, BandPart::Frequency] {
+        let periodic = vec![vec![[0.5, 1.0]; 3]; 2];
+        let svg = strip_bands(&[-1.0, 1.0], &[points.clone(), points.clone()], &periodic, part, &units());
+        assert!(svg.contains("wave number") && svg.contains("piles up left") && svg.contains("periodic"));
+        assert!(strip_bands(&[], &[], &[], part, &units()).contains("no data"));
+    }
 }

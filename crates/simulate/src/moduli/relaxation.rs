@@ -4,7 +4,7 @@ use super::Observer;
 use crate::{Error, Simulation, State};
 use voronudge_geometry::{Domain, Vector};
 use voronudge_linalg::{BlockSparse, LinearSystem};
-use voronudge_model::{BlockMatrix, jacobian};
+use voronudge_model::{BlockMatrix, jacobian, jacobian_with_images};
 
 /// When a tissue counts as being at rest, and how it is brought there.
 ///
@@ -95,7 +95,7 @@ impl Relaxation {
     }
 }
 
-/// The exact Jacobian of the velocities of a periodic tissue, and where its unknowns are.
+/// The exact Jacobian of the velocities of a periodic tissue, or of one between walls, and where its unknowns are.
 pub(super) struct SparseJacobian {
     pub matrix: BlockSparse,
     pub places: Vec<[f64; 2]>,
@@ -107,7 +107,16 @@ impl SparseJacobian {
         let Domain::Periodic(cell_box) = tessellation.domain() else {
             return Err(Error::OpenDomain);
         };
-        let BlockMatrix { row_start, column, block } = jacobian(tessellation, positions, simulation.model());
+        let BlockMatrix { row_start, column, block } = match simulation.walls() {
+            Some(walls) => jacobian_with_images(
+                tessellation,
+                simulation.positions_with_images(),
+                simulation.model(),
+                walls.mirrors(),
+                positions.len(),
+            ),
+            None => jacobian(tessellation, positions, simulation.model()),
+        };
         let matrix = BlockSparse::new(row_start, column, block)
             .map_err(|source| Error::Response { frequency: 0.0, source })?;
         Ok(Self { matrix, places: positions.iter().map(|r| cell_box.wrap(*r).into()).collect() })

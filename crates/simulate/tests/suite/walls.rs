@@ -1,7 +1,9 @@
 //! Cells between torque-free walls.
 
+use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_model::{Model, Parameters};
+use voronudge_model::{Model, Parameters, jacobian_with_images};
+use voronudge_simulate::moduli::{Motion, Relaxation, Settled};
 use voronudge_simulate::{
     Driving, Error, RandomPlacement, Shear, Simulation, Walls, generator, honeycomb, measure,
 };
@@ -183,4 +185,58 @@ fn walls_and_shear_exclude_each_other() {
     let simulation = between(Walls::X, positions, lengths, &parameters(3.8, 1.0));
     let driving = Driving { shear: Some(Shear::Steady { rate: 0.1 }), ..Driving::default() };
     assert!(matches!(simulation.with_driving(driving), Err(Error::Walls { .. })));
+}
+
+/// The Jacobian between walls is the derivative of the velocities: central differences of the simulator's, which tessellates anew, for
+/// both kinds of walls and several seeds.
+#[test]
+fn the_jacobian_between_walls_is_the_derivative_of_the_velocities() {
+    for (walls, seed) in [(Walls::X, 11), (Walls::X, 12), (Walls::Both, 13), (Walls::Both, 14)] {
+        let (positions, lengths) = random(49, seed);
+        let p = parameters(3.6, 0.9);
+        // Cells that have settled a little are not about to change neighbours.
+        let mut simulation = between(walls, positions, lengths, &p);
+        for _ in 0..200 {
+            simulation.step(0.01).unwrap();
+        }
+        let positions = simulation.positions().to_vec();
+        let matrix = jacobian_with_images(
+            simulation.tessellation(),
+            simulation.positions_with_images(),
+            simulation.model(),
+            walls.mirrors(),
+            49,
+        )
+        .to_dense();
+        let scale = matrix.iter().fold(0.0_f64, |most, x| most.max(x.abs()));
+        let (h, mut largest) = (1e-6, 0.0_f64);
+        for column in 0..98 {
+            let at = |shift: f64| {
+                let mut moved = positions.clone();
+                moved[column / 2][column % 2] += shift;
+                between(walls, moved, lengths, &p).velocities().to_vec()
+            };
+            for (cell, (ahead, behind)) in at(h).iter().zip(&at(-h)).enumerate() {
+                let slope = (ahead - behind) / (2.0 * h);
+                for axis in 0..2 {
+                    let entry = matrix[(2 * cell + axis) * 98 + column];
+                    largest = largest.max((slope[axis] - entry).abs());
+                }
+            }
+        }
+        assert!(largest < 1e-6 * scale, "{walls:?} {seed}: {largest} of {scale}");
+    }
+}
+
+/// Rows of a honeycomb between walls come to rest with implicit steps, and stay a lattice along the walls.
+#[test]
+fn a_honeycomb_between_walls_comes_to_rest() {
+    let (positions, cell_box) = honeycomb(120).unwrap();
+    let [width, height] = cell_box.lengths();
+    let gap = 0.25 * height / (positions.iter().filter(|r| r.x < 1e-9).count() as f64);
+    let turned: Vec<_> = positions.iter().map(|r| Vector::new(r.y + gap, width - r.x)).collect();
+    let simulation = between(Walls::X, turned, [height, width], &parameters(3.0, 0.05));
+    let settled = Settled::new(&simulation, &Relaxation::default(), &|| ControlFlow::Continue(())).unwrap();
+    assert_eq!(settled.motion(), Motion::AtRest);
+    assert!(settled.speed() < 1e-10 && settled.simulation().time() < 50.0);
 }

@@ -4,10 +4,13 @@ use super::frame::Solved;
 use crate::failure::Failure;
 use ndarray::{Array2, Array3, Array4};
 use voronudge_io::{DataSet, OutputDirectory};
-use voronudge_spectrum::Mode;
+use voronudge_spectrum::{Localisation, Mode};
 
 /// What a file says of each mode.
 type Column = fn(&Mode) -> Option<f64>;
+
+/// What a file says of where between walls each mode is.
+type Columns = fn(&Localisation) -> [f64; 2];
 
 /// Files with the modes along the axis behind that of frames, which a data set with a single frame does not have.
 pub(super) fn write(
@@ -42,6 +45,19 @@ pub(super) fn write(
             }
         }
         out.write_array(name, shaped(data, solved, array).view())?;
+    }
+    if solved.iter().all(|one| one.localised.is_some()) {
+        let of = |frame: usize, row: usize| {
+            solved[frame].localised.as_ref().and_then(|own| own.modes.get(row).copied())
+        };
+        let tables: [(&str, Columns); 2] =
+            [("edge.npy", |own| [own.edge, own.side]), ("localisation.npy", |own| [own.centre, own.growth])];
+        for (name, columns) in tables {
+            let array = Array3::from_shape_fn((solved.len(), most, 2), |(frame, row, column)| {
+                of(frame, row).map_or(f64::NAN, |own| columns(&own)[column])
+            });
+            out.write_array(name, shaped(data, solved, array).view())?;
+        }
     }
     if let (true, Some(first)) = (with_modes, solved.first()) {
         out.write_array("modes.npy", vectors(data, first).view())?;

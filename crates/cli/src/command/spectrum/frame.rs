@@ -2,15 +2,14 @@
 
 use super::request::ModeRequest;
 use super::search::compute;
+use super::tissue::{Localised, Tissue};
 use crate::arguments::{ChosenEffects, environment};
-use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_CELL_WITH_MODES, refuse_beyond};
 use crate::progress::Progress;
 use std::sync::Arc;
-use voronudge_geometry::{Certificate, Tessellation};
 use voronudge_io::{DataSet, Snapshot};
-use voronudge_model::{Model, Parameters, velocities};
+use voronudge_model::{Model, Parameters};
 use voronudge_spectrum::{LinearProblem, Modes, Scope, Selection, TransitionDistance, dense_memory};
 
 /// Sides shorter than this share of the cell size are near a T1 transition.
@@ -20,10 +19,11 @@ pub(super) const SHORT_SIDE: f64 = 0.01;
 pub(super) struct Solved {
     pub frame: usize,
     pub snapshot: Snapshot,
-    pub tessellation: Tessellation,
-    pub view: Certificate,
+    pub tissue: Tissue,
     pub problem: Arc<LinearProblem>,
     pub modes: Modes,
+    /// Where between walls they are.
+    pub localised: Option<Localised>,
     /// The cell size ℓ₀.
     pub length: f64,
     pub transition: Option<TransitionDistance>,
@@ -32,31 +32,32 @@ pub(super) struct Solved {
 }
 
 impl Solved {
+    /// The modes of a frame in which cells for which `held` holds stay where they are.
     pub fn new(
-        data: &DataSet,
-        frame: usize,
+        (data, frame): (&DataSet, usize),
         (parameters, effects): (&Parameters<f64>, &ChosenEffects),
         request: &ModeRequest,
+        held: impl Fn(usize) -> bool,
         progress: &mut Progress,
     ) -> Result<Self, Failure> {
-        let domain = domain_at(data, frame)?;
         let snapshot = Snapshot::new(data, frame);
-        let positions = &snapshot.positions;
-        let tessellation =
-            Tessellation::new(positions, domain).map_err(|error| snapshot.in_file_numbers(error))?;
-        let view = data.view()?.judge(&tessellation, positions);
-        if (0..positions.len()).all(|cell| !view.counts(cell)) {
+        let tissue = Tissue::new(data, frame, &snapshot)?;
+        let (tessellation, positions) = (&tissue.tessellation, &tissue.positions);
+        let view = data.view()?.judge(tessellation, positions);
+        let moves = |cell: usize| cell < tissue.cells && view.counts(cell) && !held(cell);
+        if !(0..tissue.cells).any(moves) {
             return Err(voronudge_spectrum::Error::NoCells.into());
         }
-        let mut surroundings = environment(&tessellation, positions, &view)?;
-        if let Some(labels) = data.labels_of(&snapshot, frame) {
+        let mut surroundings = environment(tessellation, positions, &view)?;
+        if let Some(labels) = data.labels_of(&snapshot, frame).filter(|_| tissue.walls.is_none()) {
             surroundings =
                 surroundings.with_labels(labels).map_err(|error| Failure::new(error.to_string()))?;
         }
         let length = surroundings.cell_size();
-        let model = effects.add_to(Model::chiral_voronoi(parameters), surroundings, domain)?;
-        let problem = LinearProblem::new(&tessellation, positions, &model, |cell| view.counts(cell));
-        let problem = Arc::new(problem.map_err(|error| in_file_numbers(&snapshot, error))?);
+        let model = effects.add_to(Model::chiral_voronoi(parameters), surroundings, tessellation.domain())?;
+        tissue.check(&model)?;
+        let problem = tissue.problem(&model, moves).map_err(|error| in_file_numbers(&snapshot, error))?;
+        let problem = Arc::new(problem);
         let (cells, dense) = (problem.cells().len(), request.request.dense_limit);
         match request.request.selection {
             Selection::All if cells <= dense => {
@@ -67,19 +68,19 @@ impl Solved {
             _ => refuse_beyond(format!("modes of {cells} cells"), cells, OF_A_CELL_WITH_MODES)?,
         }
         let modes = compute(&problem, request.request, progress)?;
-        let all = velocities(&tessellation, positions, &model);
+        let all = tissue.velocities(&model);
         let squares: f64 = problem.cells().iter().map(|&cell| all[cell].norm_squared()).sum();
-        let transition =
-            TransitionDistance::new(&tessellation, positions, |cell| view.counts(cell), SHORT_SIDE * length);
+        let short = SHORT_SIDE * length;
+        let transition = TransitionDistance::new(tessellation, positions, tissue.cells, moves, short);
         Ok(Self {
             frame,
             speed: (squares / problem.cells().len() as f64).sqrt(),
+            localised: tissue.localisations(&modes),
             problem,
             modes,
             length,
             transition,
-            view,
-            tessellation,
+            tissue,
             snapshot,
         })
     }

@@ -14,8 +14,8 @@ use voronudge_theory::{MeanField, Orientation, SymmetryPoint, symmetry_path};
 const STEPS: usize = 60;
 
 pub(super) struct Lattice {
-    honeycomb: Honeycomb,
-    size: [usize; 2],
+    pub honeycomb: Honeycomb,
+    pub size: [usize; 2],
 }
 
 /// Waves along the path Γ–K–M–Γ.

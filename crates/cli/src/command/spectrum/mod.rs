@@ -7,6 +7,9 @@ mod page;
 mod report;
 mod request;
 mod search;
+mod strip;
+mod strip_page;
+mod tissue;
 mod view;
 
 use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
@@ -20,12 +23,13 @@ use frame::Solved;
 use lattice::Lattice;
 pub(crate) use report::{mean_field, named};
 use request::SelectionArguments;
+use strip::{Bands, EndedLattice, EndsName};
 use voronudge_io::FrameSelection;
 
 /// Linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional points.
 ///
 /// Writes eigenvalues.npy (2N, 2: real, imaginary; the largest real part first), participation.npy, longitudinal.npy,
-/// condition.npy, report.json and report.html; with --modes also the modes themselves.
+/// condition.npy, report.json and report.html; with --modes also the modes themselves, and between walls edge.npy and localisation.npy.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
@@ -33,6 +37,15 @@ pub(crate) struct Arguments {
     /// A honeycomb of unit cells instead of a data set, with its waves along Γ–K–M–Γ beside the mean-field theory.
     #[arg(long, num_args = 2, value_names = ["COLUMNS", "ROWS"], conflicts_with_all = ["dataset", "positions"], allow_negative_numbers = true)]
     lattice: Option<Vec<usize>>,
+    /// What is at both ends of the rows of --lattice, which are along y; with it also the modes of each wave number along the rows.
+    #[arg(long, value_enum, requires = "lattice")]
+    ends: Option<EndsName>,
+    /// The wave number along the rows at which the modes of --ends are shown, 1/ℓ₀ [default: where they pile up most].
+    #[arg(long, value_name = "Q", requires = "ends", allow_negative_numbers = true)]
+    wave_number: Option<f64>,
+    /// In how many steps the wave number along the rows goes through the Brillouin zone [default: 64].
+    #[arg(long, value_name = "COUNT", requires = "ends", allow_negative_numbers = true)]
+    wave_numbers: Option<usize>,
     /// Frames: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: the first].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
@@ -49,6 +62,9 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
+/// Steps of the wave number along a strip where nothing is said.
+const WAVE_NUMBERS: usize = 64;
+
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("spectrum", &arguments.common)?;
     let request = arguments.selection.resolve()?;
@@ -59,11 +75,21 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let effects = arguments.effects.resolve()?;
     let parameters = arguments.parameters.resolve()?;
     let lattice = arguments.lattice.as_deref().map(Lattice::new).transpose()?;
-    let (data, place) = match &lattice {
-        Some(lattice) => (lattice.data_set(), "the honeycomb".to_owned()),
-        None => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
+    let count = arguments.wave_numbers.unwrap_or(WAVE_NUMBERS);
+    strip::check(count, arguments.wave_number)?;
+    let model = (&parameters, &effects);
+    let ended = match (&lattice, arguments.ends) {
+        (Some(lattice), Some(ends)) => Some(EndedLattice::new(lattice, ends, model)?),
+        _ => None,
     };
-    domain_at(&data, 0)?;
+    let (data, place) = match (&lattice, &ended) {
+        (Some(lattice), Some(ended)) => (ended.data_set(lattice), "the honeycomb".to_owned()),
+        (Some(lattice), None) => (lattice.data_set(), "the honeycomb".to_owned()),
+        (None, _) => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
+    };
+    if data.walls.is_none() {
+        domain_at(&data, 0)?;
+    }
     let frames = match &arguments.frames {
         Some(selection) => {
             selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
@@ -78,10 +104,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut solved = Vec::new();
     for &frame in &frames {
         let at = || format!("{place}, frame {frame}");
-        let one = Solved::new(&data, frame, (&parameters, &effects), &request, &mut progress)
+        let held = |cell: usize| ended.as_ref().is_some_and(|ended| ended.is_held(cell));
+        let one = Solved::new((&data, frame), model, &request, held, &mut progress)
             .map_err(|failure| failure.at_unless_interrupted(at()))?;
         solved.push(one);
     }
+    let scan = |ended: &EndedLattice, progress: &mut Progress| {
+        Bands::new(&ended.strip, (count, arguments.wave_number), progress)
+    };
+    let bands = ended.as_ref().map(|ended| scan(ended, &mut progress)).transpose()?;
     progress.finish();
     if let Some(warning) = solved.first().and_then(|first| first.doubtful_units(&parameters)) {
         run.warn(warning);
@@ -94,10 +125,15 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if let (Some(lattice), Some(waves)) = (&lattice, &waves) {
         lattice.write(&mut out, &data, waves)?;
     }
+    let strip = ended.as_ref().zip(bands.as_ref());
+    if let Some((ended, bands)) = strip {
+        bands.write(&mut out, &ended.strip)?;
+        bands.warnings(ended).into_iter().for_each(|warning| run.warn(warning));
+    }
     if arguments.modes && solved.len() > 1 {
         run.warn(format!("modes.npy holds the modes of frame {} only", frames[0]));
     }
-    let report = report::report(&run, &data, (&parameters, &effects), &request, &solved, waves.as_ref());
+    let report = report::report(&run, &data, model, &request, &solved, (waves.as_ref(), strip));
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     let title = match (&lattice, &arguments.data.dataset) {
@@ -105,7 +141,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         (None, Some(folder)) => folder.display().to_string(),
         (None, None) => place,
     };
-    out.write_text("report.html", &page::page(&title, &data, &solved, &report, waves.as_ref())?)?;
+    let page = page::page(&title, &data, &solved, &report, (waves.as_ref(), strip))?;
+    out.write_text("report.html", &page)?;
     let summary = page::summary(&report, out.path());
     run.finish(Some(out), &json, &summary)?;
     Ok(Answer::Positive)

@@ -2,6 +2,8 @@
 
 use super::frame::Solved;
 use super::lattice::Waves;
+use super::strip::{Bands, EndedLattice};
+use super::strip_page;
 use super::view::{drawn, frame_view, points};
 use crate::failure::Failure;
 use std::fmt::Write as _;
@@ -21,7 +23,7 @@ pub(super) fn page(
     data: &DataSet,
     solved: &[Solved],
     report: &SpectrumReport,
-    waves: Option<&Waves>,
+    (waves, strip): (Option<&Waves>, Option<(&EndedLattice, &Bands)>),
 ) -> Result<String, Failure> {
     let (Some(first), Some(frame)) = (solved.first(), report.frames.first()) else {
         return Err(Failure::new("no frame was looked at").with_hint("choose one by --frames"));
@@ -35,6 +37,7 @@ pub(super) fn page(
         frame: &frame_view(first),
         modes: &drawn_modes(first, frame),
         dispersion: waves.map_or(&[], |waves| &waves.points),
+        strip: strip.map(|(ended, bands)| bands.figures(ended)),
     };
     Ok(page.render()?)
 }
@@ -86,6 +89,19 @@ fn paragraphs(data: &DataSet, first: &Solved, report: &SpectrumReport) -> Vec<St
              stiffens the modes near the rim, and there are no translations that cost nothing.",
             all - moving
         ));
+    }
+    if let Some(walls) = report.frames.first().and_then(|frame| frame.walls.as_ref()) {
+        paragraphs.push(format!(
+            "The tissue ends at walls, and the modes are those of the cells with their mirror images. Within two rows of a wall are {} % of the \
+             cells and, in the mean over all modes, {} % of |u|²; {} of {} modes have more than half of it there.",
+            significant(100.0 * walls.cells, 2),
+            significant(100.0 * walls.mean_share, 2),
+            walls.mostly,
+            first.modes.modes.len()
+        ));
+    }
+    if let Some(strip) = &report.strip {
+        paragraphs.push(strip_page::paragraph(strip));
     }
     if first.is_partial() {
         paragraphs.push(
@@ -175,6 +191,17 @@ pub(super) fn summary(report: &SpectrumReport, out: &Path) -> String {
     }
     if let Some(difference) = report.lattice.as_ref().and_then(|lattice| lattice.largest_difference) {
         let _ = writeln!(text, "waves on the honeycomb: largest difference from the theory {difference:.1e}");
+    }
+    if let Some(walls) = report.frames.first().and_then(|frame| frame.walls.as_ref()) {
+        let shares = [walls.cells, walls.mean_share].map(|share| significant(100.0 * share, 3));
+        let [cells, square] = shares;
+        let _ = writeln!(
+            text,
+            "within two rows of a wall: {cells} % of the cells, {square} % of |u|² in the mean"
+        );
+    }
+    if let Some(strip) = &report.strip {
+        text.push_str(&strip_page::lines(strip));
     }
     let _ = writeln!(text, "figures in {}", out.join("report.html").display());
     text

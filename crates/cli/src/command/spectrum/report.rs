@@ -3,14 +3,16 @@
 use super::frame::Solved;
 use super::lattice::Waves;
 use super::request::ModeRequest;
+use super::strip::{Bands, EndedLattice};
 use crate::arguments::ChosenEffects;
 use crate::run::Run;
 use voronudge_io::DataSet;
 use voronudge_model::Parameters;
 use voronudge_report::Units;
 use voronudge_report::spectrum_report::{
-    FrameSpectrum, LatticeRecord, MeanFieldRecord, ModeRecord, SpectrumReport, TransitionRecord,
+    FrameSpectrum, LatticeRecord, MeanFieldRecord, ModeRecord, SpectrumReport, TransitionRecord, WallsRecord,
 };
+use voronudge_simulate::Walls;
 use voronudge_spectrum::Scope;
 use voronudge_theory::{MeanField, Phase, hexagon_perimeter};
 
@@ -23,7 +25,7 @@ pub(super) fn report(
     (parameters, effects): (&Parameters<f64>, &ChosenEffects),
     request: &ModeRequest,
     solved: &[Solved],
-    waves: Option<&Waves>,
+    (waves, strip): (Option<&Waves>, Option<(&EndedLattice, &Bands)>),
 ) -> SpectrumReport {
     let length = solved.first().map_or(1.0, |one| one.length);
     let theory = if effects.is_empty() { mean_field(parameters, length) } else { None };
@@ -49,6 +51,7 @@ pub(super) fn report(
             points: waves.points.len(),
             largest_difference: waves.largest_difference,
         }),
+        strip: strip.map(|(ended, bands)| bands.record(ended)),
     }
 }
 
@@ -123,6 +126,15 @@ fn frame(solved: &Solved, k_p: f64) -> FrameSpectrum {
             smallest_gap: t.smallest_gap,
             short_sides: t.short_sides,
             sides: t.sides,
+        }),
+        walls: solved.localised.as_ref().map(|own| {
+            let shares = || own.modes.iter().map(|mode| mode.edge);
+            WallsRecord {
+                sides: if own.walls == Walls::X { "x" } else { "both" },
+                cells: own.share,
+                mean_share: shares().sum::<f64>() / own.modes.len() as f64,
+                mostly: shares().filter(|share| *share > 0.5).count(),
+            }
         }),
     }
 }

@@ -7,10 +7,16 @@ use voronudge_report::FrameView;
 use voronudge_report::figure::{DrawnMode, SpectrumPoint};
 use voronudge_spectrum::Complex64;
 
-/// The cells of a frame; those that are held in the modes are left out.
+/// The cells of a frame; those that are held in the modes are left out, and mirror images behind walls are not shown.
 pub(super) fn frame_view(solved: &Solved) -> FrameView {
-    let label = format!("frame {}", solved.frame);
-    cells_view(label, &solved.tessellation, &solved.snapshot.positions, |cell| solved.view.counts(cell))
+    let (label, tissue) = (format!("frame {}", solved.frame), &solved.tissue);
+    let moves = |cell: usize| solved.problem.cells().binary_search(&cell).is_ok();
+    let mut view = cells_view(label, &tissue.tessellation, &tissue.positions, moves);
+    view.cells.truncate(tissue.cells);
+    if let Some((_, cell_box)) = tissue.walls {
+        view.outline = Some([[0.0; 2], cell_box.lengths()]);
+    }
+    view
 }
 
 /// A mode on the cells of its frame, with the phase at which its real part is largest.
