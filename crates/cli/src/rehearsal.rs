@@ -33,6 +33,7 @@ const WRITTEN: [(&str, &[&str]); 21] = [
     ("import field", &["report.html", "positions.npy", "heights.npy", "dataset.toml"]),
     ("phase-diffusion", &["report.html"]),
     ("rheology", &["report.html"]),
+    ("waves", &["report.html", "dynamical_matrix.npy"]),
 ];
 
 /// What is not known before the work is done.

@@ -46,6 +46,7 @@ pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;
 pub mod units;
+pub mod waves_report;
 mod view;
 
 /// JSON Schema (draft 2020-12) of the report of `simulate`, which the command line writes by itself.
@@ -68,3 +69,4 @@ pub use shape_report::{FIELD_SCHEMA, FieldReport, SHAPE_SCHEMA, ShapeReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use units::Units;
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment};
+pub use waves_report::{WAVES_SCHEMA, WavesReport};

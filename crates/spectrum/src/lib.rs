@@ -8,6 +8,7 @@
 //! - [`modes`]: all eigenvalues, or those a [`Selection`] names, each as a [`Mode`] with what it is like.
 //! - [`TransitionDistance`]: how far the snapshot is from the next T1 transition, where J jumps.
 //! - [`Honeycomb`]: the exact dispersion on a lattice.
+//! - [`LinearProblem::projected`], [`LinearProblem::relaxed`]: D(q) of plane waves of any snapshot.
 //!
 //! ```
 //! use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
@@ -33,6 +34,7 @@ mod gradient;
 mod honeycomb;
 mod mode;
 mod problem;
+mod projection;
 mod selection;
 mod transition;
 
