@@ -40,8 +40,7 @@ pub use error::Error;
 pub use exchanges::{Exchange, exchange_statistics, exchanges};
 pub use fluctuations::{
     DynamicStructure, FluctuationRequest, Fluctuations, LongWaves, Relaxation, ShellFluctuations,
-    StructurePart, Tell,
-    WaveField, fluctuations, together,
+    StructurePart, Tell, WaveField, fluctuations, together,
 };
 pub use hexatic::{Hexatic, hexatic, hexatic_among};
 pub use nematic::{Around, Defect, Nematic, SQUARES, Stresses, largest_width, nematic};

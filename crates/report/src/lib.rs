@@ -46,8 +46,8 @@ pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;
 pub mod units;
-pub mod waves_report;
 mod view;
+pub mod waves_report;
 
 /// JSON Schema (draft 2020-12) of the report of `simulate`, which the command line writes by itself.
 pub const SIMULATE_SCHEMA: &str = include_str!("../schema/simulate.schema.json");

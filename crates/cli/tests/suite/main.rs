@@ -51,3 +51,4 @@ mod stdout;
 mod surroundings;
 mod uncertainties;
 mod undeclared;
+mod waves;

@@ -172,7 +172,9 @@ fn waves_of_a_recording_are_resolved() {
         .unwrap();
         let plan = Plan::of(&recording).unwrap();
         let request = FluctuationRequest { field: None, first_lag: Some(0), lag: None, largest: 0.75 };
-        let found = fluctuations(&recording, &plan, &request, &mut |_, _, _| std::ops::ControlFlow::Continue(())).unwrap();
+        let found =
+            fluctuations(&recording, &plan, &request, &mut |_, _, _| std::ops::ControlFlow::Continue(()))
+                .unwrap();
         assert_eq!(found.field, WaveField::Displacements);
         let shell = &found.shells[0];
         assert_eq!(shell.wave_vectors.len(), 2);
