@@ -16,6 +16,13 @@ pub(crate) struct Shell {
     pub waves: Vec<usize>,
 }
 
+impl Shell {
+    fn of(own: Vec<usize>, waves: &[Vector<f64>]) -> Self {
+        let sum: f64 = own.iter().map(|wave| waves[*wave].norm()).sum();
+        Self { wave_number: sum / own.len() as f64, waves: own }
+    }
+}
+
 /// Wave vectors, one of each pair ±q, and their shells. Those of a window have an even number of periods in it.
 #[derive(Debug, Clone)]
 pub(crate) struct WaveShells {
@@ -42,14 +49,24 @@ impl WaveShells {
             members[(q.norm() / shell - 0.5).max(0.0) as usize].push(wave);
         }
         members.retain(|own| !own.is_empty());
-        let shells: Vec<Shell> = members
-            .into_iter()
-            .map(|own| {
-                let sum: f64 = own.iter().map(|wave| waves[*wave].norm()).sum();
-                Shell { wave_number: sum / own.len() as f64, waves: own }
-            })
-            .collect();
+        let shells: Vec<Shell> = members.into_iter().map(|own| Shell::of(own, &waves)).collect();
         (!shells.is_empty()).then_some(Self { waves, shells, window })
+    }
+
+    /// In shells so narrow that the longest wave of each is at most `ratio` times as long as the shortest.
+    #[must_use]
+    pub fn narrowed(mut self, ratio: f64) -> Self {
+        let mut order: Vec<usize> = (0..self.waves.len()).collect();
+        order.sort_by(|a, b| self.waves[*a].norm().total_cmp(&self.waves[*b].norm()).then(a.cmp(b)));
+        let mut members: Vec<Vec<usize>> = Vec::new();
+        for wave in order {
+            match members.last_mut() {
+                Some(own) if self.waves[wave].norm() <= ratio * self.waves[own[0]].norm() => own.push(wave),
+                _ => members.push(vec![wave]),
+            }
+        }
+        self.shells = members.into_iter().map(|own| Shell::of(own, &self.waves)).collect();
+        self
     }
 
     /// Standard error of a mean over waves, over that of independent ones.

@@ -164,7 +164,8 @@ fn requests_that_make_no_sense_are_refused() {
 fn plane_waves_see_the_jacobian() {
     let honeycomb = Honeycomb::new(12, 12, Arrangement::RowsAlongX).unwrap();
     let tissue = model(3.3, 0.7);
-    let problem = LinearProblem::new(honeycomb.tessellation(), honeycomb.positions(), &tissue, |_| true).unwrap();
+    let problem =
+        LinearProblem::new(honeycomb.tessellation(), honeycomb.positions(), &tissue, |_| true).unwrap();
     let jacobian = honeycomb.jacobian(&tissue);
     let [width, height] = honeycomb.lengths();
     let tau = std::f64::consts::TAU;

@@ -350,7 +350,9 @@ fn averages_over_directions() {
             trace += (own[0][0] + own[1][1]) / f64::from(count);
             odd += (own[0][1] - own[1][0]) / f64::from(count);
         }
-        assert!((mean[0][0] + mean[1][1] - trace).abs() < 1e-9 && (mean[0][1] - mean[1][0] - odd).abs() < 1e-9);
+        assert!(
+            (mean[0][0] + mean[1][1] - trace).abs() < 1e-9 && (mean[0][1] - mean[1][0] - odd).abs() < 1e-9
+        );
     }
     assert!(theory(3.0, 0.0).isotropic_dynamical_matrix(f64::NAN).is_err());
 }

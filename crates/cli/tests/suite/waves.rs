@@ -102,11 +102,18 @@ fn a_solid_shows_its_odd_waves() {
 #[test]
 fn results_do_not_depend_on_threads_and_bad_requests_are_refused() {
     let (run, one, three) = (Folder::new(), Folder::new(), Folder::new());
-    succeed("simulate --cells 64 --P_0 4 --alpha 1 --time 12 --frames 60 --seed 3 --quiet", &[("--out", run.path())]);
+    succeed(
+        "simulate --cells 64 --P_0 4 --alpha 1 --time 12 --frames 60 --seed 3 --quiet",
+        &[("--out", run.path())],
+    );
     succeed("waves --threads 1 --P_0 4 --alpha 1", &[("", run.path()), ("--out", one.path())]);
     succeed("waves --threads 3 --P_0 4 --alpha 1", &[("", run.path()), ("--out", three.path())]);
     for name in ["dynamical_matrix.npy", "dynamic_structure_transverse.npy", "dynamical_matrix_model.npy"] {
-        assert_eq!(std::fs::read(one.file(name)).unwrap(), std::fs::read(three.file(name)).unwrap(), "{name}");
+        assert_eq!(
+            std::fs::read(one.file(name)).unwrap(),
+            std::fs::read(three.file(name)).unwrap(),
+            "{name}"
+        );
     }
     assert_eq!(report(one.path())["field"], "velocities");
     let cells = run.path();

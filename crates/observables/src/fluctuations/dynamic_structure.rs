@@ -12,8 +12,8 @@ use std::f64::consts::TAU;
 const LONGEST: usize = 128;
 const SHORTEST: usize = 8;
 
-/// Pieces of time that errors come from, beside waves.
-const PIECES: usize = 4;
+/// Pieces of time that errors come from, beside waves, at most. Segments that overlap by half under Hann windows share some 3 % of the scatter of their powers.
+const PIECES: usize = 16;
 
 /// What is correlated with what.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

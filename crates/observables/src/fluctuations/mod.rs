@@ -35,6 +35,9 @@ use voronudge_geometry::Vector;
 /// Frames without which nothing is said.
 const FEWEST_FRAMES: usize = 12;
 
+/// Longest wave of a shell over the shortest: waves that relax at rates far apart would not relax by one matrix together.
+const NARROW: f64 = 1.12;
+
 /// Wave number, over the inverse mean spacing, up to which waves are long.
 const LONG: f64 = 1.0;
 
@@ -121,7 +124,8 @@ pub fn fluctuations(
     let same = frames.iter().all(|frame| frame.tessellation.domain() == domain);
     let resolved = WaveShells::of(&frames[0], plan, request.largest / plan.spacing)
         .filter(|_| same)
-        .ok_or(Error::NoWaves)?;
+        .ok_or(Error::NoWaves)?
+        .narrowed(NARROW);
     let field = match request.field {
         Some(field) => field,
         None => WaveField::suited_to(recording, plan),

@@ -6,6 +6,7 @@ use super::evidence::significance;
 use crate::RateMatrix;
 use nalgebra::{SMatrix, SVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
+use std::f64::consts::{FRAC_PI_2, PI};
 
 /// Stretches that errors come from are at least so many times of the slowest relaxation.
 const APART: f64 = 4.0;
@@ -19,13 +20,14 @@ pub struct Relaxation {
     pub matrix: [[f64; 2]; 2],
     /// Standard errors of its entries.
     pub standard_errors: [[f64; 2]; 2],
-    /// D(q) from τ_0 and τ_0 + 2τ: the same where waves relax linearly and without memory. NaN where that is no propagator.
+    /// D(q) from τ_0 and τ_0 + 2τ: the same where waves relax linearly and without memory. NaN where that is no propagator, or waves turn by half a turn over 2τ.
     pub twice: [[f64; 2]; 2],
     /// Its standard errors.
     pub twice_errors: [[f64; 2]; 2],
     /// D(q) from lag zero and τ_0 + τ, errors of localisation left in.
     pub uncorrected: [[f64; 2]; 2],
-    /// Probability of a difference of D from τ and from 2τ that is as large, if waves relax linearly and without memory; NaN if it cannot be told.
+    /// Probability of a difference of the propagator over 2τ from the square of that over τ that is as large, if waves relax linearly and without memory; NaN if it
+    /// cannot be told.
     pub linear: f64,
     /// Probability of entries off the diagonal that are as large without chirality.
     pub achiral: f64,
@@ -48,12 +50,13 @@ pub struct Relaxation {
 }
 
 /// Numbers that are estimated together.
-const COUNT: usize = 16;
+const COUNT: usize = 20;
 const TWICE: usize = 4;
 const UNCORRECTED: usize = 8;
 const DISCRIMINANT: usize = 12;
 const DECAY: usize = 13;
 const NOISE: usize = 15;
+const MEMORY: usize = 16;
 
 /// The relaxation of the waves of a shell, of which the courses are given wave by wave; `dependence` is what standard errors are multiplied by.
 pub(super) fn relaxation(
@@ -82,7 +85,8 @@ pub(super) fn relaxation(
     Some(jackknifed(&whole, &without, dependence, lag, slowest * interval * frames as f64))
 }
 
-/// The largest power of two frames over which the determinant of the covariance falls to no less than 1/e: half a relaxation time of both waves.
+/// The largest power of two frames over which the determinant of the covariance falls to no less than 1/e, half a relaxation time of both waves, and these turn by less than
+/// a quarter.
 fn suited_lag(waves: &[&[Course]], first_lag: usize, frames: usize) -> usize {
     let most = frames / 8;
     let mut best = 1;
@@ -90,7 +94,10 @@ fn suited_lag(waves: &[&[Course]], first_lag: usize, frames: usize) -> usize {
     while first_lag + 2 * lag <= most {
         let lags = [0, first_lag, first_lag + lag, first_lag + 2 * lag];
         let Covariances(of) = Covariance::new(waves, lags, frames).all;
-        if of[2].determinant() < of[1].determinant() / std::f64::consts::E {
+        let step = of[1].inverse().and_then(|inverse| RateMatrix::of_propagator(of[2] * inverse, 1.0));
+        let slow =
+            |step: RateMatrix| step.frequency() < FRAC_PI_2 && step.decay_rates().iter().sum::<f64>() < 1.0;
+        if !step.is_some_and(slow) {
             break;
         }
         best = lag;
@@ -102,8 +109,11 @@ fn suited_lag(waves: &[&[Course]], first_lag: usize, frames: usize) -> usize {
 /// All that covariances tell; `None` if they are those of no relaxation. Times are τ_0 and τ.
 fn estimate(Covariances(of): &Covariances, [first, time]: [f64; 2]) -> Option<[f64; COUNT]> {
     let inverse = of[1].inverse()?;
-    let matrix = RateMatrix::of_propagator(of[2] * inverse, time)?;
-    let twice = RateMatrix::of_propagator(of[3] * inverse, 2.0 * time);
+    let (once, further) = (of[2] * inverse, of[3] * inverse);
+    let matrix = RateMatrix::of_propagator(once, time)?;
+    // Beyond half a turn the logarithm is that of another frequency.
+    let twice =
+        RateMatrix::of_propagator(further, 2.0 * time).filter(|_| 2.0 * time * matrix.frequency() < PI);
     let uncorrected =
         of[0].inverse().and_then(|inverse| RateMatrix::of_propagator(of[2] * inverse, first + time));
     let explained = matrix.propagator(-first) * of[1];
@@ -113,6 +123,7 @@ fn estimate(Covariances(of): &Covariances, [first, time]: [f64; 2]) -> Option<[f
         all[from..from + 4].copy_from_slice(rows.as_flattened());
     };
     put(0, matrix);
+    put(MEMORY, further - once * once);
     twice.into_iter().for_each(|twice| put(TWICE, twice));
     uncorrected.into_iter().for_each(|own| put(UNCORRECTED, own));
     all[DISCRIMINANT] = matrix.discriminant();
@@ -143,9 +154,9 @@ fn jackknifed(
     let error = |k: usize| covariance(&|own| own[k], &|own| own[k]).sqrt();
     let square =
         |from: usize, of: &dyn Fn(usize) -> f64| [[of(from), of(from + 1)], [of(from + 2), of(from + 3)]];
-    let difference = |k: usize| move |own: &[f64; COUNT]| own[TWICE + k] - own[k];
-    let shift = SVector::<f64, 4>::from_fn(|k, _| difference(k)(&value));
-    let of_shift = SMatrix::<f64, 4, 4>::from_fn(|j, k| covariance(&difference(j), &difference(k)));
+    let memory = SVector::<f64, 4>::from_fn(|k, _| value[MEMORY + k]);
+    let of_memory =
+        SMatrix::<f64, 4, 4>::from_fn(|j, k| covariance(&|own| own[MEMORY + j], &|own| own[MEMORY + k]));
     let odd = SVector::<f64, 2>::from_fn(|k, _| value[1 + k]);
     let of_odd = SMatrix::<f64, 2, 2>::from_fn(|j, k| covariance(&|own| own[1 + j], &|own| own[1 + k]));
     let quantile =
@@ -159,7 +170,7 @@ fn jackknifed(
         twice: square(TWICE, &|k| value[k]),
         twice_errors: square(TWICE, &error),
         uncorrected: square(UNCORRECTED, &|k| value[k]),
-        linear: significance(&shift, of_shift, without.len()),
+        linear: significance(&memory, of_memory, without.len()),
         achiral: significance(&odd, of_odd, without.len()),
         decay_rates: [value[DECAY], value[DECAY + 1]],
         decay_errors: [error(DECAY), error(DECAY + 1)],

@@ -180,24 +180,24 @@ pub(super) fn spectra(found: &Fluctuations, beside: &Beside, units: &Units) -> V
     };
     vec![
         logarithmic(
-            "C_LL(q, ω)",
+            "C∥(q, ω)",
             &of_field,
             "Power of what moves along the wave vector: compression.",
             StructurePart::Longitudinal,
         ),
         logarithmic(
-            "C_TT(q, ω)",
+            "C⊥(q, ω)",
             &of_field,
             "Power of what moves across the wave vector: shear.",
             StructurePart::Transverse,
         ),
         signed(
-            "2 Im C_LT/(C_LL + C_TT)",
+            "2 Im C∥⊥/(C∥ + C⊥)",
             "Sense of rotation: +1 where all waves turn clockwise with time, from across to along q, −1 where they turn anticlockwise. Without chirality it is zero.",
             StructurePart::OddImaginary,
         ),
         signed(
-            "2 Re C_LT/(C_LL + C_TT)",
+            "2 Re C∥⊥/(C∥ + C⊥)",
             "What moves along q and across it at the same time. Without chirality it is zero.",
             StructurePart::OddReal,
         ),

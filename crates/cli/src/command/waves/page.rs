@@ -30,7 +30,7 @@ const GUIDE: &[[&str; 2]] = &[
     ],
     [
         "Whether waves relax linearly",
-        "D(q) over the lag τ and over 2τ is the same where waves relax linearly and without memory. Where it is not, D(q) is a rate at this lag and no property of the tissue.",
+        "What waves do over 2τ is twice what they do over τ where they relax linearly and without memory. Where it is not, D(q) is a rate at this lag and no property of the tissue.",
     ],
     [
         "Jacobian",
@@ -120,10 +120,10 @@ fn table(report: &WavesReport) -> Table {
         format!("q ({})", unit_text(&report.units.powers(-1, 0))),
         "waves".into(),
         "τ (frames)".into(),
-        format!("along ({rate})"),
-        format!("across ({rate})"),
-        format!("upper right ({rate})"),
-        format!("lower left ({rate})"),
+        format!("D∥∥ ({rate})"),
+        format!("D⊥⊥ ({rate})"),
+        format!("D∥⊥ ({rate})"),
+        format!("D⊥∥ ({rate})"),
         format!("frequency, 95 % ({rate})"),
         "linear, p".into(),
         "achiral, p".into(),
@@ -239,10 +239,11 @@ fn moduli(report: &WavesReport) -> Vec<(&'static str, &Measured)> {
 }
 
 fn cards(report: &WavesReport) -> Vec<Card> {
+    let which = if report.verdict == "not_linear" { "at this lag only" } else { "long waves" };
     let card = |(label, own): (&str, &Measured)| Card {
         label: label.into(),
         value: with_unit(own.value, 3, &own.unit),
-        note: format!("± {}, long waves", significant(own.standard_error, 1)),
+        note: format!("± {}, {which}", significant(own.standard_error, 1)),
     };
     let mut all: Vec<Card> = moduli(report).into_iter().map(card).collect();
     all.extend(report.localisation.as_ref().map(|own| Card {
@@ -260,7 +261,7 @@ pub(super) fn summary(report: &WavesReport, out: &Path) -> String {
     let _ = writeln!(
         text,
         "  {:>8} {:>18} {:>18} {:>18} {:>18} {:>9} {:>8}",
-        "q", "along", "across", "upper right", "lower left", "frequency", "linear"
+        "q", "D∥∥", "D⊥⊥", "D∥⊥", "D⊥∥", "frequency", "linear"
     );
     for shell in &report.shells {
         let Some(own) = &shell.relaxation else { continue };
