@@ -137,4 +137,6 @@ pub struct RelaxationRecord {
     pub stretches: usize,
     /// Times of the slowest relaxation in the recording.
     pub relaxations: f64,
+    /// Whether these are eight or more, and there are errors.
+    pub reliable: bool,
 }

@@ -5,7 +5,15 @@ use voronudge_geometry::{Vector, dot, quarter_turn};
 use voronudge_linalg::LinearSystem;
 
 /// Shift that tells translations, at which the Jacobian is singular, from the waves; over the largest rate.
-const SHIFT: f64 = 1e-9;
+const SHIFT: f64 = 1e-11;
+
+/// Takes the mean over cells out of a vector.
+fn still(vector: &mut [f64]) {
+    for axis in 0..2 {
+        let mean = vector.iter().skip(axis).step_by(2).sum::<f64>() / (vector.len() / 2) as f64;
+        vector.iter_mut().skip(axis).step_by(2).for_each(|x| *x -= mean);
+    }
+}
 
 impl LinearProblem {
     /// Mean over wave vectors `q` (1/length) of
@@ -29,16 +37,21 @@ impl LinearProblem {
     }
 
     /// The inverse of the mean over wave vectors of the compliance `P (−J)⁻¹ P†`, with P as in [`projected`](Self::projected): by which rates waves of forces that last are answered, all
-    /// cells having given way. Some 2·10⁵ cells take a gigabyte.
+    /// cells having given way, but for what is common to all of them; all cells of a periodic box move.
     ///
     /// # Errors
     /// [`Error::LinearAlgebra`] if the Jacobian, or the compliance, is singular.
     pub fn relaxed(&self, waves: &[Vec<Vector<f64>>]) -> Result<Vec<[[f64; 2]; 2]>, Error> {
         let shift = SHIFT * self.largest_rate();
         let system = LinearSystem::new(&self.matrix, shift, &self.places)?;
-        let weights = vec![1.0; self.places.len()];
+        let (weights, order) = (vec![1.0; self.places.len()], 2 * self.places.len());
         let of_shell = |waves: &Vec<Vector<f64>>| {
-            let [[a, b], [c, d]] = self.mean(waves, &weights, |parts| system.solve(parts));
+            // What is common to all cells meets no resistance; waves on cells in disorder have a little of it.
+            let [[a, b], [c, d]] = self.mean(waves, &weights, |parts| {
+                parts.chunks_exact_mut(order).for_each(still);
+                system.solve(parts);
+                parts.chunks_exact_mut(order).for_each(still);
+            });
             let determinant = a * d - b * c;
             // Of J − σ, whose inverse is that of −D.
             [[-d / determinant - shift, b / determinant], [c / determinant, -a / determinant - shift]]

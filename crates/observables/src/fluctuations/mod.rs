@@ -70,7 +70,7 @@ pub struct Fluctuations {
     pub shells: Vec<ShellFluctuations>,
     /// Frequencies and what goes with each shell; none for few frames.
     pub structure: Option<DynamicStructure>,
-    /// Moduli over friction, from waves longer than 2π spacings; none without such waves.
+    /// Moduli over friction, from waves longer than 2π spacings of which the recording is long enough; none without such waves.
     pub long_waves: Option<LongWaves>,
 }
 
@@ -164,7 +164,9 @@ fn long_waves(shells: &[ShellFluctuations], longest: f64) -> Option<LongWaves> {
         .iter()
         .filter(|shell| shell.wave_number <= longest)
         .filter_map(|shell| Some((shell.wave_number.powi(2), shell.relaxation.as_ref()?)))
-        .filter(|(_, relaxation)| relaxation.standard_errors.iter().flatten().all(|error| error.is_finite()))
+        .filter(|(_, own)| {
+            own.is_reliable() && own.standard_errors.iter().flatten().all(|error| error.is_finite())
+        })
         .collect();
     if long.is_empty() {
         return None;

@@ -11,6 +11,12 @@ use std::f64::consts::{FRAC_PI_2, PI};
 /// Stretches that errors come from are at least so many times of the slowest relaxation.
 const APART: f64 = 4.0;
 
+/// Times of the slowest relaxation in a recording without which it says little of that.
+const ENOUGH: f64 = 8.0;
+
+/// Stretches of waves without which they tell no errors.
+const FEWEST: usize = 6;
+
 /// How waves of a shell relax.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Relaxation {
@@ -45,8 +51,15 @@ pub struct Relaxation {
     pub noise_error: f64,
     /// Stretches of waves that errors come from.
     pub stretches: usize,
-    /// Times of the slowest relaxation in a course. Of fewer than about eight neither errors nor their correction can be relied on.
+    /// Times of the slowest relaxation in a course.
     pub relaxations: f64,
+}
+
+impl Relaxation {
+    /// Whether there are errors, and eight times of the slowest relaxation or more; of fewer neither errors nor the correction of biases can be relied on.
+    pub fn is_reliable(&self) -> bool {
+        self.relaxations >= ENOUGH && self.stretches >= FEWEST
+    }
 }
 
 /// Numbers that are estimated together.
@@ -146,7 +159,8 @@ fn jackknifed(
         let corrected = count * whole[k] - (count - 1.0) * mean[k];
         if corrected.is_finite() { corrected } else { whole[k] }
     });
-    let scale = dependence * dependence * (count - 1.0) / count;
+    let told = if without.len() < FEWEST { f64::NAN } else { 1.0 };
+    let scale = told * dependence * dependence * (count - 1.0) / count;
     let covariance = |of: &dyn Fn(&[f64; COUNT]) -> f64, other: &dyn Fn(&[f64; COUNT]) -> f64| {
         let (a, b) = (of(&mean), other(&mean));
         scale * without.iter().map(|own| (of(own) - a) * (other(own) - b)).sum::<f64>()

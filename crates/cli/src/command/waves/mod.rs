@@ -17,9 +17,6 @@ use clap::{Args, ValueEnum};
 use voronudge_observables::{FluctuationRequest, Plan, WaveField, fluctuations};
 use voronudge_report::Units;
 
-/// A recording shorter than so many relaxations of its slowest waves says little of them.
-const FEW_RELAXATIONS: f64 = 8.0;
-
 /// Odd waves from fluctuations: the dynamic structure factor of a recording, and the matrix D(q) by which its waves relax, beside that of a model.
 ///
 /// Writes report.json, report.html, dynamical_matrix.npy and dynamic_structure_*.npy.
@@ -144,10 +141,10 @@ fn warn(
             "covariances of no shell are those of a relaxation: frames may be too far apart, or too few",
         );
     }
-    let slow = told().filter(|own| own.relaxations < FEW_RELAXATIONS).count();
-    if slow > 0 {
+    let few = told().filter(|own| !own.is_reliable()).count();
+    if few > 0 {
         run.warn(format!(
-            "the recording is shorter than {FEW_RELAXATIONS} relaxation times of the slowest waves in {slow} of {} shells: their rates and errors cannot be relied on",
+            "the recording is too short for {few} of {} shells, with fewer than eight times of the slowest relaxation: their rates and errors cannot be relied on, and are left out of moduli and verdicts",
             found.shells.len()
         ));
     }

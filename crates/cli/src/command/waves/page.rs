@@ -6,7 +6,7 @@ use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_observables::Fluctuations;
-use voronudge_report::numbers::significant;
+use voronudge_report::numbers::{significant, with_interval};
 use voronudge_report::page::{Card, Section, SectionPage, Table};
 use voronudge_report::units::unit_text;
 use voronudge_report::waves_report::{Measured, WaveShellRecord, WavesReport};
@@ -137,8 +137,8 @@ fn table(report: &WavesReport) -> Table {
                     row.extend([(0, 0), (1, 1), (0, 1), (1, 0)].map(|(i, j): (usize, usize)| {
                         plus_minus(own.matrix[i][j], own.standard_errors[i][j])
                     }));
-                    let [low, high] = own.frequency_ci95;
-                    row.push(format!("{} … {}", significant(low, 2), significant(high, 2)));
+                    let [_, low, high] = with_interval(own.frequency, own.frequency_ci95);
+                    row.push(format!("{low} … {high}"));
                     row.extend([own.linear, own.achiral].map(probability));
                 }
                 None => row.extend(std::iter::repeat_n("–".to_owned(), 8)),
@@ -151,7 +151,7 @@ fn table(report: &WavesReport) -> Table {
 /// The shell whose frequency is furthest above zero at the lower end of its interval.
 fn fastest(report: &WavesReport) -> Option<(&WaveShellRecord, f64, [f64; 2])> {
     let told = report.shells.iter().filter_map(|shell| {
-        let own = shell.relaxation.as_ref()?;
+        let own = shell.relaxation.as_ref().filter(|own| own.reliable)?;
         Some((shell, own.frequency, own.frequency_ci95))
     });
     told.filter(|(_, _, [low, high])| *low > 0.0 && high.is_finite()).max_by(|a, b| a.2[0].total_cmp(&b.2[0]))
@@ -167,17 +167,18 @@ fn headline(report: &WavesReport) -> String {
             "No chirality is seen: entries of D(q) off the diagonal as large have a probability of {} without any",
             probability(p)
         ),
-        None => "Of no wave can it be told how it relaxes".into(),
+        None => "Whether the tissue is chiral cannot be told from its waves".into(),
     };
     let rate = report.units.powers(0, -1);
     let odd = match fastest(report) {
-        Some((shell, frequency, [low, high])) if report.verdict != "not_linear" => format!(
-            "; odd waves have a frequency of {} ({} … {}) at q = {}",
-            with_unit(frequency, 2, &rate),
-            significant(low, 2),
-            significant(high, 2),
-            with_unit(shell.wave_number, 2, &report.units.powers(-1, 0))
-        ),
+        Some((shell, frequency, interval)) if report.verdict != "not_linear" => {
+            let [value, low, high] = with_interval(frequency, interval);
+            format!(
+                "; odd waves have a frequency of {value} {} ({low} … {high}) at q = {}",
+                unit_text(&rate),
+                with_unit(shell.wave_number, 2, &report.units.powers(-1, 0))
+            )
+        }
         _ => String::new(),
     };
     format!("{chiral}{odd}.")

@@ -19,8 +19,7 @@ pub(super) fn linear(found: &Fluctuations) -> Option<f64> {
 
 /// Those that were long enough to be told.
 fn relaxations(found: &Fluctuations) -> impl Iterator<Item = &Relaxation> {
-    let long = |own: &&Relaxation| own.relaxations >= super::FEW_RELAXATIONS;
-    found.shells.iter().filter_map(|shell| shell.relaxation.as_ref()).filter(long)
+    found.shells.iter().filter_map(|shell| shell.relaxation.as_ref()).filter(|own| own.is_reliable())
 }
 
 pub(super) fn report(
@@ -113,6 +112,7 @@ fn shell((shell, beside): (&ShellFluctuations, &OfShell)) -> WaveShellRecord {
             frequency_ci95: own.frequency_interval,
             stretches: own.stretches,
             relaxations: own.relaxations,
+            reliable: own.is_reliable(),
         }),
         jacobian: beside.projected,
         jacobian_relaxed: beside.relaxed,
