@@ -133,6 +133,9 @@ impl From<voronudge_simulate::Error> for Failure {
 
 impl From<voronudge_observables::Error> for Failure {
     fn from(error: voronudge_observables::Error) -> Self {
+        if error == voronudge_observables::Error::Interrupted {
+            return Self::interrupted();
+        }
         let hint = error.hint();
         Self::from_parts(error, hint)
     }

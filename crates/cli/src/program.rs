@@ -35,6 +35,7 @@ pub(crate) enum Command {
     Info(command::info::Arguments),
     PhaseDiffusion(command::phase_diffusion::Arguments),
     Rheology(Box<command::rheology::Arguments>),
+    Waves(command::waves::Arguments),
     Completions(command::completions::Arguments),
     Man(command::man::Arguments),
 }
@@ -135,6 +136,7 @@ fn call(command: Command) -> Result<Answer, Failure> {
         Command::Info(arguments) => command::info::run(&arguments),
         Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
         Command::Rheology(arguments) => command::rheology::run(*arguments),
+        Command::Waves(arguments) => command::waves::run(arguments),
         Command::Completions(arguments) => command::completions::run(&arguments),
         Command::Man(arguments) => command::man::run(&arguments),
     }

@@ -11,7 +11,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Files that commands write whatever their options are, beside `report.json`.
-const WRITTEN: [(&str, &[&str]); 22] = [
+const WRITTEN: [(&str, &[&str]); 23] = [
     ("infer", &["report.html", "nudged_positions.npy", "predicted_velocities.npy"]),
     ("discover", &["report.html", "before_nudged_positions.npy", "after_nudged_positions.npy"]),
     ("evaluate", &["velocities.npy", "areas.npy", "perimeters.npy", "stress.npy"]),
@@ -34,6 +34,7 @@ const WRITTEN: [(&str, &[&str]); 22] = [
     ("import field", &["report.html", "positions.npy", "heights.npy", "dataset.toml"]),
     ("phase-diffusion", &["report.html"]),
     ("rheology", &["report.html"]),
+    ("waves", &["report.html", "dynamical_matrix.npy"]),
 ];
 
 /// What is not known before the work is done.

@@ -3,7 +3,7 @@
 //! Measurements of one state are functions of positions and tessellation. A [`Recording`] is cells followed over frames, in a periodic box or an open field of
 //! view, with gaps in their tracks, and [`observe`] measures all that can be measured on one, with standard errors. A simulated movie in
 //! which the same cells are seen as in a measured one is measured by the same [`Plan`], so that the two can be compared point by point. [`nematic`] asks of the shapes of
-//! cells as a nematic: order and half-integer defects, and what cells do around these; [`exchanges`] of T1 transitions one by one.
+//! cells as a nematic: order and half-integer defects, and what cells do around these; [`exchanges`] of T1 transitions one by one; [`fluctuations()`] by which matrix waves relax.
 
 mod block_average;
 mod contacts;
@@ -11,6 +11,7 @@ mod curve;
 mod displacement;
 mod error;
 mod exchanges;
+mod fluctuations;
 mod hexatic;
 mod motion;
 mod nematic;
@@ -18,15 +19,18 @@ mod observe;
 mod pairs;
 mod plan;
 mod quantity;
+mod rate_matrix;
 mod recording;
 mod shape;
 mod spectra;
 mod structure_factor;
+mod tapers;
 #[cfg(test)]
 mod tests;
 mod transitions;
 mod velocity;
 mod vorticity;
+mod wave_shells;
 mod window;
 
 pub use block_average::BlockAverage;
@@ -34,11 +38,16 @@ pub use curve::Curve;
 pub use displacement::mean_square_displacement;
 pub use error::Error;
 pub use exchanges::{Exchange, exchange_statistics, exchanges};
+pub use fluctuations::{
+    DynamicStructure, FluctuationRequest, Fluctuations, LongWaves, Relaxation, ShellFluctuations,
+    StructurePart, Tell, WaveField, fluctuations, together,
+};
 pub use hexatic::{Hexatic, hexatic, hexatic_among};
 pub use nematic::{Around, Defect, Nematic, SQUARES, Stresses, largest_width, nematic};
 pub use observe::{correlations, observe};
 pub use plan::Plan;
 pub use quantity::{Dimensions, Quantity};
+pub use rate_matrix::RateMatrix;
 pub use recording::{Frame, Images, Recording};
 pub use shape::shape_indices;
 pub use structure_factor::{StructureFactor, structure_factor};

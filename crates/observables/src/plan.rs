@@ -1,6 +1,7 @@
 //! At which lags, distances and wave numbers a recording is measured, and which cells are the parts that errors come from.
 
 use crate::curve::PARTS;
+use crate::tapers::{TAPERS, weights};
 use crate::window::Window;
 use crate::{Error, Frame, Recording};
 use voronudge_geometry::{Domain, Vector, areas};
@@ -93,6 +94,17 @@ impl Plan {
     /// Root of the mean area of the cells that count.
     pub fn spacing(&self) -> f64 {
         self.spacing
+    }
+
+    /// Time between two frames on average.
+    pub fn interval(&self) -> f64 {
+        self.interval
+    }
+
+    /// In an open field, weights of a place beside the stage in the tapers through which waves are seen: nought outside the window.
+    pub fn tapers(&self, place: Vector<f64>) -> [f64; TAPERS] {
+        let within = self.window.as_ref().and_then(|window| Some(weights(window, window.share(place)?)));
+        within.unwrap_or([0.0; TAPERS])
     }
 
     /// Width of a bin of distances.

@@ -95,6 +95,8 @@ fn numbered(error: voronudge_geometry::Error, tracks: &[usize]) -> voronudge_geo
 pub struct Recording {
     frames: Vec<Frame>,
     tracks: usize,
+    /// Whether velocities were made from positions.
+    derived: bool,
 }
 
 impl Recording {
@@ -140,7 +142,7 @@ impl Recording {
             .into_par_iter()
             .map(|frame| Frame::new((frame, times[frame]), &places[frame], domains[frame], view))
             .collect::<Result<_, _>>()?;
-        Ok(Self { frames, tracks })
+        Ok(Self { frames, tracks, derived: false })
     }
 
     /// With velocities `[frame][cell]` (F, N); those of cells that are not there are of no concern.
@@ -164,6 +166,7 @@ impl Recording {
     /// With mean velocities until the next frame, of the cells that are seen in both.
     #[must_use]
     pub fn with_mean_velocities(mut self) -> Self {
+        self.derived = true;
         for frame in 1..self.frames.len() {
             let (before, after) = self.frames.split_at_mut(frame);
             let (own, next) = (&mut before[frame - 1], &after[0]);
@@ -212,6 +215,11 @@ impl Recording {
     /// The frames, in the order of time.
     pub fn frames(&self) -> &[Frame] {
         &self.frames
+    }
+
+    /// Whether velocities are displacements until the next frame.
+    pub fn velocities_are_displacements(&self) -> bool {
+        self.derived
     }
 
     /// Number of cells that are followed, at whatever time they are there.

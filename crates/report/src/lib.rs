@@ -48,6 +48,7 @@ pub mod spectrum_report;
 pub mod svg;
 pub mod units;
 mod view;
+pub mod waves_report;
 
 /// JSON Schema (draft 2020-12) of the report of `simulate`, which the command line writes by itself.
 pub const SIMULATE_SCHEMA: &str = include_str!("../schema/simulate.schema.json");
@@ -70,3 +71,4 @@ pub use shape_report::{FIELD_SCHEMA, FieldReport, SHAPE_SCHEMA, ShapeReport};
 pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
 pub use units::Units;
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment};
+pub use waves_report::{WAVES_SCHEMA, WavesReport};

@@ -11,6 +11,7 @@
 //! - [`Strip`]: rows with ends, at each wave number along them, beside the periodic tissue ([`BlochMatrix`]): winding numbers, the
 //!   generalised Brillouin zone, the non-Hermitian skin effect.
 //! - [`Localisation`]: where between ends or walls a mode is.
+//! - [`LinearProblem::projected`], [`LinearProblem::relaxed`]: D(q) of plane waves of any snapshot.
 //!
 //! ```
 //! use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
@@ -38,6 +39,7 @@ mod honeycomb;
 mod localisation;
 mod mode;
 mod problem;
+mod projection;
 mod selection;
 mod strip;
 mod transition;

@@ -157,3 +157,71 @@ fn requests_that_make_no_sense_are_refused() {
     ));
     assert!(Honeycomb::new(6, 7, Arrangement::RowsAlongX).is_err());
 }
+
+/// On a honeycomb the Jacobian keeps plane waves apart, so that it answers a wave with its exact D(q), at once and for good; elsewhere cells give way: with a symmetric Jacobian the relaxed answer is
+/// the softer one, and without chirality symmetric.
+#[test]
+fn plane_waves_see_the_jacobian() {
+    let honeycomb = Honeycomb::new(12, 12, Arrangement::RowsAlongX).unwrap();
+    let tissue = model(3.3, 0.7);
+    let problem =
+        LinearProblem::new(honeycomb.tessellation(), honeycomb.positions(), &tissue, |_| true).unwrap();
+    let jacobian = honeycomb.jacobian(&tissue);
+    let [width, height] = honeycomb.lengths();
+    let tau = std::f64::consts::TAU;
+    let whole = vec![1.0; problem.cells().len()];
+    for q in [Vector::new(tau / width, 0.0), Vector::new(-2.0 * tau / width, 3.0 * tau / height)] {
+        let [exact, _] = honeycomb.dynamical_matrix(&jacobian, 0, [q.x, q.y]);
+        let along = q / q.norm();
+        let axes = [along, Vector::new(-along.y, along.x)];
+        let projected = problem.projected(&[q], &whole);
+        let relaxed = problem.relaxed(&[vec![q]]).unwrap()[0];
+        for a in 0..2 {
+            for b in 0..2 {
+                let expected: f64 =
+                    (0..4).map(|k| axes[a][k / 2] * exact[k / 2][k % 2] * axes[b][k % 2]).sum();
+                assert!((projected[a][b] - expected).abs() < 1e-10, "{projected:?}");
+                assert!((relaxed[a][b] - expected).abs() < 1e-6, "{relaxed:?}");
+            }
+        }
+    }
+    let (positions, tessellation) = random(100, 2);
+    let problem = LinearProblem::new(&tessellation, &positions, &model(3.0, 0.0), |_| true).unwrap();
+    let whole = vec![1.0; problem.cells().len()];
+    let q = vec![Vector::new(tau / 10.0, 0.0), Vector::new(0.0, tau / 10.0)];
+    let (projected, relaxed) =
+        (problem.projected(&q, &whole), problem.relaxed(std::slice::from_ref(&q)).unwrap()[0]);
+    // By the modes themselves, of a symmetric Jacobian real and orthogonal: C = Σ P u (−1/λ) ũ P†.
+    let found = compute(&problem, Selection::All);
+    let mut compliance = [[0.0; 2]; 2];
+    for (k, mode) in found.modes.iter().enumerate().filter(|(_, mode)| !mode.is_zero(found.tolerance)) {
+        let u = found.vector(k).unwrap();
+        let square: f64 = u.iter().map(|x| x.re * x.re).sum();
+        for q in &q {
+            let along = q / q.norm();
+            let axes = [along, Vector::new(-along.y, along.x)];
+            let seen = axes.map(|axis| {
+                let of_cell = |(cell, r): (usize, &Vector<f64>)| {
+                    let phase = Complex64::cis(-q.dot(r));
+                    phase * (axis.x * u[2 * cell].re + axis.y * u[2 * cell + 1].re)
+                };
+                positions.iter().enumerate().map(of_cell).sum::<Complex64>()
+            });
+            for a in 0..2 {
+                for b in 0..2 {
+                    compliance[a][b] -= (seen[a] * seen[b].conj()).re / (mode.value.re * square * 200.0);
+                }
+            }
+        }
+    }
+    let determinant = compliance[0][0] * compliance[1][1] - compliance[0][1] * compliance[1][0];
+    for (k, expected) in
+        [compliance[1][1], -compliance[0][1], -compliance[1][0], compliance[0][0]].into_iter().enumerate()
+    {
+        assert!((relaxed[k / 2][k % 2] - expected / determinant).abs() < 1e-4, "{relaxed:?} {compliance:?}");
+    }
+    assert!((projected[0][1] - projected[1][0]).abs() < 1e-9 && (relaxed[0][1] - relaxed[1][0]).abs() < 1e-9);
+    for k in 0..2 {
+        assert!(relaxed[k][k] < 0.99 * projected[k][k], "{relaxed:?} {projected:?}");
+    }
+}

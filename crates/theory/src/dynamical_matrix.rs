@@ -2,6 +2,9 @@
 
 use crate::{Error, MeanField, Orientation, Parameters, hexagon_perimeter, hexagon_side};
 
+/// Directions within a sixth of a turn over which is averaged.
+const DIRECTIONS: usize = 24;
+
 impl MeanField {
     /// `D(q)` of `∂_t u = −D(q) u` for displacements `u exp(i q·r)` of the cell centres, rows and columns (x, y).
     ///
@@ -34,6 +37,27 @@ impl MeanField {
             return Err(Error::WaveVector { q });
         }
         Ok(self.dynamical_matrix_at(q, orientation))
+    }
+
+    /// D at a wave number `q` (1/ℓ_0) in components along the wave vector and a quarter turn ahead, averaged over its directions.
+    ///
+    /// # Errors
+    /// [`Error::WaveVector`] if `q` is not finite.
+    pub fn isotropic_dynamical_matrix(&self, q: f64) -> Result<[[f64; 2]; 2], Error> {
+        let mut mean = [[0.0; 2]; 2];
+        for step in 0..DIRECTIONS {
+            let (sin, cos) =
+                (std::f64::consts::FRAC_PI_3 * (step as f64 + 0.5) / DIRECTIONS as f64).sin_cos();
+            let own = self.dynamical_matrix([q * cos, q * sin], Orientation::NeighbourAlongX)?;
+            let axes = [[cos, sin], [-sin, cos]];
+            for (a, row) in mean.iter_mut().enumerate() {
+                for (b, entry) in row.iter_mut().enumerate() {
+                    let of_column = |i: usize| own[i][0] * axes[b][0] + own[i][1] * axes[b][1];
+                    *entry += (axes[a][0] * of_column(0) + axes[a][1] * of_column(1)) / DIRECTIONS as f64;
+                }
+            }
+        }
+        Ok(mean)
     }
 
     /// As [`MeanField::dynamical_matrix`], for a wave vector known to be finite.

@@ -331,3 +331,28 @@ fn the_mean_square_frequency_grows_as_the_square_of_the_chirality() {
     let [left, right] = [0.7, -0.7].map(|alpha| theory(3.3, alpha).mean_square_frequency(20));
     assert!((left / right - 1.0).abs() < 1e-12 && left > 0.0);
 }
+
+/// Averaged over directions, D is that of any direction for long waves, and its trace and the difference off the diagonal are those of the average at any.
+#[test]
+fn averages_over_directions() {
+    for (p_0, alpha) in CASES {
+        let theory = theory(p_0, alpha);
+        let Moduli { bulk, odd_bulk, shear, odd_shear } = theory.moduli();
+        let long = theory.isotropic_dynamical_matrix(0.01).unwrap();
+        let expected = [[bulk + shear, odd_shear], [odd_bulk - odd_shear, shear]];
+        assert!(difference(long.map(|row| row.map(|entry| entry * 1e4)), expected) < 1e-3, "{long:?}");
+        let (q, count) = (2.2, 720);
+        let mean = theory.isotropic_dynamical_matrix(q).unwrap();
+        let (mut trace, mut odd) = (0.0, 0.0);
+        for step in 0..count {
+            let angle = std::f64::consts::TAU * f64::from(step) / f64::from(count);
+            let own = matrix(&theory, [q * angle.cos(), q * angle.sin()], Orientation::NeighbourAlongY);
+            trace += (own[0][0] + own[1][1]) / f64::from(count);
+            odd += (own[0][1] - own[1][0]) / f64::from(count);
+        }
+        assert!(
+            (mean[0][0] + mean[1][1] - trace).abs() < 1e-9 && (mean[0][1] - mean[1][0] - odd).abs() < 1e-9
+        );
+    }
+    assert!(theory(3.0, 0.0).isotropic_dynamical_matrix(f64::NAN).is_err());
+}

@@ -8,11 +8,13 @@ use crate::scratch::Folder;
 use std::fs;
 
 /// Name of a run, what is typed, and what it reads: a fixture, or what is in the folder of all: results of an earlier run, or a fit of a solid.
-const RUNS: [(&str, &str, &str); 12] = [
+const RUNS: [(&str, &str, &str); 14] = [
     ("infer", "infer", "fixture chiral-liquid"),
     ("discover", "discover --effects drift,alpha_area,p0_gradient", "fixture chiral-liquid"),
+    ("long", "simulate --cells 60 --time 8 --frames 80 --P_0 4 --alpha 1", ""),
     ("simulate", "simulate --cells 60 --box 10 6 --time 2 --frames 6 --P_0 4 --alpha 1", ""),
     ("observe", "observe", "simulate"),
+    ("waves", "waves --P_0 4 --alpha 1", "long"),
     ("tracks", "infer --fix K_A=0.1 --frames 0..4 --position-noise 1%", "simulate"),
     ("spectrum", "spectrum", "fixture reference-small"),
     ("phase-diagram", "phase-diagram --P_0 3.5 4 3 --alpha 0.1 0.3 2 --cells 36 --time 2", ""),

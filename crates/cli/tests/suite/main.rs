@@ -52,3 +52,4 @@ mod stdout;
 mod surroundings;
 mod uncertainties;
 mod undeclared;
+mod waves;

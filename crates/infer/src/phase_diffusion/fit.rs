@@ -1,15 +1,15 @@
 //! Rates fitted to the courses of waves.
 
-use super::propagator::Matrix;
 use super::{Fluctuations, PatternWave, PhaseRequest, RateOrder, ReferencePlaces};
 use crate::Error;
 use nalgebra::{DMatrix, DVector};
+use voronudge_observables::RateMatrix;
 
 /// Steps of the search.
 const STEPS: usize = 60;
 
 /// Matrices that the coefficients multiply, with the power of q² that goes with each.
-pub(super) struct Basis(Vec<(i32, Matrix)>);
+pub(super) struct Basis(Vec<(i32, RateMatrix)>);
 
 impl Basis {
     /// The terms of the equation (D_∥, D_⊥, D_∥^×, D_⊥^×), and to fourth order any matrix times q⁴.
@@ -20,7 +20,7 @@ impl Basis {
             [[0.0, 0.0], [-1.0, 0.0]],
             [[0.0, 1.0], [-1.0, 0.0]],
         ];
-        let mut terms: Vec<(i32, Matrix)> = second.map(|matrix| (1, Matrix(matrix))).to_vec();
+        let mut terms: Vec<(i32, RateMatrix)> = second.map(|matrix| (1, RateMatrix(matrix))).to_vec();
         if order == RateOrder::Fourth {
             terms.extend(entries().map(|matrix| (2, matrix)));
         }
@@ -32,16 +32,16 @@ impl Basis {
         Self(entries().map(|matrix| (0, matrix)).to_vec())
     }
 
-    pub fn matrix(&self, coefficients: &[f64], square: f64) -> Matrix {
+    pub fn matrix(&self, coefficients: &[f64], square: f64) -> RateMatrix {
         let terms = self.0.iter().zip(coefficients);
-        terms.fold(Matrix::ZERO, |sum, (&(power, matrix), &c)| sum + matrix * (c * square.powi(power)))
+        terms.fold(RateMatrix::ZERO, |sum, (&(power, matrix), &c)| sum + matrix * (c * square.powi(power)))
     }
 }
 
 /// The matrices with a single one.
-fn entries() -> [Matrix; 4] {
+fn entries() -> [RateMatrix; 4] {
     std::array::from_fn(|k| {
-        let mut matrix = Matrix::ZERO;
+        let mut matrix = RateMatrix::ZERO;
         matrix.0[k / 2][k % 2] = 1.0;
         matrix
     })
@@ -140,7 +140,7 @@ impl Problem<'_> {
         let (mut normal, mut right) = (DMatrix::zeros(count, count), DVector::zeros(count));
         for wave in self.waves {
             let square = wave.square();
-            let terms: Vec<Matrix> =
+            let terms: Vec<RateMatrix> =
                 self.basis.0.iter().map(|&(power, matrix)| matrix * square.powi(power)).collect();
             for course in &wave.courses {
                 let rest = match self.request.reference {
@@ -180,7 +180,7 @@ impl Problem<'_> {
     }
 
     /// `y(t) − exp(−Dt) y_0 − c` at the best y_0 and c.
-    fn about_a_course(&self, wave: &PatternWave, matrix: &Matrix, residuals: &mut Vec<f64>) {
+    fn about_a_course(&self, wave: &PatternWave, matrix: &RateMatrix, residuals: &mut Vec<f64>) {
         let begin = self.times.first().copied().unwrap_or(0.0);
         let columns = self.per_course();
         let design = |frame: usize, axis: usize, column: usize| {
@@ -197,11 +197,11 @@ impl Problem<'_> {
     }
 
     /// `y(t′) − c − exp(−D(t′ − t)) (y(t) − c)` at the best c.
-    fn of_steps(&self, wave: &PatternWave, matrix: &Matrix, residuals: &mut Vec<f64>) {
-        let steps: Vec<Matrix> =
+    fn of_steps(&self, wave: &PatternWave, matrix: &RateMatrix, residuals: &mut Vec<f64>) {
+        let steps: Vec<RateMatrix> =
             self.times.windows(2).map(|pair| matrix.propagator(pair[1] - pair[0])).collect();
         let design = DMatrix::from_fn(2 * steps.len(), self.per_course(), |row, column| {
-            Matrix::IDENTITY.0[row % 2][column] - steps[row / 2].0[row % 2][column]
+            RateMatrix::IDENTITY.0[row % 2][column] - steps[row / 2].0[row % 2][column]
         });
         for course in &wave.courses {
             let moves = course.windows(2).zip(&steps).flat_map(|(pair, step)| {

@@ -9,7 +9,6 @@
 //! courses of all waves together (`fit`).
 
 mod fit;
-mod propagator;
 mod waves;
 
 #[cfg(test)]
@@ -19,9 +18,9 @@ pub use waves::PatternWave;
 
 use crate::Error;
 use fit::{Basis, Fit};
-use propagator::Matrix;
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use voronudge_geometry::{PeriodicBox, Vector};
+use voronudge_observables::RateMatrix;
 use waves::resolve;
 
 /// The fewest frames with a course.
@@ -131,7 +130,7 @@ impl PhaseDiffusion {
     /// D(q) of the fit in components along q and a quarter turn ahead, rows first, at some q².
     pub fn matrix(&self, square: f64) -> [[f64; 2]; 2] {
         let order = if self.coefficients.len() > 4 { RateOrder::Fourth } else { RateOrder::Second };
-        let Matrix(rows) = Basis::of(order).matrix(&self.coefficients, square);
+        let RateMatrix(rows) = Basis::of(order).matrix(&self.coefficients, square);
         rows
     }
 }

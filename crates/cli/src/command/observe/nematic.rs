@@ -1,9 +1,9 @@
 //! Shapes of cells as a nematic: what is asked of them, arrays, and the section of the page.
 
-use super::Recorded;
 use super::page::figure;
 use crate::arguments::{ParameterArguments, named};
 use crate::command::drawing::{borders, cells_view};
+use crate::command::recorded::Recorded;
 use crate::failure::Failure;
 use clap::Args;
 use ndarray::{Array2, Array4};

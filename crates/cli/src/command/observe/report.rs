@@ -1,7 +1,7 @@
 //! The result as a report.
 
 use super::nematic::Measured;
-use super::{Recorded, Velocities};
+use crate::command::recorded::Recorded;
 use voronudge_observables::{Curve, Dimensions, Plan};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{Quantity, RunRecord};
@@ -41,11 +41,7 @@ pub(super) fn report(
         seen: all.iter().map(|frame| frame.tracks.len()).collect(),
         counted: all.iter().map(|frame| frame.in_view().count()).collect(),
         length_scale: Quantity { value: plan.spacing(), unit: units.length.clone() },
-        velocities: match recorded.velocities {
-            Velocities::Given => "given",
-            Velocities::FromPositions => "from_positions",
-            Velocities::None => "none",
-        },
+        velocities: recorded.velocities.name(),
         common_motion_removed: recorded.common_motion_removed,
         nematic: nematic.record(units),
         numbers: curves

@@ -1,0 +1,159 @@
+//! `voronudge waves`: how waves of a tissue fluctuate and relax.
+
+mod arrays;
+mod beside;
+mod figures;
+mod page;
+mod report;
+
+use crate::arguments::{CommonArguments, ParameterArguments};
+use crate::command::recorded::{RecordingArguments, Velocities};
+use crate::failure::Failure;
+use crate::program::Answer;
+use crate::progress::Progress;
+use crate::run::Run;
+use beside::Beside;
+use clap::{Args, ValueEnum};
+use voronudge_observables::{FluctuationRequest, Plan, WaveField, fluctuations};
+use voronudge_report::Units;
+
+/// Odd waves from fluctuations: the dynamic structure factor of a recording, and the matrix D(q) by which its waves relax, beside that of a model.
+///
+/// Writes report.json, report.html, dynamical_matrix.npy and dynamic_structure_*.npy.
+#[derive(Debug, Args)]
+pub(crate) struct Arguments {
+    #[command(flatten)]
+    recording: RecordingArguments,
+    /// What of the cells is resolved into waves.
+    #[arg(long, value_enum, default_value_t = Field::Auto)]
+    field: Field,
+    /// Lag in frames from which covariances are used [default: the first that errors of localisation without memory do not reach].
+    #[arg(long, value_name = "FRAMES")]
+    first_lag: Option<usize>,
+    /// Further lag in frames over which waves relax [default: about half a relaxation time of each shell].
+    #[arg(long, value_name = "FRAMES")]
+    lag: Option<usize>,
+    /// Largest wave number, in units of the inverse mean spacing of cells.
+    #[arg(long, value_name = "NUMBER", default_value_t = 3.0, allow_negative_numbers = true)]
+    largest_wave_number: f64,
+    #[command(flatten)]
+    parameters: ParameterArguments,
+    #[command(flatten)]
+    common: CommonArguments,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+enum Field {
+    /// Displacements where cells keep their places, else velocities.
+    Auto,
+    /// Displacements from the mean places of the cells.
+    Displacements,
+    /// Velocities where the cells are.
+    Velocities,
+}
+
+impl Arguments {
+    fn request(&self) -> Result<FluctuationRequest, Failure> {
+        let largest = self.largest_wave_number;
+        if !(largest.is_finite() && largest > 0.0) {
+            return Err(Failure::new(format!(
+                "--largest-wave-number is {largest}, but it must be finite and above zero"
+            ))
+            .with_hint("3 reaches waves of two spacings; neighbours are at about 6"));
+        }
+        if self.lag == Some(0) {
+            return Err(Failure::new("--lag is 0, but waves relax over one frame at least")
+                .with_hint("leave it out for about half a relaxation time"));
+        }
+        Ok(FluctuationRequest {
+            field: match self.field {
+                Field::Auto => None,
+                Field::Displacements => Some(WaveField::Displacements),
+                Field::Velocities => Some(WaveField::Velocities),
+            },
+            first_lag: self.first_lag,
+            lag: self.lag,
+            largest,
+        })
+    }
+}
+
+pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
+    let mut run = Run::begin("waves", &arguments.common)?;
+    arguments.recording.check()?;
+    let request = arguments.request()?;
+    let parameters = arguments.parameters.is_given().then(|| arguments.parameters.resolve()).transpose()?;
+    let data = arguments.recording.data.load()?;
+    let place = arguments.recording.place();
+    let frames = arguments.recording.frames(&data)?;
+    let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file());
+    let out = arguments.common.reserve(inputs)?;
+    let recorded = arguments.recording.record(&data, &frames)?;
+    let at = |error| Failure::from(error).at(&place);
+    let plan = Plan::of(&recorded.recording).map_err(at)?;
+    let mut out = out.begin()?;
+    let mut progress = Progress::new(arguments.common.verbosity());
+    let mut tell =
+        |stage: &'static str, done: usize, all: usize| progress.step(stage, done as u64, all as u64);
+    let found =
+        fluctuations(&recorded.recording, &plan, &request, &mut tell).map_err(|error| match error {
+            voronudge_observables::Error::Interrupted => Failure::interrupted(),
+            other => at(other),
+        })?;
+    let beside = match &parameters {
+        Some(parameters) => Beside::new(&recorded.recording, &plan, &found, parameters, &mut |done, all| {
+            progress.step("Jacobian", done as u64, all as u64)
+        })?,
+        None => Beside::nothing(&found),
+    };
+    progress.finish();
+    let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
+    let linear = report::linear(&found);
+    warn(&mut run, &found, &recorded.velocities, linear);
+    arrays::write(&mut out, &found, &beside)?;
+    let report = report::report(
+        run.record(Some(&data)),
+        &units,
+        &frames,
+        (&recorded, &plan),
+        (&found, &beside),
+        linear,
+    );
+    let json = serde_json::to_string_pretty(&report)?;
+    out.write_text("report.json", &json)?;
+    let title = arguments.recording.title();
+    out.write_text("report.html", &page::page(&title, &report, (&found, &beside))?)?;
+    let summary = page::summary(&report, out.path());
+    run.finish(Some(out), &json, &summary)?;
+    Ok(Answer::Positive)
+}
+
+/// What the reader should know before using the numbers.
+fn warn(
+    run: &mut Run,
+    found: &voronudge_observables::Fluctuations,
+    velocities: &Velocities,
+    linear: Option<f64>,
+) {
+    let told = || found.shells.iter().filter_map(|shell| shell.relaxation.as_ref());
+    if told().next().is_none() {
+        run.warn(
+            "covariances of no shell are those of a relaxation: frames may be too far apart, or too few",
+        );
+    }
+    let few = told().filter(|own| !own.is_reliable()).count();
+    if few > 0 {
+        run.warn(format!(
+            "the recording is too short for {few} of {} shells, with fewer than eight times of the slowest relaxation: their rates and errors cannot be relied on, and are left out of moduli and verdicts",
+            found.shells.len()
+        ));
+    }
+    if linear.is_some_and(|p| p < report::NOT_LINEAR) {
+        run.warn(
+            "waves do not relax linearly and without memory: D(q) depends on the lag, and is a rate at this lag only",
+        );
+    }
+    if found.field == WaveField::Velocities && *velocities == Velocities::FromPositions {
+        run.warn("velocities are displacements until the next frame; what is faster than frames is not seen");
+    }
+}

@@ -1,0 +1,142 @@
+//! `report.json` of `voronudge waves`.
+
+use crate::infer_report::{Quantity, RunRecord};
+use crate::units::Units;
+use serde::Serialize;
+use std::collections::BTreeMap;
+
+/// The JSON Schema of [`WavesReport`].
+pub const WAVES_SCHEMA: &str = include_str!("../schema/waves.schema.json");
+
+/// Rows of D(q), in components along the wave vector and a quarter turn ahead.
+pub type Rates = [[f64; 2]; 2];
+
+/// Everything `waves` reports.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WavesReport {
+    /// The run, at the top level of the file.
+    #[serde(flatten)]
+    pub run: RunRecord,
+    /// Units of all numbers that are not dimensionless.
+    pub units: Units,
+    /// Frames used, zero-based.
+    pub frames: Vec<usize>,
+    /// Time between two of them.
+    pub frame_interval: Quantity,
+    /// Cells seen in each.
+    pub seen: Vec<usize>,
+    /// The cell size: root of the mean area of the cells that count.
+    pub length_scale: Quantity,
+    /// `given`, `from_positions`, or `none`.
+    pub velocities: &'static str,
+    /// Whether the median motion of the cells is taken for one of the stage.
+    pub common_motion_removed: bool,
+    /// `displacements` or `velocities`: what was resolved into waves.
+    pub field: &'static str,
+    /// τ_0 in frames.
+    pub first_lag: usize,
+    /// Parameters of the model whose D(q) stands beside, if they are given.
+    pub parameters: Option<BTreeMap<&'static str, f64>>,
+    /// Probability of differences of D from τ and 2τ that are as large if waves relax linearly and without memory, of all shells together.
+    pub linear: Option<f64>,
+    /// `linear`, `not_linear` or `unknown`.
+    pub verdict: &'static str,
+    /// Probability of entries off the diagonal that are as large without chirality, of all shells together.
+    pub achiral: Option<f64>,
+    /// σ_r of errors of localisation without memory, where displacements were resolved.
+    pub localisation: Option<Measured>,
+    /// Moduli over friction of long waves.
+    pub long_waves: Option<LongWavesRecord>,
+    /// Segments of the dynamic structure factors.
+    pub spectra: Option<SpectraRecord>,
+    /// Shells of wave numbers.
+    pub shells: Vec<WaveShellRecord>,
+}
+
+/// A number with its error.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Measured {
+    /// Value.
+    pub value: f64,
+    /// Standard error.
+    pub standard_error: f64,
+    /// Unit.
+    pub unit: String,
+}
+
+/// D over q² of long waves.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+#[allow(non_snake_case, reason = "the names of the file")]
+pub struct LongWavesRecord {
+    /// (B + μ)/ζ.
+    pub B_plus_mu: Measured,
+    /// μ/ζ.
+    pub mu: Measured,
+    /// Kᵒ/ζ.
+    pub K_o: Measured,
+    /// (A − Kᵒ)/ζ.
+    pub A_minus_K_o: Measured,
+    /// Shells that they are means of.
+    pub shells: usize,
+}
+
+/// How spectra were taken.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct SpectraRecord {
+    /// Frames of a segment.
+    pub segment: usize,
+    /// Number of segments, which overlap by half.
+    pub segments: usize,
+    /// Angular frequencies.
+    pub frequencies: Vec<f64>,
+}
+
+/// One shell.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct WaveShellRecord {
+    /// Mean wave number.
+    pub wave_number: f64,
+    /// Wave vectors, one of each pair ±q.
+    pub wave_vectors: usize,
+    /// How waves relax, where that can be told.
+    pub relaxation: Option<RelaxationRecord>,
+    /// D(q) of the Jacobian, a wave being put on all cells alike.
+    pub jacobian: Option<Rates>,
+    /// The inverse of the compliance to waves of forces.
+    pub jacobian_relaxed: Option<Rates>,
+    /// D(q) of the honeycomb, averaged over directions.
+    pub mean_field: Option<Rates>,
+}
+
+/// How the waves of a shell relax.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct RelaxationRecord {
+    /// τ in frames.
+    pub lag: usize,
+    /// D(q).
+    pub matrix: Rates,
+    /// Standard errors.
+    pub standard_errors: Rates,
+    /// D(q) from 2τ.
+    pub matrix_at_twice_the_lag: Rates,
+    /// D(q) from lag zero on.
+    pub uncorrected: Rates,
+    /// Probability of the difference between τ and 2τ if waves relax linearly.
+    pub linear: f64,
+    /// Probability of the entries off the diagonal without chirality.
+    pub achiral: f64,
+    /// Decay rates, the slower first.
+    pub decay_rates: [f64; 2],
+    /// Their standard errors.
+    pub decay_errors: [f64; 2],
+    /// Angular frequency.
+    pub frequency: f64,
+    /// Its 95 % interval.
+    pub frequency_ci95: [f64; 2],
+    /// Stretches of waves that errors come from.
+    pub stretches: usize,
+    /// Times of the slowest relaxation in the recording.
+    pub relaxations: f64,
+    /// Whether these are eight or more, and there are errors.
+    pub reliable: bool,
+}
