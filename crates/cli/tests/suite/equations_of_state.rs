@@ -3,23 +3,13 @@
 use crate::program::succeed;
 use crate::refusal::assert_arguments_refused;
 use crate::scratch::{Folder, number, read, report};
+use crate::shape_imports::assert_described;
 use ndarray::{Array1, Array2};
-use serde_json::Value;
 use std::fs;
-use std::path::Path;
 
 const SHORT: &str = "equation-of-state --density 0.6 2.2 5 --cells 36 --replicas 2 --relaxation 3 --time 3 --P_0 4 --alpha 2.9 --K_A 0 --dt 0.02 \
                      --quiet";
 const CHANNEL: &str = "channel --preset ht1080 --width 200 --length 150 --relaxation 2 --time 20 --dt 0.02 --samples 16 --quiet";
-
-fn assert_described(report: &Value, name: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../report/schema/{name}.schema.json"));
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
-}
 
 #[test]
 fn it_is_written_as_arrays_and_as_a_report() {
@@ -38,7 +28,7 @@ fn it_is_written_as_arrays_and_as_a_report() {
     ];
     assert_eq!(out.names(), names);
     let report = report(out.path());
-    assert_described(&report, "equation-of-state");
+    assert_described(&report, "equation-of-state.schema.json");
     let density: Array1<f64> = read(&out.file("density.npy"));
     assert_eq!(density.to_vec(), [0.6, 1.0, 1.4, 1.8, 2.2]);
     let [pressure, bulk, torque]: [Array2<f64>; 3] =
@@ -70,7 +60,7 @@ fn a_channel_is_predicted_from_it() {
     succeed(SHORT, &[("--out", equation.path())]);
     succeed(CHANNEL, &[("--equation-of-state", equation.path()), ("--out", out.path())]);
     let report = report(out.path());
-    assert_described(&report, "channel");
+    assert_described(&report, "channel.schema.json");
     assert!((number(&report, "/liquid/density_range/0") - 0.6 / 625.0).abs() < 1e-12);
     // Conservation alone fixes v_x, so that both theories agree with it alike.
     let [liquid, honeycomb] =

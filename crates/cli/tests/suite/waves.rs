@@ -4,7 +4,7 @@ use crate::program::succeed;
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
 use crate::shape_imports::assert_described;
-use ndarray::{Array2, Array3};
+use ndarray::{Array2, Array3, Axis};
 use serde_json::Value;
 
 const MODEL: &str = "--P_0 3.3 --K_A 0 --alpha 0.6";
@@ -71,7 +71,7 @@ fn a_solid_shows_its_odd_waves() {
     let mut positions: Array3<f64> = read(&run.file("positions.npy"));
     let settings = std::fs::read_to_string(run.file("dataset.toml")).unwrap();
     let sides = settings.lines().find(|line| line.starts_with("box = ")).unwrap();
-    positions.slice_mut(ndarray::s![.., .., 0]).mapv_inplace(|x| -x);
+    positions.index_axis_mut(Axis(2), 0).mapv_inplace(|x| -x);
     mirrored.write_array("positions.npy", &positions);
     let settings = format!("boundary = \"periodic\"\n{sides}\nframe_interval = 0.2\nunwrapped = true\n");
     mirrored.write("dataset.toml", settings);

@@ -24,7 +24,7 @@ use voronudge_report::equation_of_state_report::{Measured, UniformRecord};
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Densities, in units of 1/ℓ₀² with the --cell-size ℓ₀: first, last, how many.
-    #[arg(long, num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [0.8, 1.6, 9.0], allow_negative_numbers = true)]
+    #[arg(long, num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [0.8, 1.6, 17.0], allow_negative_numbers = true)]
     density: Vec<f64>,
     /// The cell size ℓ₀ that densities are relative to, in the unit of length of the parameters.
     #[arg(long, value_name = "SIZE", default_value_t = 1.0, allow_negative_numbers = true)]
@@ -71,14 +71,14 @@ impl Arguments {
                 .with_hint(format!("leave --{name} out for the default")))
         };
         let densities =
-            Range::new("density", &self.density, "0.8 1.6 9: nine densities, 0.1 apart")?.values();
+            Range::new("density", &self.density, "0.8 1.6 17: seventeen densities, 0.05 apart")?.values();
         if densities.len() < 3 || densities[0] <= 0.0 {
             return Err(Failure::new(format!(
                 "--density has {} values from {} on, but three or more are needed, above zero",
                 densities.len(),
                 densities[0]
             ))
-            .with_hint("moduli are slopes between densities: write for example --density 0.8 1.6 9"));
+            .with_hint("moduli are slopes between densities: write for example --density 0.8 1.6 17"));
         }
         for (name, count, least, most) in
             [("replicas", self.replicas, 2, MOST_REPLICAS), ("cells", self.cells, 1, usize::MAX)]
