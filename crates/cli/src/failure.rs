@@ -126,6 +126,9 @@ impl From<crate::problem::Error> for Failure {
 
 impl From<voronudge_simulate::Error> for Failure {
     fn from(error: voronudge_simulate::Error) -> Self {
+        if error == voronudge_simulate::Error::Interrupted {
+            return Self::interrupted();
+        }
         let hint = error.hint();
         Self::from_parts(error, hint)
     }

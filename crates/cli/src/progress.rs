@@ -7,7 +7,8 @@ use indicatif::{HumanDuration, ProgressBar, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::ops::ControlFlow;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::{Duration, Instant};
 use voronudge_io::OutputFolder;
 
@@ -95,6 +96,28 @@ impl Progress {
     /// Removes the bar.
     pub fn finish(&self) {
         self.bar.iter().for_each(ProgressBar::finish_and_clear);
+    }
+}
+
+/// Looks at a measurement that several threads make, each of which asks whether to go on.
+pub(crate) struct Looks<'a> {
+    progress: &'a Mutex<Progress>,
+    stage: &'a str,
+    done: AtomicU64,
+    /// How many there are about, at most.
+    most: u64,
+}
+
+impl<'a> Looks<'a> {
+    pub fn new(progress: &'a Mutex<Progress>, stage: &'a str, most: u64) -> Self {
+        Self { progress, stage, done: AtomicU64::new(0), most }
+    }
+
+    /// Counts a look and shows the progress; a thread that cannot show it goes on.
+    pub fn look(&self) -> ControlFlow<()> {
+        let done = self.done.fetch_add(1, Ordering::Relaxed).min(self.most);
+        let shown = self.progress.try_lock();
+        shown.map_or(ControlFlow::Continue(()), |mut shown| shown.step(self.stage, done, self.most))
     }
 }
 

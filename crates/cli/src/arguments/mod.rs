@@ -13,7 +13,7 @@ pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
 pub(crate) use export::{ExportArguments, cell_frame};
 pub(crate) use movie::MovieArguments;
 pub(crate) use parameters::{LARGEST_PARAMETER, ParameterArguments, named};
-pub(crate) use range::Range;
+pub(crate) use range::{Range, positive};
 pub(crate) use shard::Shard;
 
 use crate::failure::Failure;

@@ -1,4 +1,4 @@
-//! Evenly spaced values, typed as first, last and how many.
+//! Numbers and ranges of numbers as they are typed.
 
 use super::LARGEST_PARAMETER;
 use crate::failure::Failure;
@@ -43,4 +43,13 @@ impl Range {
         let round = |value: f64| (value * 1e12).round() / 1e12;
         (0..self.count).map(|index| round(self.from + index as f64 * step)).collect()
     }
+}
+
+/// The number of an option that must be positive and has a default.
+pub(crate) fn positive(name: &str, value: f64) -> Result<f64, Failure> {
+    if value.is_finite() && value > 0.0 {
+        return Ok(value);
+    }
+    Err(Failure::new(format!("{name} is {value}, but it must be positive and finite"))
+        .with_hint("leave it out for the default"))
 }

@@ -1,6 +1,6 @@
 //! What a channel is asked to be, in the units of its preset or of the user.
 
-use crate::arguments::ParameterArguments;
+use crate::arguments::{ParameterArguments, positive};
 use crate::command::drawing::units_of_model;
 use crate::command::equation_of_state::{self, MeasuredEquation};
 use crate::failure::Failure;
@@ -262,12 +262,4 @@ impl ChannelRequest {
             Proliferation::Independent(rate) => rate.decay_length,
         }
     }
-}
-
-fn positive(name: &str, value: f64) -> Result<f64, Failure> {
-    if value.is_finite() && value > 0.0 {
-        return Ok(value);
-    }
-    Err(Failure::new(format!("{name} is {value}, but it must be positive and finite"))
-        .with_hint("leave it out for the default"))
 }

@@ -2,19 +2,18 @@
 
 use crate::arguments::{Verbosity, named};
 use crate::command::drawing::units_of_model;
+use crate::command::moduli::report::over_replicas;
 use crate::command::spectrum::mean_field;
 use crate::failure::Failure;
-use crate::progress::Progress;
+use crate::progress::{Looks, Progress};
 use crate::run::Run;
 use rayon::prelude::*;
-use std::ops::ControlFlow;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use voronudge_model::Parameters;
 use voronudge_report::equation_of_state_report::{Honeycomb, Measured, UniformRecord};
 use voronudge_report::{EquationOfStateReport, Units};
 use voronudge_simulate::moduli::{UniformState, UniformTissue};
-use voronudge_simulate::{Error, recommended_time_step, seed_of_run};
+use voronudge_simulate::{recommended_time_step, seed_of_run};
 use voronudge_theory::EquationOfState;
 
 /// What is asked for, checked.
@@ -82,8 +81,12 @@ impl Request {
     /// Means over replicas, their slopes, and what to know of them; the states of each density one after another.
     pub fn points(&self, states: &[UniformState]) -> Result<(Vec<UniformRecord>, Vec<String>), Failure> {
         let at_density: Vec<&[UniformState]> = states.chunks(self.replicas).collect();
+        let over = |values: Vec<f64>| {
+            let (value, error) = over_replicas(&values, &[]);
+            Measured { value, error }
+        };
         let of = |get: fn(&UniformState) -> f64| -> Vec<Measured> {
-            at_density.iter().map(|own| mean(own.iter().map(get))).collect()
+            at_density.iter().map(|own| over(own.iter().map(get).collect())).collect()
         };
         let (pressure, torque) = (of(|own| own.pressure), of(|own| own.torque));
         let shape_index = of(|own| own.shape_index);
@@ -166,25 +169,17 @@ impl Request {
 impl Work {
     /// Makes all runs, several at a time.
     pub fn measure(&self, verbosity: Verbosity) -> Result<Vec<UniformState>, Failure> {
-        let (progress, looks) = (Mutex::new(Progress::new(verbosity)), AtomicU64::new(0));
-        let stop = || {
-            let done = looks.fetch_add(1, Ordering::Relaxed).min(self.looks);
-            // A thread that cannot show progress goes on.
-            let shown = progress.try_lock();
-            shown.map_or(ControlFlow::Continue(()), |mut shown| {
-                shown.step("equation of state", done, self.looks)
-            })
-        };
+        let progress = Mutex::new(Progress::new(verbosity));
+        let looks = Looks::new(&progress, "equation of state", self.looks);
+        let stop = || looks.look();
         let states = (0..self.tissues.len() * self.replicas)
             .into_par_iter()
             .map(|task| {
                 let (point, replica) = (task / self.replicas, task % self.replicas);
                 let seed = seed_of_run(self.seed, point as u64, replica as u64);
                 let place = || format!("{} cells per area", self.tissues[point].density);
-                self.tissues[point].measure(seed, &stop).map_err(|error| match error {
-                    Error::Interrupted => Failure::interrupted(),
-                    other => Failure::from(other).at(place()),
-                })
+                (self.tissues[point].measure(seed, &stop))
+                    .map_err(|error| Failure::from(error).at_unless_interrupted(place()))
             })
             .collect::<Result<Vec<_>, Failure>>();
         if let Ok(shown) = progress.lock() {
@@ -192,12 +187,4 @@ impl Work {
         }
         states
     }
-}
-
-/// Mean and standard error over replicas.
-fn mean(values: impl ExactSizeIterator<Item = f64> + Clone) -> Measured {
-    let count = values.len() as f64;
-    let value = values.clone().sum::<f64>() / count;
-    let squares: f64 = values.map(|x| (x - value).powi(2)).sum();
-    Measured { value, error: (squares / (count * (count - 1.0))).sqrt() }
 }

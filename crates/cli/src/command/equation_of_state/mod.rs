@@ -6,7 +6,7 @@ mod read;
 
 pub(crate) use read::{MeasuredEquation, read};
 
-use crate::arguments::{CommonArguments, ParameterArguments, Range};
+use crate::arguments::{CommonArguments, ParameterArguments, Range, positive};
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use crate::program::Answer;
@@ -63,13 +63,6 @@ impl Arguments {
             ))
             .with_hint("give --K_P above zero"));
         }
-        let positive = |name: &str, value: f64| {
-            if value.is_finite() && value > 0.0 {
-                return Ok(value);
-            }
-            Err(Failure::new(format!("--{name} is {value}, but it must be positive and finite"))
-                .with_hint(format!("leave --{name} out for the default")))
-        };
         let densities =
             Range::new("density", &self.density, "0.8 1.6 17: seventeen densities, 0.05 apart")?.values();
         if densities.len() < 3 || densities[0] <= 0.0 {
@@ -102,12 +95,12 @@ impl Arguments {
         }
         Ok(Request {
             parameters,
-            cell_size: positive("cell-size", self.cell_size)?,
+            cell_size: positive("--cell-size", self.cell_size)?,
             densities,
             cells: self.cells,
             replicas: self.replicas,
-            times: [relaxation, positive("time", self.time.unwrap_or(unit_time))?],
-            time_step: self.dt.map(|dt| positive("dt", dt)).transpose()?,
+            times: [relaxation, positive("--time", self.time.unwrap_or(unit_time))?],
+            time_step: self.dt.map(|dt| positive("--dt", dt)).transpose()?,
             seed: self.common.seed,
         })
     }

@@ -5,14 +5,12 @@ use super::protocol::Protocol;
 use crate::arguments::Verbosity;
 use crate::command::simulate::Start;
 use crate::failure::Failure;
-use crate::progress::Progress;
-use std::ops::ControlFlow;
+use crate::progress::{Looks, Progress};
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicU64, Ordering};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::moduli::{Dynamic, Elastic, Settled, Viscosity, viscous};
-use voronudge_simulate::{Error, Simulation, seed_of_replica};
+use voronudge_simulate::{Simulation, seed_of_replica};
 
 /// Replicas that nobody means.
 const MOST_REPLICAS: u64 = 1000;
@@ -74,25 +72,16 @@ pub(crate) fn one(
     stage: &str,
     progress: &Mutex<Progress>,
 ) -> Result<Measured, Failure> {
-    let (looks, most) = (AtomicU64::new(0), protocol.looks());
-    let stop = || {
-        let done = looks.fetch_add(1, Ordering::Relaxed).min(most);
-        // A thread that cannot show progress goes on.
-        progress.try_lock().map_or(ControlFlow::Continue(()), |mut shown| shown.step(stage, done, most))
-    };
+    let looks = Looks::new(progress, stage, protocol.looks());
+    let stop = || looks.look();
     let model = Model::chiral_voronoi(parameters);
     let simulation = Simulation::new(positions.to_vec(), Domain::Periodic(cell_box), model)?;
-    let interrupted = |error: Error| match error {
-        Error::Interrupted => Failure::interrupted(),
-        other => other.into(),
-    };
-    let settled = Settled::new(&simulation, &protocol.settings.relaxation, &stop).map_err(interrupted)?;
-    let elastic = settled.elastic(&protocol.settings, &stop).map_err(interrupted)?;
-    let dynamic = (protocol.dynamic.as_ref())
-        .map_or(Ok(Vec::new()), |dynamic| settled.dynamic(dynamic, &stop).map_err(interrupted))?;
-    let viscosity = (protocol.viscosity.as_ref())
-        .map(|viscosity| viscous(&simulation, viscosity, &stop).map_err(interrupted))
-        .transpose()?;
+    let settled = Settled::new(&simulation, &protocol.settings.relaxation, &stop)?;
+    let elastic = settled.elastic(&protocol.settings, &stop)?;
+    let dynamic =
+        (protocol.dynamic.as_ref()).map_or(Ok(Vec::new()), |dynamic| settled.dynamic(dynamic, &stop))?;
+    let viscosity =
+        (protocol.viscosity.as_ref()).map(|viscosity| viscous(&simulation, viscosity, &stop)).transpose()?;
     let positions = settled.simulation().positions().to_vec();
     Ok(Measured { elastic, viscosity, dynamic, positions })
 }

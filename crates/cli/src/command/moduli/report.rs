@@ -3,9 +3,10 @@
 use super::Arguments;
 use super::measure::Measured;
 use super::protocol::Protocol;
+use crate::arguments::named;
 use crate::command::drawing::units_of_model;
 use crate::command::simulate::Start;
-use crate::command::spectrum::{mean_field, named};
+use crate::command::spectrum::mean_field;
 use crate::run::Run;
 use std::fmt::Write as _;
 use std::path::Path;
@@ -99,7 +100,7 @@ pub(super) fn report(
 }
 
 /// Mean and standard error over replicas; of a single one its own.
-pub(super) fn over_replicas(values: &[f64], errors: &[f64]) -> (f64, f64) {
+pub(crate) fn over_replicas(values: &[f64], errors: &[f64]) -> (f64, f64) {
     let count = values.len() as f64;
     let value = values.iter().sum::<f64>() / count;
     let error = match errors {

@@ -21,7 +21,7 @@ use crate::run::Run;
 use clap::Args;
 use frame::Solved;
 use lattice::Lattice;
-pub(crate) use report::{mean_field, named};
+pub(crate) use report::mean_field;
 use request::SelectionArguments;
 use strip::{Bands, EndedLattice, EndsName};
 use voronudge_io::FrameSelection;

@@ -4,7 +4,7 @@ use super::frame::Solved;
 use super::lattice::Waves;
 use super::request::ModeRequest;
 use super::strip::{Bands, EndedLattice};
-use crate::arguments::ChosenEffects;
+use crate::arguments::{ChosenEffects, named};
 use crate::run::Run;
 use voronudge_io::DataSet;
 use voronudge_model::Parameters;
@@ -64,18 +64,6 @@ pub(crate) fn mean_field(parameters: &Parameters<f64>, length: f64) -> Option<Me
         chirality: parameters.chirality,
     })
     .ok()
-}
-
-/// Parameters by the names of the interface.
-pub(crate) fn named(p: &Parameters<f64>) -> std::collections::BTreeMap<&'static str, f64> {
-    [
-        ("K_A", p.area_elasticity),
-        ("K_P", p.perimeter_elasticity),
-        ("P_0", p.preferred_perimeter),
-        ("A_0", p.preferred_area),
-        ("alpha", p.chirality),
-    ]
-    .into()
 }
 
 fn frame(solved: &Solved, k_p: f64) -> FrameSpectrum {

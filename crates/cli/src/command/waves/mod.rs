@@ -89,17 +89,13 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file());
     let out = arguments.common.reserve(inputs)?;
     let recorded = arguments.recording.record(&data, &frames)?;
-    let at = |error| Failure::from(error).at(&place);
+    let at = |error| Failure::from(error).at_unless_interrupted(&place);
     let plan = Plan::of(&recorded.recording).map_err(at)?;
     let mut out = out.begin()?;
     let mut progress = Progress::new(arguments.common.verbosity());
     let mut tell =
         |stage: &'static str, done: usize, all: usize| progress.step(stage, done as u64, all as u64);
-    let found =
-        fluctuations(&recorded.recording, &plan, &request, &mut tell).map_err(|error| match error {
-            voronudge_observables::Error::Interrupted => Failure::interrupted(),
-            other => at(other),
-        })?;
+    let found = fluctuations(&recorded.recording, &plan, &request, &mut tell).map_err(at)?;
     let beside = match &parameters {
         Some(parameters) => Beside::new(&recorded.recording, &plan, &found, parameters, &mut |done, all| {
             progress.step("Jacobian", done as u64, all as u64)
