@@ -70,7 +70,8 @@ pub struct Fluctuations {
     pub shells: Vec<ShellFluctuations>,
     /// Frequencies and what goes with each shell; none for few frames.
     pub structure: Option<DynamicStructure>,
-    /// Moduli over friction, from waves longer than 2π spacings of which the recording is long enough; none without such waves.
+    /// Moduli over friction, from waves longer than 2π spacings of which the recording is long enough; none without such waves, and none through a window, whose
+    /// tapers mix them with shorter ones.
     pub long_waves: Option<LongWaves>,
 }
 
@@ -154,7 +155,8 @@ pub fn fluctuations(
         });
     }
     let structure = dynamic_structure::dynamic_structure(&courses, &resolved, interval, tell)?;
-    let long_waves = long_waves(&shells, LONG / plan.spacing);
+    // Tapers mix long waves with those that relax faster.
+    let long_waves = resolved.window.is_none().then(|| long_waves(&shells, LONG / plan.spacing)).flatten();
     Ok(Fluctuations { field, first_lag, interval, shells, structure, long_waves })
 }
 

@@ -7,14 +7,15 @@ mod page;
 mod report;
 
 use crate::arguments::{CommonArguments, ParameterArguments};
-use crate::command::recorded::{RecordingArguments, Velocities};
+use crate::command::recorded::{Recorded, RecordingArguments, Velocities};
 use crate::failure::Failure;
 use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
 use beside::Beside;
 use clap::{Args, ValueEnum};
-use voronudge_observables::{FluctuationRequest, Plan, WaveField, fluctuations};
+use voronudge_geometry::Domain;
+use voronudge_observables::{FluctuationRequest, Fluctuations, Plan, WaveField, fluctuations};
 use voronudge_report::Units;
 
 /// Odd waves from fluctuations: the dynamic structure factor of a recording, and the matrix D(q) by which its waves relax, beside that of a model.
@@ -105,7 +106,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     progress.finish();
     let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
     let linear = report::linear(&found);
-    warn(&mut run, &found, &recorded.velocities, linear);
+    warn(&mut run, &recorded, &found, linear);
     arrays::write(&mut out, &found, &beside)?;
     let report = report::report(
         run.record(Some(&data)),
@@ -127,8 +128,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
 /// What the reader should know before using the numbers.
 fn warn(
     run: &mut Run,
-    found: &voronudge_observables::Fluctuations,
-    velocities: &Velocities,
+    Recorded { recording, velocities, .. }: &Recorded,
+    found: &Fluctuations,
     linear: Option<f64>,
 ) {
     let told = || found.shells.iter().filter_map(|shell| shell.relaxation.as_ref());
@@ -143,6 +144,11 @@ fn warn(
             "the recording is too short for {few} of {} shells, with fewer than eight times of the slowest relaxation: their rates and errors cannot be relied on, and are left out of moduli and verdicts",
             found.shells.len()
         ));
+    }
+    if recording.frames().iter().any(|frame| frame.tessellation.domain() == Domain::Open) {
+        run.warn(
+            "waves are seen through a window, whose tapers mix them with others: rates of waves longer than some fifth of the window can be off by a factor of two, and moduli are not told",
+        );
     }
     if linear.is_some_and(|p| p < report::NOT_LINEAR) {
         run.warn(
