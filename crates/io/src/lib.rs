@@ -104,7 +104,7 @@ pub use output::{OutputDirectory, OutputFolder};
 pub use points::{PointImport, import_points};
 pub use recording::Recording;
 pub use shapes::{ShapeFrame, ShapeImport, ShapeSummary};
-pub use snapshot::Snapshot;
+pub use snapshot::{NO_LABEL, Snapshot};
 pub use source::Source;
 pub use table::{ColumnNames, FlowColumnNames, FlowProfile, read_flow_profile};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};

@@ -11,7 +11,7 @@ use crate::noise::Noise;
 const MARGIN: f64 = 3.0;
 
 /// Label of a cell without one.
-const NO_LABEL: i64 = -1;
+pub const NO_LABEL: i64 = -1;
 
 /// The cells present in one frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -122,9 +122,16 @@ impl DataSet {
     /// The measured labels of the cells of one frame (N), if there are any; `None` of a cell without one (−1 in the file).
     #[must_use]
     pub fn labels_of(&self, snapshot: &Snapshot, frame: usize) -> Option<Vec<Option<i64>>> {
+        let all = self.all_labels(frame)?;
+        Some(snapshot.cells.iter().map(|&cell| all[cell]).collect())
+    }
+
+    /// The same of all cells of the data set (cells), absent ones too.
+    #[must_use]
+    pub fn all_labels(&self, frame: usize) -> Option<Vec<Option<i64>>> {
         let labels = self.labels.as_ref()?;
-        let label = |cell: &usize| labels.get((frame, *cell)).copied().filter(|label| *label != NO_LABEL);
-        Some(snapshot.cells.iter().map(label).collect())
+        let label = |cell: usize| labels.get((frame, cell)).copied().filter(|label| *label != NO_LABEL);
+        Some((0..self.cells()).map(label).collect())
     }
 
     /// Vectors of the cells of several frames, as an array (frames, cells, 2) with y as in the files, or (cells, 2) if the

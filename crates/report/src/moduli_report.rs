@@ -9,6 +9,7 @@ use serde::Serialize;
 
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
+use crate::phase_report::CellSpread;
 use crate::units::Units;
 
 /// JSON Schema (draft 2020-12) of [`ModuliReport`].
@@ -26,6 +27,9 @@ pub struct ModuliReport {
     pub cells: usize,
     /// Parameters as used, by the names of the interface.
     pub parameters: BTreeMap<&'static str, f64>,
+    /// By how much cells differ, if they do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cell_spread: Option<CellSpread>,
     /// How it was measured: amounts and times by the names of the options.
     pub settings: BTreeMap<&'static str, f64>,
     /// Bulk modulus, odd bulk modulus, shear modulus, odd shear modulus.

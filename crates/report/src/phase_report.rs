@@ -13,6 +13,15 @@ use crate::infer_report::RunRecord;
 /// JSON Schema (draft 2020-12) of [`PhaseReport`].
 pub const PHASE_SCHEMA: &str = include_str!("../schema/phase-diagram.schema.json");
 
+/// By how much cells differ in their parameters, and how.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct CellSpread {
+    /// Standard deviation of each parameter over cells as a share of its mean.
+    pub shares: BTreeMap<String, f64>,
+    /// Name of the distribution.
+    pub distribution: &'static str,
+}
+
 /// Everything `phase-diagram` reports. Lengths are in ℓ₀ and rates in K_P.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct PhaseReport {
@@ -34,6 +43,9 @@ pub struct PhaseReport {
     /// Area elasticity K_A in K_P/ℓ₀².
     #[serde(rename = "K_A")]
     pub area_elasticity: f64,
+    /// By how much cells differ, if they do.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cell_spread: Option<CellSpread>,
     /// Preferred perimeters of the columns.
     #[serde(rename = "P_0")]
     pub preferred_perimeters: Vec<f64>,

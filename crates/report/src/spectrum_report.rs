@@ -26,6 +26,9 @@ pub struct SpectrumReport {
     pub selection: SelectionRecord,
     /// Parameters as used, by the names of the interface.
     pub parameters: BTreeMap<&'static str, f64>,
+    /// Values of parameters in which cells differ, by name, one for each cell of the data; of types by the labels in the first frame.
+    #[serde(skip_serializing_if = "BTreeMap::is_empty")]
+    pub cell_parameters: BTreeMap<&'static str, Vec<f64>>,
     /// Effects beyond the base model with their coefficients.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub effects: BTreeMap<String, Vec<f64>>,

@@ -1,5 +1,6 @@
 //! Arguments that several commands share.
 
+mod cells;
 mod dataset;
 mod effects;
 mod export;
@@ -7,7 +8,9 @@ mod movie;
 mod parameters;
 mod range;
 mod shard;
+mod spreads;
 
+pub(crate) use cells::{CellArguments, OfCells, OwnParameters};
 pub(crate) use dataset::DataSetArguments;
 pub(crate) use effects::{ChosenEffects, EffectArguments, effect, environment};
 pub(crate) use export::{ExportArguments, cell_frame};
@@ -15,6 +18,7 @@ pub(crate) use movie::MovieArguments;
 pub(crate) use parameters::{LARGEST_PARAMETER, ParameterArguments, named};
 pub(crate) use range::{Range, positive};
 pub(crate) use shard::Shard;
+pub(crate) use spreads::{SpreadArguments, Spreads};
 
 use crate::failure::Failure;
 use clap::{Args, ValueEnum};

@@ -1,8 +1,8 @@
 //! `voronudge evaluate`: the model's fields at given positions.
 
 use crate::arguments::{
-    ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ExportArguments, ParameterArguments,
-    cell_frame, environment,
+    CellArguments, ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ExportArguments,
+    OfCells, ParameterArguments, cell_frame, environment,
 };
 use crate::boundary::domain_at;
 use crate::failure::Failure;
@@ -14,6 +14,7 @@ use ndarray::{Array1, Array2, Array3};
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Cursor;
+use std::path::Path;
 use voronudge_geometry::{Tessellation, Vector, areas, perimeters};
 use voronudge_io::{CellFrame, CellValues, DataSet, FrameSelection, OutputDirectory, Snapshot, YAxis};
 use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
@@ -36,6 +37,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     parameters: ParameterArguments,
     #[command(flatten)]
+    cells: CellArguments,
+    #[command(flatten)]
     effects: EffectArguments,
     /// Also write the Jacobian of velocities with respect to positions.
     #[arg(long)]
@@ -55,6 +58,8 @@ struct Report {
     run: RunRecord,
     cells: Cells,
     parameters: ModelParameters,
+    #[serde(skip_serializing_if = "OfCells::is_empty")]
+    cell_parameters: OfCells,
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     effects: ChosenEffects,
     stress: Vec<[[f64; 2]; 2]>,
@@ -127,7 +132,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("evaluate", &arguments.common)?;
     let effects = arguments.effects.resolve()?;
     let data = arguments.data.load()?;
-    let parameters = arguments.parameters.resolve()?;
+    let mut parameters = arguments.parameters.resolve()?;
     let frames = match &arguments.frames {
         Some(selection) => selection
             .resolve(data.frames())
@@ -136,8 +141,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     };
     let (cells, count) = (data.cells(), frames.len());
     refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
-    let mut out =
-        arguments.common.output(data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file()))?;
+    let first = frames.first().copied().unwrap_or(0);
+    let own = arguments.cells.of_data(&data, first, &mut parameters)?;
+    let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file());
+    let mut out = arguments.common.output(inputs.map(Path::to_owned).chain(arguments.cells.files()))?;
     // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
     let base = Model::chiral_voronoi(&parameters);
     let mut fields = Vec::new();
@@ -148,12 +155,10 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         let tessellation = Tessellation::new(&snapshot.positions, domain)
             .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
         let view = data.view()?.judge(&tessellation, &snapshot.positions);
-        let mut surroundings = environment(&tessellation, &snapshot.positions, &view)?;
-        if let Some(labels) = data.labels_of(&snapshot, frame) {
-            surroundings = surroundings
-                .with_labels(labels)
-                .map_err(|error| Failure::new(error.to_string()).at(place()))?;
-        }
+        let surroundings = environment(&tessellation, &snapshot.positions, &view)?;
+        let labels = data.labels_of(&snapshot, frame);
+        let surroundings =
+            own.of_cells(surroundings, &snapshot.cells, labels).map_err(|failure| failure.at(place()))?;
         let model = effects.add_to(base.clone(), surroundings, domain)?;
         let moving = velocities(&tessellation, &snapshot.positions, &model);
         if moving.iter().any(|v| v.x.is_infinite() || v.y.is_infinite()) {
@@ -195,6 +200,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             frames,
         },
         parameters: (&parameters).into(),
+        cell_parameters: own.of_data(&data, first),
         effects,
         stress: fields.iter().map(|f| f.stress).collect(),
         mean_square_velocity: fields

@@ -2,13 +2,13 @@
 
 use super::Arguments;
 use super::protocol::Protocol;
-use crate::arguments::Verbosity;
+use crate::arguments::{CellArguments, Spreads, Verbosity};
 use crate::command::simulate::Start;
 use crate::failure::Failure;
 use crate::progress::{Looks, Progress};
-use std::sync::Mutex;
+use std::sync::{Arc, Mutex};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_model::{Model, Parameters};
+use voronudge_model::{Environment, Model, Parameters};
 use voronudge_simulate::moduli::{Dynamic, Elastic, Settled, Viscosity, viscous};
 use voronudge_simulate::{Simulation, seed_of_replica};
 
@@ -36,6 +36,25 @@ pub(super) fn starts(arguments: &Arguments) -> Result<Vec<(u64, Start)>, Failure
     seeds.map(|seed| Ok((seed, Start::of(&arguments.start, seed, 1)?))).collect()
 }
 
+/// The model of each replica; the parameters become the means over cells.
+pub(super) fn models(
+    cells: &CellArguments,
+    spreads: &Spreads,
+    starts: &[(u64, Start)],
+    parameters: &mut Parameters<f64>,
+) -> Result<Vec<Model<f64>>, Failure> {
+    let given = *parameters;
+    let model = |(seed, start): &(u64, Start)| {
+        let (count, labels) = (start.positions.len(), start.labels.as_deref());
+        *parameters = given;
+        let own = cells.read(count, labels, parameters)?.and(spreads.draw(count, *seed, parameters)?)?;
+        let numbers: Vec<usize> = (0..count).collect();
+        let environment = own.of_cells(Environment::default(), &numbers, start.labels.clone())?;
+        Ok(Model::chiral_voronoi(parameters).within(&Arc::new(environment)))
+    };
+    starts.iter().map(model).collect()
+}
+
 pub(crate) struct Measured {
     pub elastic: Elastic,
     pub viscosity: Option<Viscosity>,
@@ -47,16 +66,16 @@ pub(crate) struct Measured {
 /// Measures all replicas, one after another; the strained states of one run at the same time.
 pub(super) fn replicas(
     starts: &[(u64, Start)],
-    parameters: &Parameters<f64>,
+    models: &[Model<f64>],
     protocol: &Protocol,
     verbosity: Verbosity,
 ) -> Result<Vec<Measured>, Failure> {
     let progress = Mutex::new(Progress::new(verbosity));
     let mut measured = Vec::new();
-    for (index, (_, start)) in starts.iter().enumerate() {
+    for (index, ((_, start), model)) in starts.iter().zip(models).enumerate() {
         let stage = format!("replica {} of {}", index + 1, starts.len());
         let tissue = (start.positions.as_slice(), start.cell_box);
-        measured.push(one(tissue, parameters, protocol, &stage, &progress)?);
+        measured.push(one(tissue, model, protocol, &stage, &progress)?);
     }
     if let Ok(shown) = progress.lock() {
         shown.finish();
@@ -67,15 +86,14 @@ pub(super) fn replicas(
 /// Measures one tissue.
 pub(crate) fn one(
     (positions, cell_box): (&[Vector<f64>], PeriodicBox),
-    parameters: &Parameters<f64>,
+    model: &Model<f64>,
     protocol: &Protocol,
     stage: &str,
     progress: &Mutex<Progress>,
 ) -> Result<Measured, Failure> {
     let looks = Looks::new(progress, stage, protocol.looks());
     let stop = || looks.look();
-    let model = Model::chiral_voronoi(parameters);
-    let simulation = Simulation::new(positions.to_vec(), Domain::Periodic(cell_box), model)?;
+    let simulation = Simulation::new(positions.to_vec(), Domain::Periodic(cell_box), model.clone())?;
     let settled = Settled::new(&simulation, &protocol.settings.relaxation, &stop)?;
     let elastic = settled.elastic(&protocol.settings, &stop)?;
     let dynamic =

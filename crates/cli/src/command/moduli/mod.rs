@@ -5,7 +5,7 @@ pub(crate) mod measure;
 pub(crate) mod protocol;
 pub(crate) mod report;
 
-use crate::arguments::{CommonArguments, ParameterArguments};
+use crate::arguments::{CellArguments, CommonArguments, ParameterArguments, SpreadArguments};
 use crate::command::simulate::StartArguments;
 use crate::failure::Failure;
 use crate::memory::{OF_A_STRAINED_CELL, refuse_beyond};
@@ -13,6 +13,7 @@ use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use protocol::{Protocol, ProtocolArguments};
+use std::path::Path;
 use voronudge_report::ModuliPage;
 
 /// Elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, beside the mean-field theory.
@@ -30,26 +31,33 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     parameters: ParameterArguments,
     #[command(flatten)]
+    cells: CellArguments,
+    #[command(flatten)]
+    spreads: SpreadArguments,
+    #[command(flatten)]
     common: CommonArguments,
 }
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("moduli", &arguments.common)?;
-    let parameters = arguments.parameters.resolve()?;
+    let mut parameters = arguments.parameters.resolve()?;
     arguments.protocol.check()?;
-    let out =
-        arguments.common.reserve(arguments.start.file().into_iter().chain(arguments.parameters.file()))?;
+    let spreads = arguments.spreads.resolve()?;
+    spreads.idle(&parameters).into_iter().for_each(|idle| run.warn(idle));
+    let inputs = arguments.start.file().into_iter().chain(arguments.parameters.file());
+    let out = arguments.common.reserve(inputs.map(Path::to_owned).chain(arguments.cells.files()))?;
     let starts = measure::starts(&arguments)?;
     let first = &starts[0].1;
     let cells = first.positions.len();
     refuse_beyond(format!("moduli of {cells} cells"), cells, OF_A_STRAINED_CELL)?;
     let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();
+    let models = measure::models(&arguments.cells, &spreads, &starts, &mut parameters)?;
     let protocol = Protocol::new(&arguments.protocol, &parameters, spacing)?;
     let mut out = out.begin()?;
     protocol.doubts().into_iter().for_each(|doubt| run.warn(doubt));
-    let measured = measure::replicas(&starts, &parameters, &protocol, arguments.common.verbosity())?;
+    let measured = measure::replicas(&starts, &models, &protocol, arguments.common.verbosity())?;
     report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));
-    let report = report::report(&run, &starts, (&parameters, spacing), &protocol, &measured);
+    let report = report::report(&run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;
     let (title, headline) = (report::title(&arguments), report::headline(&report));

@@ -3,7 +3,7 @@
 use super::Arguments;
 use super::measure::Measured;
 use super::protocol::Protocol;
-use crate::arguments::named;
+use crate::arguments::{Spreads, named};
 use crate::command::drawing::units_of_model;
 use crate::command::simulate::Start;
 use crate::command::spectrum::mean_field;
@@ -30,7 +30,7 @@ pub(crate) const VISCOSITY_NAMES: [(&str, &str); 2] =
 pub(super) fn report(
     run: &Run,
     starts: &[(u64, Start)],
-    (parameters, length): (&Parameters<f64>, f64),
+    (parameters, spreads, length): (&Parameters<f64>, &Spreads, f64),
     protocol: &Protocol,
     measured: &[Measured],
 ) -> ModuliReport {
@@ -69,6 +69,7 @@ pub(super) fn report(
         ),
         cells: first.positions.len(),
         parameters: named(parameters),
+        cell_spread: spreads.record(),
         settings: settings(protocol),
         moduli,
         prestress: std::array::from_fn(|i| {

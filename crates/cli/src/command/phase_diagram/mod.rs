@@ -11,7 +11,7 @@ mod work;
 pub(crate) use outcome::finish;
 pub(crate) use scaling::ScalingArguments;
 
-use crate::arguments::{CommonArguments, Shard};
+use crate::arguments::{CommonArguments, Shard, SpreadArguments};
 use crate::failure::Failure;
 use crate::output::{NO_INPUTS, read_if_there};
 use crate::program::Answer;
@@ -33,6 +33,8 @@ use work::{Ending, work};
 pub(crate) struct Arguments {
     #[command(flatten)]
     grid: GridArguments,
+    #[command(flatten)]
+    spreads: SpreadArguments,
     /// Go on with the diagram that was interrupted in --out; begin if there is none. One that is complete is not made again.
     #[arg(long)]
     resume: bool,
@@ -47,7 +49,7 @@ pub(crate) struct Arguments {
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("phase-diagram", &arguments.common)?;
-    let request = Request::new(&arguments.grid, arguments.common.seed)?;
+    let request = Request::new(&arguments.grid, arguments.spreads.resolve()?, arguments.common.seed)?;
     let scaling = arguments.scaling.resolve()?;
     let out = &arguments.common.claim(NO_INPUTS)?;
     let header = Header { request, shard: arguments.shard.unwrap_or(Shard::WHOLE) };

@@ -85,6 +85,7 @@ fn report(run: &Run, points: &Points, diagram: &Diagram, collapse: &Collapse) ->
         least_distance: request.least_distance,
         replicas: request.replicas,
         area_elasticity: request.area_elasticity,
+        cell_spread: request.spreads.record(),
         preferred_perimeters: diagram.preferred_perimeters.clone(),
         chiralities: diagram.chiralities.clone(),
         shard: [points.header.shard.part, points.header.shard.of],

@@ -7,7 +7,6 @@ use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use voronudge_geometry::{Domain, PeriodicBox};
-use voronudge_model::Model;
 use voronudge_observables::{BlockAverage, hexatic, shape_indices};
 use voronudge_simulate::measure::{LyapunovSchedule, largest_lyapunov_exponent};
 use voronudge_simulate::moduli::{Elastic, Moduli, Settings, elastic_until};
@@ -107,8 +106,7 @@ fn values(
     let mut positions = placement.draw(&mut generator(request.seed(job)))?;
     sort_in_space(&mut positions, &cell_box);
     let domain = Domain::Periodic(cell_box);
-    let mut simulation =
-        Simulation::new(positions, domain, Model::chiral_voronoi(&request.parameters(job.point)))?;
+    let mut simulation = Simulation::new(positions, domain, request.model(job)?)?;
     let schedule = schedule(request, job.point);
     let mut averages = Averages::default();
     let mut fault = None;

@@ -1,11 +1,12 @@
 //! What a diagram is asked for.
 
-use crate::arguments::{LARGEST_PARAMETER, Range, Shard};
+use crate::arguments::{LARGEST_PARAMETER, Range, Shard, Spreads};
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
-use voronudge_model::Parameters;
+use std::sync::Arc;
+use voronudge_model::{Environment, Model, Parameters};
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
 use voronudge_simulate::{MOST_STEPS, recommended_time_step, seed_of_run};
@@ -148,6 +149,8 @@ pub(crate) struct Request {
     #[serde(rename = "K_A")]
     pub area_elasticity: f64,
     pub least_distance: f64,
+    #[serde(default, rename = "cell_spread", skip_serializing_if = "Spreads::is_empty")]
+    pub spreads: Spreads,
     pub seed: u64,
 }
 
@@ -159,7 +162,7 @@ pub(crate) struct Job {
 }
 
 impl Request {
-    pub fn new(typed: &GridArguments, seed: u64) -> Result<Self, Failure> {
+    pub fn new(typed: &GridArguments, spreads: Spreads, seed: u64) -> Result<Self, Failure> {
         let positive = |name: &str, value: f64, hint: &str| {
             if value.is_finite() && value > 0.0 {
                 return Ok(());
@@ -214,6 +217,7 @@ impl Request {
             dt: typed.dt,
             area_elasticity: typed.K_A,
             least_distance: typed.least_distance,
+            spreads,
             seed,
         };
         request.check()?;
@@ -261,6 +265,15 @@ impl Request {
             chirality: self.chiralities.values()[row],
             ..Parameters::default()
         }
+    }
+
+    /// The model of a run, whose cells may differ.
+    pub fn model(&self, job: Job) -> Result<Model<f64>, Failure> {
+        let mut parameters = self.parameters(job.point);
+        let own = self.spreads.draw(self.cells, self.seed(job), &mut parameters)?;
+        let numbers: Vec<usize> = (0..self.cells).collect();
+        let environment = own.of_cells(Environment::default(), &numbers, None)?;
+        Ok(Model::chiral_voronoi(&parameters).within(&Arc::new(environment)))
     }
 
     /// The time step at a point.

@@ -11,6 +11,7 @@ use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::sync::Mutex;
 use voronudge_geometry::Vector;
 use voronudge_infer::NORMAL_95;
+use voronudge_model::Model;
 use voronudge_report::rheology_report::{FittedRheology, RheologyFrequency, RheologyQuantity};
 use voronudge_simulate::moduli::{Dynamic, DynamicModulus, Motion};
 use voronudge_theory::{MeanField, Moduli};
@@ -73,9 +74,10 @@ impl Work<'_> {
             ..self.arguments.clone()
         };
         let protocol = Protocol::new(&arguments, &scaled.parameters, 1.0)?;
+        let model = Model::chiral_voronoi(&scaled.parameters);
         let own = |(k, (positions, start)): (usize, (&&[Vector<f64>], &Start))| {
             let stage = format!("{stage}, tissue {} of {}", k + 1, self.starts.len());
-            one((positions, start.cell_box), &scaled.parameters, &protocol, &stage, self.progress)
+            one((positions, start.cell_box), &model, &protocol, &stage, self.progress)
         };
         from.iter().zip(self.starts).enumerate().map(own).collect()
     }

@@ -1,6 +1,5 @@
 //! `voronudge simulate`: trajectories of the model in a periodic box.
 
-mod cells;
 mod chaos;
 mod driving;
 mod measurements;
@@ -13,12 +12,14 @@ mod sensitivity;
 mod start;
 mod surroundings;
 
-use crate::arguments::{CommonArguments, EffectArguments, MovieArguments, ParameterArguments, environment};
+use crate::arguments::{
+    CellArguments, CommonArguments, EffectArguments, MovieArguments, ParameterArguments, SpreadArguments,
+    environment,
+};
 use crate::failure::Failure;
 use crate::program::Answer;
 use crate::progress::Progress;
 use crate::run::Run;
-use cells::OfCells;
 use chaos::Measure;
 use clap::{Args, ValueEnum};
 use driving::DrivingArguments;
@@ -28,6 +29,7 @@ use report::Request;
 use sensitivity::Asked;
 pub(crate) use start::{Start, StartArguments};
 use std::ops::ControlFlow;
+use std::path::Path;
 use std::time::{Duration, Instant};
 use surroundings::SurroundingsArguments;
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Tessellation};
@@ -77,10 +79,10 @@ pub(crate) struct Arguments {
     checkpoint: f64,
     #[command(flatten)]
     parameters: ParameterArguments,
-    /// A parameter of each cell: `P_0=FILE.npy`, an array (N) of values; of K_A, P_0, A_0 and alpha. May be repeated. The
-    /// parameter itself is then the mean of the values.
-    #[arg(long, value_name = "NAME=FILE")]
-    cell_parameter: Vec<String>,
+    #[command(flatten)]
+    cells: CellArguments,
+    #[command(flatten)]
+    spreads: SpreadArguments,
     #[command(flatten)]
     effects: EffectArguments,
     #[command(flatten)]
@@ -106,20 +108,25 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     arguments.movie.check_without_fit()?;
     let start = Start::of(&arguments.start, arguments.common.seed, arguments.frames)?;
     let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
-    let (of_cells, factors) = OfCells::read(&arguments.cell_parameter, cells, &mut parameters)?;
-    if !of_cells.is_empty() && arguments.surroundings.walls().is_some() {
+    let (spreads, labels) = (arguments.spreads.resolve()?, start.labels.as_deref());
+    spreads.idle(&parameters).into_iter().for_each(|idle| run.warn(idle));
+    let own = arguments.cells.read(cells, labels, &mut parameters)?;
+    let own = own.and(spreads.draw(cells, arguments.common.seed, &mut parameters)?)?;
+    let of_cells = own.values(cells, labels);
+    if !own.is_empty() && arguments.surroundings.walls().is_some() {
         return Err(
-            Failure::new("--cell-parameter does not go with --walls").with_hint("leave one of them out")
+            Failure::new("cells that differ do not go with --walls").with_hint("leave one of them out")
         );
     }
+    let labels = start.labels.clone().or_else(|| spreads.labels(cells, arguments.common.seed));
     let driving =
         arguments.driving.driving(&mut effects, arguments.surroundings.shear()?, arguments.common.seed)?;
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;
     let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
-    let surroundings = environment(&tessellation, &start.positions, &view)?
-        .with_cell_factors(factors)
-        .map_err(|error| Failure::new(error.to_string()).with_hint("check --cell-parameter"))?;
+    let numbers: Vec<usize> = (0..cells).collect();
+    let surroundings = environment(&tessellation, &start.positions, &view)?;
+    let surroundings = own.of_cells(surroundings, &numbers, labels.clone())?;
     let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
     let request = Request {
         cells,
@@ -134,6 +141,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         },
         parameters: (&parameters).into(),
         of_cells,
+        spreads,
+        labels,
         effects,
         walls: arguments.surroundings.walls(),
         driving,
@@ -156,7 +165,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         ));
     }
     let inputs = arguments.start.file().into_iter().chain(arguments.parameters.file());
-    let inputs = inputs.chain(OfCells::files(&arguments.cell_parameter));
+    let inputs = inputs.map(Path::to_owned).chain(arguments.cells.files());
     let folder = arguments.common.claim(inputs)?;
     let (mut recorder, kept) =
         Recorder::open(&folder, &request, schedule.steps_per_frame()?, every, arguments.resume)?;

@@ -11,11 +11,11 @@ use crate::arguments::MovieArguments;
 use crate::command::drawing::units_of_model;
 use crate::failure::Failure;
 use crate::run::Run;
-use ndarray::Array3;
+use ndarray::{Array1, Array3, ArrayView1};
 use std::path::Path;
 use voronudge_geometry::{PeriodicBox, areas};
-use voronudge_io::{Boundary, DataSet, OutputDirectory};
-use voronudge_model::stress;
+use voronudge_io::{Boundary, DataSet, NO_LABEL, OutputDirectory};
+use voronudge_model::{CellParameter, stress};
 use voronudge_observables::{hexatic_among, shape_indices};
 use voronudge_report::Units;
 use voronudge_simulate::{Schedule, Simulation, Summary};
@@ -58,6 +58,7 @@ pub(super) fn finish(
     let mut settings = settings(simulation, &request, &schedule, &units);
     describe(&mut settings, &request, start, schedule.frame_interval())?;
     settings.save_settings(&mut results)?;
+    write_cells(&mut results, &request)?;
     measurements.write(&mut results)?;
     if let Some(own) = &differentiated {
         own.write(&mut results)?;
@@ -123,6 +124,25 @@ pub(super) fn finish(
     run.finish(Some(results), &json, &text)
 }
 
+/// Writes the labels of the cells and the parameters in which they differ; those of an earlier run go.
+fn write_cells(results: &mut OutputDirectory, request: &Request) -> Result<(), Failure> {
+    match &request.labels {
+        Some(labels) => {
+            let labels: Array1<i64> = labels.iter().map(|label| label.unwrap_or(NO_LABEL)).collect();
+            results.write_integers("labels.npy", labels.view())?;
+        }
+        None => results.withdraw("labels.npy")?,
+    }
+    for parameter in CellParameter::ALL {
+        let name = format!("cell_{}.npy", parameter.name());
+        match request.of_cells.0.get(parameter.name()) {
+            Some(own) => results.write_array(&name, ArrayView1::from(own))?,
+            None => results.withdraw(&name)?,
+        }
+    }
+    Ok(())
+}
+
 /// Name of the folder with the frames of a run that failed.
 const PARTIAL: &str = "partial";
 
@@ -141,6 +161,7 @@ pub(super) fn keep_partial(
     let place = out.join(PARTIAL);
     let mut results = OutputDirectory::create(&place)?;
     recorder.write_so_far(&mut results)?;
+    write_cells(&mut results, &request)?;
     let mut settings = settings(simulation, &request, schedule, &units);
     let interval = schedule.frame_interval();
     describe(&mut settings, &Request { frames, ..request }, start, interval)?;

@@ -1,8 +1,7 @@
 //! What a run was asked for, and what came of it.
 
-use super::cells::OfCells;
 use super::start::Origin;
-use crate::arguments::ChosenEffects;
+use crate::arguments::{ChosenEffects, OfCells, Spreads};
 use crate::command::evaluate::ModelParameters;
 use serde::Serialize;
 use voronudge_report::histogram::Histogram;
@@ -24,6 +23,11 @@ pub(super) struct Request {
     pub parameters: ModelParameters,
     #[serde(rename = "cell_parameters", skip_serializing_if = "OfCells::is_empty")]
     pub of_cells: OfCells,
+    #[serde(rename = "cell_spread", skip_serializing_if = "Spreads::is_empty")]
+    pub spreads: Spreads,
+    /// Labels of the cells, which are in a file of their own.
+    #[serde(skip)]
+    pub labels: Option<Vec<Option<i64>>>,
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     pub effects: ChosenEffects,
     #[serde(skip_serializing_if = "Option::is_none")]

@@ -51,6 +51,8 @@ pub(crate) struct Start {
     pub origin: Origin,
     pub length_unit: String,
     pub time_unit: String,
+    /// Labels of the cells (N), if the data set has some.
+    pub labels: Option<Vec<Option<i64>>>,
 }
 
 /// Where the positions come from, as the report tells it.
@@ -77,7 +79,8 @@ impl Start {
 }
 
 fn own_units(positions: Vec<Vector<f64>>, cell_box: PeriodicBox, origin: Origin) -> Start {
-    Start { positions, cell_box, origin, length_unit: "length".into(), time_unit: "time".into() }
+    let [length_unit, time_unit] = ["length", "time"].map(String::from);
+    Start { positions, cell_box, origin, length_unit, time_unit, labels: None }
 }
 
 fn cells(arguments: &StartArguments, frames: usize) -> Result<usize, Failure> {
@@ -146,6 +149,7 @@ fn from_data(arguments: &StartArguments, frames: usize, folder: PathBuf) -> Resu
     }
     let sha256 = data.inputs.iter().map(|input| input.sha256.clone()).collect();
     Ok(Start {
+        labels: data.labels_of(&snapshot, frame),
         positions: snapshot.positions,
         cell_box,
         origin: Origin::Data { sha256, frame },

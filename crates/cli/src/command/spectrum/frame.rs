@@ -3,7 +3,7 @@
 use super::request::ModeRequest;
 use super::search::compute;
 use super::tissue::{Localised, Tissue};
-use crate::arguments::{ChosenEffects, environment};
+use crate::arguments::{ChosenEffects, OwnParameters, environment};
 use crate::failure::Failure;
 use crate::memory::{OF_A_CELL_WITH_MODES, refuse_beyond};
 use crate::progress::Progress;
@@ -35,7 +35,7 @@ impl Solved {
     /// The modes of a frame in which cells for which `held` holds stay where they are.
     pub fn new(
         (data, frame): (&DataSet, usize),
-        (parameters, effects): (&Parameters<f64>, &ChosenEffects),
+        (parameters, own, effects): (&Parameters<f64>, &OwnParameters, &ChosenEffects),
         request: &ModeRequest,
         held: impl Fn(usize) -> bool,
         progress: &mut Progress,
@@ -49,9 +49,16 @@ impl Solved {
             return Err(voronudge_spectrum::Error::NoCells.into());
         }
         let mut surroundings = environment(tessellation, positions, &view)?;
-        if let Some(labels) = data.labels_of(&snapshot, frame).filter(|_| tissue.walls.is_none()) {
-            surroundings =
-                surroundings.with_labels(labels).map_err(|error| Failure::new(error.to_string()))?;
+        match tissue.walls {
+            None => {
+                surroundings =
+                    own.of_cells(surroundings, &snapshot.cells, data.labels_of(&snapshot, frame))?;
+            }
+            Some(_) if own.is_empty() => {}
+            Some(_) => {
+                return Err(Failure::new("cells that differ do not go with walls")
+                    .with_hint("leave out --cell-parameter and --label-parameter"));
+            }
         }
         let length = surroundings.cell_size();
         let model = effects.add_to(Model::chiral_voronoi(parameters), surroundings, tessellation.domain())?;

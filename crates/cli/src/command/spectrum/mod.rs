@@ -12,7 +12,9 @@ mod strip_page;
 mod tissue;
 mod view;
 
-use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
+use crate::arguments::{
+    CellArguments, CommonArguments, DataSetArguments, EffectArguments, ParameterArguments,
+};
 use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::program::Answer;
@@ -54,6 +56,8 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     parameters: ParameterArguments,
     #[command(flatten)]
+    cells: CellArguments,
+    #[command(flatten)]
     effects: EffectArguments,
     /// Also write modes.npy (modes, N, 2, 2: component, then real and imaginary part), of the first frame chosen.
     #[arg(long)]
@@ -73,13 +77,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .with_hint("leave one of them out"));
     }
     let effects = arguments.effects.resolve()?;
-    let parameters = arguments.parameters.resolve()?;
+    let mut parameters = arguments.parameters.resolve()?;
     let lattice = arguments.lattice.as_deref().map(Lattice::new).transpose()?;
     let count = arguments.wave_numbers.unwrap_or(WAVE_NUMBERS);
     strip::check(count, arguments.wave_number)?;
-    let model = (&parameters, &effects);
     let ended = match (&lattice, arguments.ends) {
-        (Some(lattice), Some(ends)) => Some(EndedLattice::new(lattice, ends, model)?),
+        (Some(lattice), Some(ends)) => Some(EndedLattice::new(lattice, ends, (&parameters, &effects))?),
         _ => None,
     };
     let (data, place) = match (&lattice, &ended) {
@@ -96,7 +99,14 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         }
         None => vec![0],
     };
-    let mut out = arguments.common.output(&data.inputs)?;
+    let own = arguments.cells.of_data(&data, frames.first().copied().unwrap_or(0), &mut parameters)?;
+    if ended.is_some() && !own.is_empty() {
+        return Err(
+            Failure::new("cells that differ do not go with --ends").with_hint("leave one of them out")
+        );
+    }
+    let inputs = data.inputs.iter().map(|input| input.path.clone());
+    let mut out = arguments.common.output(inputs.chain(arguments.cells.files()))?;
     if arguments.frames.is_none() && data.frames() > 1 {
         run.warn(format!("of {} frames only the first is looked at; --frames chooses others", data.frames()));
     }
@@ -105,7 +115,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     for &frame in &frames {
         let at = || format!("{place}, frame {frame}");
         let held = |cell: usize| ended.as_ref().is_some_and(|ended| ended.is_held(cell));
-        let one = Solved::new((&data, frame), model, &request, held, &mut progress)
+        let one = Solved::new((&data, frame), (&parameters, &own, &effects), &request, held, &mut progress)
             .map_err(|failure| failure.at_unless_interrupted(at()))?;
         solved.push(one);
     }
@@ -133,6 +143,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     if arguments.modes && solved.len() > 1 {
         run.warn(format!("modes.npy holds the modes of frame {} only", frames[0]));
     }
+    let model = (&parameters, own.of_data(&data, frames[0]), &effects);
     let report = report::report(&run, &data, model, &request, &solved, (waves.as_ref(), strip));
     let json = report.to_json()?;
     out.write_text("report.json", &json)?;

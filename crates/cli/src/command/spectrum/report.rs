@@ -4,7 +4,7 @@ use super::frame::Solved;
 use super::lattice::Waves;
 use super::request::ModeRequest;
 use super::strip::{Bands, EndedLattice};
-use crate::arguments::{ChosenEffects, named};
+use crate::arguments::{ChosenEffects, OfCells, named};
 use crate::run::Run;
 use voronudge_io::DataSet;
 use voronudge_model::Parameters;
@@ -22,18 +22,19 @@ const MESH: usize = 60;
 pub(super) fn report(
     run: &Run,
     data: &DataSet,
-    (parameters, effects): (&Parameters<f64>, &ChosenEffects),
+    (parameters, own, effects): (&Parameters<f64>, OfCells, &ChosenEffects),
     request: &ModeRequest,
     solved: &[Solved],
     (waves, strip): (Option<&Waves>, Option<(&EndedLattice, &Bands)>),
 ) -> SpectrumReport {
     let length = solved.first().map_or(1.0, |one| one.length);
-    let theory = if effects.is_empty() { mean_field(parameters, length) } else { None };
+    let theory = if effects.is_empty() && own.is_empty() { mean_field(parameters, length) } else { None };
     SpectrumReport {
         run: run.record(Some(data)),
         units: Units { length: data.length_unit.clone(), time: data.time_unit.clone() },
         selection: request.record(),
         parameters: named(parameters),
+        cell_parameters: own.0,
         effects: effects.named(),
         mean_field: theory.map(|theory| MeanFieldRecord {
             phase: match theory.phase() {
