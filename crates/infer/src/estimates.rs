@@ -1,6 +1,7 @@
 //! From fitted coefficients and their information matrix to estimates and directions.
 
 use crate::quadratic::{Functional, Interval, Quadratic, Ratio};
+use crate::quantity::BASE;
 use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, ParameterEstimates, Quantity};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 
@@ -32,6 +33,33 @@ pub(crate) struct Fitted<'a> {
     pub centre: DVector<f64>,
 }
 
+/// The coefficients of the base model, as some cells have them, in terms of β: `c = origin + gradient β`.
+pub(crate) struct Rows {
+    origin: Vector4<f64>,
+    /// (4, free)
+    pub gradient: DMatrix<f64>,
+    /// Whether they are those of the base model itself, which bounds are about.
+    bounded: bool,
+}
+
+impl Rows {
+    /// At β.
+    pub fn coefficients(&self, free: &[f64]) -> Vector4<f64> {
+        let change = &self.gradient * DVector::from_column_slice(free);
+        self.origin + change.fixed_rows::<BASE>(0)
+    }
+
+    /// Their covariance, from that of β.
+    fn covariance(&self, free: &DMatrix<f64>) -> Matrix4<f64> {
+        let full = &self.gradient * free * self.gradient.transpose();
+        Matrix4::from_fn(|row, column| full[(row, column)])
+    }
+
+    fn functional(&self, index: usize) -> Functional {
+        Functional { constant: self.origin[index], gradient: self.gradient.row(index).transpose() }
+    }
+}
+
 /// Standard errors to first order, bounds apart; zero of what is held.
 pub(crate) struct StandardErrors {
     /// Of each quantity of [`Quantity::ALL`].
@@ -44,39 +72,54 @@ impl Fitted<'_> {
     /// Standard errors alone.
     pub fn standard_errors(&self) -> Result<StandardErrors, Error> {
         let free = crate::least_squares::invert(self.information.clone())?;
-        let covariance = self.space.covariance(&free);
+        let rows = self.rows([None; BASE]);
+        let covariance = rows.covariance(&free);
         let effects = self.space.base_dimension()..self.free.len();
         Ok(StandardErrors {
-            parameters: Quantity::ALL.map(|quantity| self.standard_error(quantity, &covariance)),
+            parameters: Quantity::ALL.map(|quantity| self.standard_error(quantity, &rows, &covariance)),
             effects: effects.map(|k| free[(k, k)].max(0.0).sqrt()).collect(),
         })
     }
 
     /// That of a quantity, from the covariance of the coefficients.
-    fn standard_error(&self, quantity: Quantity, covariance: &Matrix4<f64>) -> f64 {
-        if self.held(quantity) {
+    fn standard_error(&self, quantity: Quantity, rows: &Rows, covariance: &Matrix4<f64>) -> f64 {
+        if self.held(quantity, rows) {
             return 0.0;
         }
-        let gradient = quantity.gradient(self.space.coefficients(self.free).as_slice());
+        let gradient = quantity.gradient(rows.coefficients(self.free).as_slice());
         (gradient.transpose() * covariance * gradient).sum().max(0.0).sqrt()
+    }
+
+    /// The coefficients of cells in which coefficients of effects, by their number, are added to those of the base model.
+    pub fn rows(&self, added: [Option<usize>; BASE]) -> Rows {
+        let mut origin: Vector4<f64> = self.space.origin().fixed_rows::<BASE>(0).into();
+        let mut gradient = self.space.basis().rows(0, BASE).into_owned();
+        for (k, effect) in added.into_iter().enumerate().filter_map(|(k, effect)| Some((k, effect?))) {
+            origin[k] += self.space.origin()[BASE + effect];
+            let sum = gradient.row(k) + self.space.basis().row(BASE + effect);
+            gradient.set_row(k, &sum);
+        }
+        Rows { origin, gradient, bounded: added == [None; BASE] }
     }
 
     /// Parameters with likelihood-ratio intervals. Ratios have Fieller's, which need not be symmetric nor bounded; bounds
     /// shorten intervals to what they leave.
     pub fn estimates(&self) -> Result<ParameterEstimates, Error> {
+        self.estimates_of(&self.rows([None; BASE]))
+    }
+
+    /// The same of cells that have coefficients of their own.
+    pub fn estimates_of(&self, rows: &Rows) -> Result<ParameterEstimates, Error> {
         let quadratic = Quadratic::new(self.centre.clone(), self.information)?;
-        let covariance = self.space.covariance(&crate::least_squares::invert(self.information.clone())?);
-        let c = self.space.coefficients(self.free);
+        let covariance = rows.covariance(&crate::least_squares::invert(self.information.clone())?);
+        let c = rows.coefficients(self.free);
         let bounds = self.space.half_spaces();
-        let coefficient = |index: usize| Functional {
-            constant: self.space.origin()[index],
-            gradient: self.space.basis().row(index).transpose(),
-        };
+        let coefficient = |index: usize| rows.functional(index);
         // Where K_P ends at zero, ratios to it have no value; what their intervals say stays true.
         let no_scale = c[2].abs() <= ROUNDING * covariance[(2, 2)].max(0.0).sqrt();
         let estimate = |quantity: Quantity| {
             let value = if no_scale && quantity.is_ratio() { f64::NAN } else { quantity.of(c.as_slice()) };
-            if self.held(quantity) {
+            if self.held(quantity, rows) {
                 return Estimate { value, standard_error: 0.0, interval: [Some(value); 2] };
             }
             let interval = if quantity.is_ratio() {
@@ -90,10 +133,11 @@ impl Fitted<'_> {
                 quadratic.linear_interval(&coefficient(quantity.coefficient()), &bounds, CHI_SQUARED_95)
             };
             let Interval { lower, upper } = interval.unwrap_or(Interval { lower: None, upper: None });
-            let standard_error = self.standard_error(quantity, &covariance);
+            let standard_error = self.standard_error(quantity, rows, &covariance);
             let ends = [lower, upper];
             let stopped = |bound: &&f64| (value - **bound).abs() <= ROUNDING * standard_error;
-            match self.constraints.bounds.get(&quantity).and_then(|bounds| bounds.iter().find(stopped)) {
+            let own = self.constraints.bounds.get(&quantity).filter(|_| rows.bounded);
+            match own.and_then(|bounds| bounds.iter().find(stopped)) {
                 None => Estimate { value, standard_error, interval: ends },
                 Some(&bound) => {
                     let near = |end: &f64| (end - bound).abs() <= ROUNDING_OF_ENDS * standard_error;
@@ -129,14 +173,14 @@ impl Fitted<'_> {
     }
 
     /// Whether a quantity has one value throughout the space.
-    fn held(&self, quantity: Quantity) -> bool {
-        let c = self.space.coefficients(self.free);
+    fn held(&self, quantity: Quantity, rows: &Rows) -> bool {
+        let c = rows.coefficients(self.free);
         let mut normal = Vector4::ith(quantity.coefficient(), 1.0);
         if quantity.is_ratio() {
             normal *= c[2];
             normal[2] = -c[quantity.coefficient()];
         }
-        let along = self.space.in_free(&normal);
+        let along = rows.gradient.transpose() * normal;
         along.amax() <= 1e-12 * self.space.basis().amax() * normal.amax()
     }
 

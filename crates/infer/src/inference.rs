@@ -14,8 +14,8 @@ use crate::search::Watch;
 use crate::spread::{self, Differing};
 use crate::{
     CoefficientSpace, CrossValidation, Direction, Doubt, Error, Estimate, Examination, FrameResult,
-    Inference, KnownNoise, Method, Nmse, NoiseLevels, Observation, ParameterEstimates, Progress, Request,
-    Status,
+    Inference, KindEstimates, KnownNoise, Method, Nmse, NoiseLevels, Observation, ParameterEstimates,
+    Progress, Request, Status,
 };
 use nalgebra::DVector;
 use std::ops::ControlFlow;
@@ -134,6 +134,7 @@ pub fn infer(
     let mut inference = Inference {
         parameters: estimated.parameters,
         effects: estimated.effects,
+        kinds: estimated.kinds,
         directions: estimated.directions,
         model_parameters: parameters(&coefficients),
         naive: parameters(&space.coefficients(&naive)),
@@ -185,6 +186,7 @@ pub fn infer(
 pub(crate) struct Estimates {
     pub parameters: ParameterEstimates,
     pub effects: Vec<Estimate>,
+    pub kinds: Vec<KindEstimates>,
     pub directions: Vec<Direction>,
 }
 
@@ -210,6 +212,7 @@ pub(crate) fn estimates(
     Ok(Estimates {
         parameters: fitted.estimates()?,
         effects: fitted.effects()?,
+        kinds: request.kinds.as_ref().map_or(Ok(Vec::new()), |kinds| fitted.kinds(kinds))?,
         directions: fitted.directions()?,
     })
 }

@@ -1,7 +1,7 @@
 //! What a fit is asked.
 
 use crate::coefficients::PREFERRED_AREA;
-use crate::{CoefficientSpace, Constraints, Error, KnownNoise};
+use crate::{CoefficientSpace, Constraints, Error, Kinds, KnownNoise};
 use voronudge_model::{CellParameter, Structure};
 
 /// What to fit, and how.
@@ -11,6 +11,8 @@ pub struct Request {
     pub constraints: Constraints,
     /// The model: the terms of the base model, then effects.
     pub structure: Structure,
+    /// Labels whose cells have parameters of their own; their columns are part of the structure.
+    pub kinds: Option<Kinds>,
     /// Noise levels if known; otherwise they are estimated.
     pub noise: KnownNoise,
     /// How the objective is made small.
@@ -111,6 +113,7 @@ impl Request {
         Self {
             constraints,
             structure: Structure::base(PREFERRED_AREA),
+            kinds: None,
             noise: KnownNoise::default(),
             method: Method::default(),
             cross_validation: CrossValidation::Done,
@@ -121,6 +124,14 @@ impl Request {
             varied: Vec::new(),
             seed: 0,
         }
+    }
+
+    /// The same with labels whose cells have parameters of their own.
+    #[must_use]
+    pub fn with_kinds(mut self, kinds: Kinds) -> Self {
+        self.structure = self.structure.with(&kinds.columns());
+        self.kinds = Some(kinds);
+        self
     }
 
     /// The coefficients that are free.

@@ -1,7 +1,7 @@
 //! What a fit answers.
 
 use crate::spread::surroundings;
-use crate::{Doubt, Error, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
+use crate::{Doubt, Error, KindEstimates, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
 use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::{CellParameter, Parameters};
@@ -131,6 +131,8 @@ pub struct Inference {
     pub parameters: ParameterEstimates,
     /// Coefficients of effects, in the order of the structure.
     pub effects: Vec<Estimate>,
+    /// Parameters of the cells of each label, the reference first, where the request has kinds.
+    pub kinds: Vec<KindEstimates>,
     /// The fitted parameters as the model takes them.
     pub model_parameters: Parameters<f64>,
     /// Parameters of the naive fit.

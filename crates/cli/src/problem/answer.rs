@@ -2,7 +2,7 @@
 
 use super::Problem;
 use voronudge_geometry::Vector;
-use voronudge_infer::{Estimate, Inference, Quantity, Velocities};
+use voronudge_infer::{Estimate, Inference, ParameterEstimates, Quantity, Velocities};
 use voronudge_model::Parameters;
 
 /// No vector.
@@ -11,8 +11,13 @@ const NOWHERE: Vector<f64> = Vector::new(f64::NAN, f64::NAN);
 impl Problem {
     /// A parameter in the units of the data. What was given keeps its last digit.
     pub fn estimate(&self, result: &Inference, quantity: Quantity) -> Estimate {
-        let fitted = result.parameters.get(quantity).in_unit(self.scale.factor(quantity));
-        let given = self.constraints.fixed.get(&quantity);
+        self.in_units(&result.parameters, quantity)
+    }
+
+    /// The same of parameters of some of the cells.
+    pub fn in_units(&self, estimates: &ParameterEstimates, quantity: Quantity) -> Estimate {
+        let fitted = estimates.get(quantity).in_unit(self.scale.factor(quantity));
+        let given = self.constraints.fixed.get(&quantity).filter(|_| fitted.standard_error == 0.0);
         Estimate { value: given.copied().unwrap_or(fitted.value), ..fitted }
     }
 

@@ -52,6 +52,9 @@ impl Problem {
         self.observations = (self.observations.drain(..).zip(all))
             .map(|(observation, environment)| observation.within(Arc::new(environment)))
             .collect();
+        if let Some(tracks) = &mut self.tracks {
+            tracks.label(data, &self.frames);
+        }
         Ok(())
     }
 }

@@ -62,6 +62,15 @@ impl Tracks {
         let joined = movie.join();
         Ok(Self { movie, latent: None, cut: jumps.len(), joined })
     }
+
+    /// Gives the cells their labels: of each the first that it has in these frames.
+    pub(super) fn label(&mut self, data: &DataSet, frames: &[usize]) {
+        let mut labels = vec![None; if data.labels.is_some() { data.cells() } else { 0 }];
+        for of_frame in frames.iter().filter_map(|&frame| data.all_labels(frame)) {
+            labels.iter_mut().zip(of_frame).for_each(|(label, own)| *label = label.or(own));
+        }
+        self.movie = self.movie.clone().with_labels(labels);
+    }
 }
 
 impl Problem {

@@ -127,6 +127,7 @@ pub(crate) fn follow(
         spreads: Vec::new(),
         parameters: estimated.parameters,
         effects: estimated.effects,
+        kinds: estimated.kinds,
         directions: estimated.directions,
         model_parameters: parameters(&coefficients),
         naive: parameters(&space.coefficients(&found.naive)),

@@ -153,6 +153,8 @@ pub struct Movie {
     pub(super) stage: Vec<Vector<f64>>,
     /// What terms refer to: the middle of the box, or the mean place of the cells.
     pub(super) environment: Arc<Environment>,
+    /// Labels of the cells that the movie was made from, or none at all.
+    pub(super) labels: Vec<Option<i64>>,
 }
 
 impl Movie {
@@ -182,8 +184,18 @@ impl Movie {
         let usual = lengths[lengths.len() / 2];
         let stage = vec![Vector::zeros(); times.len()];
         let environment = Arc::new(Environment::default().about(middle(domain, frames)));
-        let mut movie =
-            Self { times, tracks, domain, field_of_view, drift, share: 0.0, usual, stage, environment };
+        let mut movie = Self {
+            times,
+            tracks,
+            domain,
+            field_of_view,
+            drift,
+            share: 0.0,
+            usual,
+            stage,
+            environment,
+            labels: Vec::new(),
+        };
         for frame in 1..movie.frames() {
             movie.stage[frame] = movie.stage[frame - 1] + movie.median_step(frame - 1);
         }
@@ -212,9 +224,31 @@ impl Movie {
         Self { share, ..self }
     }
 
+    /// Gives labels to the cells that the movie was made from; a track has that of its first name.
+    #[must_use]
+    pub fn with_labels(self, labels: Vec<Option<i64>>) -> Self {
+        Self { labels, ..self }
+    }
+
     /// What surrounds the cells.
     pub(crate) fn environment(&self) -> Arc<Environment> {
         self.environment.clone()
+    }
+
+    /// The same of the cells of some tracks, with their labels.
+    pub(super) fn environment_of(&self, tracks: &[u32]) -> Arc<Environment> {
+        if self.labels.is_empty() {
+            return self.environment.clone();
+        }
+        let label = |track: &u32| {
+            let (_, name) = self.tracks[*track as usize].names.first()?;
+            self.labels.get(*name).copied().flatten()
+        };
+        let labels = tracks.iter().map(label).collect();
+        // There is nothing else about cells that it could disagree with.
+        Environment::clone(&self.environment)
+            .with_labels(labels)
+            .map_or_else(|_| self.environment.clone(), Arc::new)
     }
 
     /// The share c of the way from a cell's site to its centroid at which its position is measured.

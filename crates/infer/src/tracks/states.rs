@@ -290,7 +290,7 @@ pub(super) fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
                 errors.push(movie.tracks[number].error(frame));
             }
         }
-        let mut cells = still(movie, frame, positions)?;
+        let mut cells = still(movie, frame, positions, &tracks)?;
         if errors.iter().any(|error| *error != 1.0) {
             cells = cells.with_position_errors(&errors);
         }
@@ -302,27 +302,33 @@ pub(super) fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
 }
 
 /// Cells of a movie without velocities.
-fn still(movie: &Movie, frame: usize, positions: Vec<Vector<f64>>) -> Result<Observation, Error> {
+fn still(
+    movie: &Movie,
+    frame: usize,
+    positions: Vec<Vector<f64>>,
+    tracks: &[u32],
+) -> Result<Observation, Error> {
     let velocities = vec![None; positions.len()];
     let cells = Observation::new(frame, positions, velocities, movie.domain, movie.field_of_view.clone())?;
-    Ok(cells.within(movie.environment()))
+    Ok(cells.within(movie.environment_of(tracks)))
 }
 
 /// The times between frames.
 fn intervals(movie: &Movie, instants: &[Instant]) -> Result<Vec<Interval>, Error> {
     let interval = |(frame, pair): (usize, &[Instant])| {
-        let (mut ends, mut positions) = (Vec::new(), Vec::new());
+        let (mut ends, mut positions, mut tracks) = (Vec::new(), Vec::new(), Vec::new());
         let after = indices(movie, pair[1].tracks.iter().copied());
         for (cell, track) in pair[0].tracks.iter().enumerate() {
             let next = after[*track as usize];
             if next != ABSENT {
                 ends.push([cell as u32, next]);
+                tracks.push(*track);
                 positions
                     .push(0.5 * (pair[0].cells.positions[cell] + pair[1].cells.positions[next as usize]));
             }
         }
         let led = vec![false; ends.len()];
-        Ok(Interval { halfway: still(movie, frame, positions)?, ends, led })
+        Ok(Interval { halfway: still(movie, frame, positions, &tracks)?, ends, led })
     };
     instants.par_windows(2).enumerate().map(interval).collect()
 }

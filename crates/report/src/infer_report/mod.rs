@@ -6,6 +6,7 @@
 mod activity;
 mod constraints;
 mod implied;
+mod kinds;
 mod latent;
 mod measured;
 mod measurement;
@@ -18,6 +19,7 @@ mod verdict;
 pub use activity::ActivityReport;
 pub use constraints::{GivenConstraints, GivenPrior};
 pub use implied::ImpliedByMeanField;
+pub use kinds::{KindDifference, KindReport};
 pub use latent::LatentCells;
 pub use measured::{MeasuredPositions, MeasuredWindow, MeasurementSource, PositionKind, TriedWindow};
 pub use measurement::{Measurement, RegionSource, SeenRegion};
@@ -95,6 +97,8 @@ pub struct InferReport {
     pub activity: Option<ActivityReport>,
     /// How much cells differ, where it was asked for.
     pub spreads: Vec<SpreadReport>,
+    /// The cells of each label, where it was asked for; the first are those that others are compared with.
+    pub by_label: Vec<KindReport>,
     /// Moduli and phase diffusivities that the parameters imply by the mean-field theory; `null` where it has none.
     pub implied_moduli: Option<ImpliedByMeanField>,
     /// The estimate at the measured positions.

@@ -2,6 +2,7 @@
 
 use serde::Serialize;
 
+use super::kinds::{self, KindRow};
 use super::parameter_table::{TableRow, activity_rows, parameter_rows};
 use super::player::Player;
 use super::prospects::ProspectsView;
@@ -97,6 +98,8 @@ impl InferPage<'_> {
                  determine only part of it.",
             ),
             spread_figures: self.spreads.iter().map(SpreadView::histogram).collect(),
+            kinds: kinds::rows(&report.by_label),
+            kind_figure: kinds::figure(&report.by_label),
             player: self.movie.map(|movie| Player::new(movie, movie.still(), CELLS)).transpose()?,
             panels: self.panels(),
         };
@@ -210,6 +213,8 @@ struct Context<'a> {
     scatter_figure: Figure,
     nudge_figure: Figure,
     spread_figures: Vec<Figure>,
+    kinds: Vec<KindRow>,
+    kind_figure: Option<Figure>,
     player: Option<Player>,
     panels: Vec<Panel>,
 }

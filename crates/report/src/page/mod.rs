@@ -6,6 +6,7 @@
 mod directions;
 mod discover;
 mod infer;
+mod kinds;
 mod moduli;
 mod parameter_table;
 mod phase_diagram;

@@ -101,7 +101,7 @@ fn verdict(answer: Answer) -> Verdict {
 fn model_fit(stated: Stated, prepared: &Problem, fitted: &Fitted, units: &Units) -> ModelFit {
     let result = &fitted.inference;
     ModelFit {
-        parameters: outcome::parameters(prepared, result, units),
+        parameters: outcome::parameters(prepared, &result.parameters, units),
         nmse: nmse(prepared, result, fitted.held_out),
         noise_floor_nmse: result.nmse.noise_floor,
         noise: outcome::noise(stated, prepared, result),

@@ -7,8 +7,8 @@ use crate::problem::Problem;
 use std::collections::BTreeMap;
 use voronudge_geometry::{Certainty, Visibility};
 use voronudge_infer::{
-    Constraints, Estimate, Inference, Method, NoiseSource as Source, Observation, Prior, Profile,
-    Quantity as What, Status, Velocities,
+    Constraints, Estimate, Inference, Method, NoiseSource as Source, Observation, ParameterEstimates, Prior,
+    Profile, Quantity as What, Status, Velocities,
 };
 use voronudge_io::DataSet;
 use voronudge_report::Units;
@@ -43,7 +43,7 @@ pub(crate) fn mean_removed(prepared: &Problem) -> MeanRemoved {
 }
 
 /// The parameters in the units of the data.
-pub(crate) fn parameters(prepared: &Problem, result: &Inference, units: &Units) -> Parameters {
+pub(crate) fn parameters(prepared: &Problem, estimates: &ParameterEstimates, units: &Units) -> Parameters {
     let parameter = |quantity: What, estimate: &Estimate, unit: String| {
         let [low, high] = estimate.interval;
         // What does not vary is held, by itself or by others together.
@@ -53,11 +53,11 @@ pub(crate) fn parameters(prepared: &Problem, result: &Inference, units: &Units) 
             ci95: (!fixed).then(|| [low.unwrap_or(f64::NEG_INFINITY), high.unwrap_or(f64::INFINITY)]),
             fixed,
             unit,
-            words: words::parameter(quantity, result.parameters.get(quantity)),
+            words: words::parameter(quantity, estimates.get(quantity)),
         }
     };
     let in_units =
-        |quantity: What| parameter(quantity, &prepared.estimate(result, quantity), unit(quantity, units));
+        |quantity: What| parameter(quantity, &prepared.in_units(estimates, quantity), unit(quantity, units));
     Parameters {
         K_A: in_units(What::AreaElasticity),
         K_P: in_units(What::PerimeterElasticity),
@@ -71,11 +71,7 @@ pub(crate) fn parameters(prepared: &Problem, result: &Inference, units: &Units) 
         },
         alpha: in_units(What::Chirality),
         K_P_alpha: in_units(What::ChiralCoefficient),
-        shape_index: parameter(
-            What::PreferredPerimeter,
-            &result.parameters.preferred_perimeter,
-            String::new(),
-        ),
+        shape_index: parameter(What::PreferredPerimeter, &estimates.preferred_perimeter, String::new()),
     }
 }
 

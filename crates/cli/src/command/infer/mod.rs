@@ -2,6 +2,7 @@
 
 mod activity;
 mod answers;
+mod kinds;
 mod method;
 mod page;
 mod questions;
@@ -28,6 +29,7 @@ use questions::UncertaintyArguments;
 use voronudge_infer::{Activity, Drives, prospects};
 use voronudge_io::Difference;
 use voronudge_model::CellParameter;
+use voronudge_model::effect::LabelledParameter;
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
 ///
@@ -57,6 +59,9 @@ pub(crate) struct Arguments {
     /// Let cells differ in a parameter: alpha. For velocities of cells.
     #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
     vary: Vec<CellParameter>,
+    /// Let the cells of each label have parameters of their own: P_0,alpha; with these two also K_P.
+    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = kinds::parameter)]
+    by_label: Vec<LabelledParameter>,
     #[command(flatten)]
     export: ExportArguments,
     #[command(flatten)]
@@ -157,11 +162,15 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     }
     spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
+    kinds::check(&arguments.by_label, &prepared, &data, !arguments.vary.is_empty())?;
     let mut out = out.begin()?;
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
     let understood = prepared.understand(&mut |state| progress.tell(state));
     measurement::caution(&prepared, &mut run);
+    if understood.is_ok() {
+        kinds::ask(&arguments.by_label, &mut prepared, &data)?;
+    }
     let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
     let answered = fitted.and_then(|(result, tracked)| {
         let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;

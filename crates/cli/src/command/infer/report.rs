@@ -2,7 +2,7 @@
 
 use super::questions::Answers;
 use super::verdict::verdict;
-use super::{answers, spreads};
+use super::{answers, kinds, spreads};
 use crate::command::fit::flow::described;
 use crate::command::fit::{Stated, implied, outcome, prospects};
 use crate::problem::Problem;
@@ -24,7 +24,7 @@ pub(super) fn report(
     let units = outcome::units(data);
     let scale = &prepared.scale;
     let naive = &result.naive;
-    let parameters = outcome::parameters(prepared, result, &units);
+    let parameters = outcome::parameters(prepared, &result.parameters, &units);
     let nmse = nmse(prepared, result);
     let verdict = verdict(result, &nmse, &parameters);
     // Parameters of a model that explains nothing are not worth more.
@@ -42,6 +42,7 @@ pub(super) fn report(
         parameters,
         activity,
         spreads: spreads::report(result),
+        by_label: kinds::report(prepared, result, data, &units),
         implied_moduli: implied::implied(prepared, result, &units),
         naive: NaiveParameters {
             K_A: naive.area_elasticity * scale.factor(What::AreaElasticity),

@@ -5,6 +5,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_infer::Quantity;
 use voronudge_report::InferReport;
+use voronudge_report::infer_report::Parameter;
 use voronudge_report::numbers::{interval_text, significant};
 
 /// What the terminal shows.
@@ -70,6 +71,14 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
     }
     for spread in &report.spreads {
         let _ = writeln!(text, "{}", spread.words);
+    }
+    for kind in &report.by_label {
+        let told = |parameter: &Parameter| match parameter.interval() {
+            Some(ends) => interval_text(parameter.value, ends).join(", "),
+            None => format!("{}, fixed", significant(parameter.value, 4)),
+        };
+        let [shape, alpha] = [&kind.parameters.shape_index, &kind.parameters.alpha].map(told);
+        let _ = writeln!(text, "{}\n    P_0 / l_0  {shape}\n    alpha      {alpha}", kind.words);
     }
     if !is_finding {
         let _ = writeln!(text, "in brackets: a model that explains nothing has no parameters to be found");
