@@ -1,6 +1,7 @@
 //! Statistical studies: longer than tests, with tables for the documentation.
 
 mod advice;
+mod by_label;
 mod channel;
 mod coverage;
 mod discover;
@@ -14,6 +15,8 @@ mod phases;
 mod pinch_relaxation;
 pub(crate) mod pinching;
 mod recovery;
+mod rheology;
+mod scene;
 mod seeds;
 mod spectrum;
 mod spreads;
@@ -45,7 +48,7 @@ pub struct Arguments {
     /// Only this part (discover).
     #[arg(long, value_enum)]
     part: Option<discover::Part>,
-    /// Only settings whose name contains one of these (advice, coverage, discover, spreads).
+    /// Only settings whose name contains one of these (advice, coverage, discover, rheology, spreads).
     #[arg(long, value_name = "TEXT")]
     only: Vec<String>,
     /// Noise levels are estimated, not given (discover).
@@ -93,6 +96,10 @@ enum Study {
     Measured,
     /// Cells that differ in a parameter.
     Spreads,
+    /// Kinds of cells told by labels.
+    ByLabel,
+    /// Moduli of fitted tissues: whether their intervals cover.
+    Rheology,
     /// What to measure next: foreseen, and done.
     Advice,
     /// What fitted models forecast and simulate, beside the truth.
@@ -120,6 +127,13 @@ pub fn run(arguments: &Arguments) -> Outcome {
             let searching = arguments.measured.discover;
             spreads::run(arguments.seeds, arguments.cells, &arguments.only, searching)
         }
+        Study::ByLabel => {
+            by_label::run(arguments.seeds, arguments.measured.seed, &arguments.folder("by-label"))
+        }
+        Study::Rheology => {
+            let out = arguments.folder("rheology");
+            rheology::run(arguments.seeds, arguments.measured.seed, &arguments.only, &out)
+        }
         Study::Forecast => forecast::run(arguments.seeds, arguments.cells),
         Study::Advice => advice::run(arguments.seeds, &arguments.only),
         Study::Discover => discover::run(&arguments.plan()),
@@ -127,6 +141,11 @@ pub fn run(arguments: &Arguments) -> Outcome {
 }
 
 impl Arguments {
+    /// Where a study of the program keeps its sets.
+    fn folder(&self, name: &str) -> PathBuf {
+        self.measured.folder(name)
+    }
+
     /// How many tissues, and the seed that theirs are made from.
     fn replicas(&self) -> Replicas {
         Replicas { seed: self.measured.seed, count: self.seeds }

@@ -28,6 +28,7 @@ mod inferences;
 mod information;
 #[cfg(unix)]
 mod interruption;
+mod kinds;
 mod layouts;
 mod limits;
 mod measured_sets;

@@ -74,7 +74,7 @@ fn assert_killed_and_resumed_is_the_same(line: &str) {
 #[test]
 fn a_killed_run_goes_on_to_the_same_bytes() {
     assert_killed_and_resumed_is_the_same(
-        "simulate --cells 200 --time 20 --dt 0.01 --frames 150 --alpha 1 --seed 5 --threads 1",
+        "simulate --cells 200 --time 12 --dt 0.01 --frames 90 --alpha 1 --seed 5 --threads 1",
     );
 }
 

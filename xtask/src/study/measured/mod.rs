@@ -60,6 +60,13 @@ pub struct Arguments {
     movie: usize,
 }
 
+impl Arguments {
+    /// The folder for sets, in that of builds if none is given.
+    pub fn folder(&self, name: &str) -> PathBuf {
+        self.out.clone().unwrap_or_else(|| crate::root().join("target").join(name))
+    }
+}
+
 fn class(name: &str) -> Result<Class, String> {
     let known = || CLASSES.map(|class| class.name).join(", ");
     Class::named(name).ok_or_else(|| format!("there are {}", known()))
@@ -78,7 +85,7 @@ fn share(text: &str) -> Result<f64, String> {
 /// Runs the study on sets of every class, or hides detections of a measured one.
 pub fn run(arguments: &Arguments, sets: u64, cells: Option<usize>) -> Outcome {
     let program = Program::new(arguments.program.clone(), &arguments.flags)?;
-    let folder = arguments.out.clone().unwrap_or_else(|| crate::root().join("target/measured"));
+    let folder = arguments.folder("measured");
     if let (Some(share), Some(data)) = (arguments.hidden, &arguments.data) {
         let movie = hiding::Movie::read(data, arguments.first_frame, arguments.movie)?;
         return hiding::run(&program, &movie, share, arguments.seed..arguments.seed + sets, &folder);
