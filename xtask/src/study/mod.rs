@@ -21,6 +21,7 @@ mod seeds;
 mod spectrum;
 mod spreads;
 mod transport;
+mod wall_rule;
 
 pub(crate) use flows::{parameters, random};
 pub(crate) use measured::Program;
@@ -86,6 +87,8 @@ enum Study {
     Channel,
     /// Edge currents at torque-free walls.
     Edge,
+    /// Edge currents at walls as here and as in the paper.
+    WallRule,
     /// Flow across a density gradient.
     Pinching,
     /// What becomes of it in a liquid.
@@ -119,6 +122,7 @@ pub fn run(arguments: &Arguments) -> Outcome {
         Study::Lyapunov => phases::lyapunov(arguments.seeds),
         Study::Channel => channel::run(arguments.replicas()),
         Study::Edge => flows::edge(arguments.replicas()),
+        Study::WallRule => wall_rule::run(arguments.replicas()),
         Study::Pinching => pinching::run(arguments.replicas()),
         Study::PinchRelaxation => pinch_relaxation::run(arguments.replicas()),
         Study::Transport => transport::run(arguments.replicas()),

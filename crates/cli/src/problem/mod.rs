@@ -43,8 +43,8 @@ use std::ops::ControlFlow;
 use tracks::jumps;
 use voronudge_geometry::Domain;
 use voronudge_infer::{
-    Completion, Constraints, Inference, KnownMeasurement, Measurement, Observation, Progress, Request, Scale,
-    Tracked, Window, complete, infer, infer_tracks, measure,
+    Completion, Constraints, Inference, Kinds, KnownMeasurement, Measurement, Observation, Progress, Request,
+    Scale, Tracked, Window, complete, infer, infer_tracks, measure,
 };
 use voronudge_io::{DataSet, Snapshot};
 
@@ -206,18 +206,51 @@ impl Problem {
     /// # Errors
     /// Those of [`complete`], [`measure`] and their like for tracks.
     pub fn understand(&mut self, observe: Observer<'_>) -> Result<(), voronudge_infer::Error> {
+        self.find_cells(observe)?;
+        self.determine(observe)
+    }
+
+    /// Finds cells that were not detected, the first part of [`understand`](Self::understand); of a flow field all of it.
+    ///
+    /// # Errors
+    /// Those of the fits.
+    pub fn find_cells(&mut self, observe: Observer<'_>) -> Result<(), voronudge_infer::Error> {
         if let Some(mut tracks) = self.tracks.take() {
-            let understood = self.understand_tracks(&mut tracks, observe);
+            let found = self.complete_tracks(&mut tracks, observe);
             self.tracks = Some(tracks);
-            return understood;
+            return found;
         }
         if self.velocities.flow().is_some() {
             self.measure(observe)?;
-            self.complete(observe)
-        } else {
-            self.complete(observe)?;
-            self.measure(observe)
         }
+        self.complete(observe)
+    }
+
+    /// Determines how cells were measured, the second part of [`understand`](Self::understand).
+    ///
+    /// # Errors
+    /// Those of the fits.
+    pub fn determine(&mut self, observe: Observer<'_>) -> Result<(), voronudge_infer::Error> {
+        if let Some(mut tracks) = self.tracks.take() {
+            let determined = self.measure_tracks(&mut tracks, observe);
+            self.tracks = Some(tracks);
+            return determined;
+        }
+        match self.velocities.flow() {
+            Some(_) => Ok(()),
+            None => self.measure(observe),
+        }
+    }
+
+    /// Lets the cells of each label have parameters of their own, before it is determined how they were measured: the measurement would take the
+    /// blame for differences.
+    ///
+    /// # Errors
+    /// [`Error::Surroundings`].
+    pub fn distinguish(&mut self, kinds: Kinds, data: &DataSet) -> Result<(), Error> {
+        self.surround(data)?;
+        self.request = self.request.clone().with_kinds(kinds);
+        Ok(())
     }
 
     /// Completes the frames, if that was not said to be needless.

@@ -74,8 +74,9 @@ impl Tracks {
 }
 
 impl Problem {
-    pub(super) fn understand_tracks(
-        &mut self,
+    /// Finds cells of tracks that were not detected, if that was not said to be needless.
+    pub(super) fn complete_tracks(
+        &self,
         tracks: &mut Tracks,
         observe: Observer<'_>,
     ) -> Result<(), voronudge_infer::Error> {
@@ -83,6 +84,15 @@ impl Problem {
             let (movie, latent) = complete_tracks(&tracks.movie, &self.request, missed_rate, observe)?;
             (tracks.movie, tracks.latent) = (movie, Some(latent));
         }
+        Ok(())
+    }
+
+    /// Determines how the cells of tracks were measured.
+    pub(super) fn measure_tracks(
+        &mut self,
+        tracks: &mut Tracks,
+        observe: Observer<'_>,
+    ) -> Result<(), voronudge_infer::Error> {
         let (movie, measurement) = measure_tracks(&tracks.movie, &self.request, &self.known, observe)?;
         tracks.movie = movie;
         self.measurement = measurement;

@@ -36,15 +36,15 @@ fn refused(problem: impl Into<String>, hint: &str) -> Failure {
     Failure::new(problem).with_hint(hint)
 }
 
-/// Refuses what does not go with kinds.
+/// The kinds asked for, whose reference is the most frequent label; refuses what does not go with them.
 pub(super) fn check(
     asked: &[LabelledParameter],
     prepared: &Problem,
     data: &DataSet,
     varied: bool,
-) -> Result<(), Failure> {
+) -> Result<Option<Kinds>, Failure> {
     if asked.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
     let has = |parameter| asked.contains(&parameter);
     let whole = has(LabelledParameter::Adhesion) && has(LabelledParameter::Chirality);
@@ -69,7 +69,7 @@ pub(super) fn check(
         _ if matches!(prepared.request.method, Method::Descent { .. }) => {
             "--by-label does not go with --method descent"
         }
-        _ => return Ok(()),
+        _ => return of_labels(asked, &counts(prepared, data)).map(Some),
     };
     Err(refused(problem, "leave one of the two out"))
 }
@@ -85,16 +85,7 @@ fn counts(prepared: &Problem, data: &DataSet) -> BTreeMap<i64, usize> {
     counts
 }
 
-/// Lets the cells of each label have parameters of their own; those of the most frequent one are the model's.
-pub(super) fn ask(
-    asked: &[LabelledParameter],
-    prepared: &mut Problem,
-    data: &DataSet,
-) -> Result<(), Failure> {
-    if asked.is_empty() {
-        return Ok(());
-    }
-    let counts = counts(prepared, data);
+fn of_labels(asked: &[LabelledParameter], counts: &BTreeMap<i64, usize>) -> Result<Kinds, Failure> {
     if let Some((label, count)) = counts.iter().find(|(_, count)| **count < FEWEST) {
         let problem =
             format!("--by-label: of label {label} there are only {count} cells in all frames together");
@@ -106,11 +97,8 @@ pub(super) fn ask(
         return Err(refused(problem, "give labels that tell a few kinds of cells apart"));
     }
     let most = counts.iter().rev().max_by_key(|(_, count)| **count).map(|(label, _)| *label);
-    let others = counts.into_keys().filter(|label| Some(*label) != most).collect();
-    prepared.surround(data)?;
-    let kinds = Kinds { reference: most.unwrap_or_default(), others, parameters: asked.to_vec() };
-    prepared.request = prepared.request.clone().with_kinds(kinds);
-    Ok(())
+    let others = counts.keys().copied().filter(|label| Some(*label) != most).collect();
+    Ok(Kinds { reference: most.unwrap_or_default(), others, parameters: asked.to_vec() })
 }
 
 /// The kinds for the report.

@@ -162,15 +162,16 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     }
     spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
     prepared.request.varied.clone_from(&arguments.vary);
-    kinds::check(&arguments.by_label, &prepared, &data, !arguments.vary.is_empty())?;
+    let kinds = kinds::check(&arguments.by_label, &prepared, &data, !arguments.vary.is_empty())?;
     let mut out = out.begin()?;
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
-    let understood = prepared.understand(&mut |state| progress.tell(state));
-    measurement::caution(&prepared, &mut run);
-    if understood.is_ok() {
-        kinds::ask(&arguments.by_label, &mut prepared, &data)?;
+    let found = prepared.find_cells(&mut |state| progress.tell(state));
+    if let (Ok(()), Some(kinds)) = (&found, kinds) {
+        prepared.distinguish(kinds, &data)?;
     }
+    let understood = found.and_then(|()| prepared.determine(&mut |state| progress.tell(state)));
+    measurement::caution(&prepared, &mut run);
     let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
     let answered = fitted.and_then(|(result, tracked)| {
         let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
