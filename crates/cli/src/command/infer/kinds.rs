@@ -144,10 +144,11 @@ fn in_words(own: &KindEstimates, reference: Option<i64>, (p, differs): (f64, boo
     let Some(reference) = reference.filter(|reference| *reference != own.label) else {
         return format!("cells of label {}: the parameters of the model", own.label);
     };
-    let p = significant(p, 2);
+    // Below rounding it says no more.
+    let p = if p < 1e-15 { "p < 10⁻¹⁵".into() } else { format!("p = {}", significant(p, 2)) };
     if !differs {
         return format!(
-            "cells of label {} are not seen to differ from those of label {reference} (p = {p})",
+            "cells of label {} are not seen to differ from those of label {reference} ({p})",
             own.label
         );
     }
@@ -159,9 +160,9 @@ fn in_words(own: &KindEstimates, reference: Option<i64>, (p, differs): (f64, boo
         })
         .collect();
     match said.as_slice() {
-        [] => format!("cells of label {} differ from those of label {reference} (p = {p})", own.label),
+        [] => format!("cells of label {} differ from those of label {reference} ({p})", own.label),
         _ => format!(
-            "cells of label {} differ from those of label {reference}: {} (p = {p})",
+            "cells of label {} differ from those of label {reference}: {} ({p})",
             own.label,
             said.join(", ")
         ),
