@@ -5,13 +5,13 @@ const LEFT_OUT: &str = "…";
 /// What varies from run to run: the number before these words.
 const VARIES: [&str; 1] = [" steps per second"];
 
-/// The first line of a page that is not printed as it stands: its place, and what is printed there.
-pub fn difference(page: &[&str], printed: &str) -> Option<(usize, String)> {
+/// The first line of a page that is not printed as it stands: its place, and what is printed from there on.
+pub fn difference(page: &[&str], printed: &str) -> Option<(usize, Vec<String>)> {
     let first = page.iter().position(|line| !line.trim().is_empty())?;
     let (page, printed) =
         (trimmed(page.iter().copied()), trimmed(printed.lines().filter(|line| !is_progress(line))));
     let (place, came) = first_difference(&page, &printed)?;
-    Some((first + place, printed.get(came).cloned().unwrap_or_else(|| "nothing more".into())))
+    Some((first + place, printed.get(came..).unwrap_or_default().to_vec()))
 }
 
 /// Whether a command prints these words, line breaks counted as blanks.
@@ -20,9 +20,13 @@ pub fn has_words(printed: &str, words: &str) -> bool {
     joined(printed).contains(&joined(words))
 }
 
-/// How far a command has come, as told in the course of its work.
+/// How far a command has come, as told in the course of its work: `fit 3/90, 5s elapsed, 2s left`.
 fn is_progress(line: &str) -> bool {
-    line.contains(" elapsed") && line.split([' ', ',']).any(|word| word.split_once('/').is_some_and(is_count))
+    let told = line.split_once(" elapsed").and_then(|(before, _)| before.rsplit_once(", "));
+    told.is_some_and(|(stage, time)| {
+        let count = stage.rsplit(' ').next().and_then(|word| word.split_once('/'));
+        time.starts_with(|digit: char| digit.is_ascii_digit()) && count.is_some_and(is_count)
+    })
 }
 
 fn is_count((done, total): (&str, &str)) -> bool {
@@ -81,14 +85,14 @@ mod tests {
     use super::*;
 
     fn place(page: &[&str], printed: &str) -> Option<(usize, String)> {
-        difference(page, printed)
+        difference(page, printed).map(|(place, came)| (place, came.join("/")))
     }
 
     #[test]
     fn blocks_agree_line_by_line() {
         assert_eq!(place(&["", "a", "", "b", ""], "a  \n\nb\n"), None);
         assert_eq!(place(&["", "a", "b"], "a\nc\n"), Some((2, "c".into())));
-        assert_eq!(place(&["a", "b"], "a\n"), Some((1, "nothing more".into())));
+        assert_eq!(place(&["a", "b"], "a\n"), Some((1, String::new())));
         assert_eq!(place(&["a"], "a\nb\n"), Some((1, "b".into())));
         assert_eq!(place(&[], "a\n"), None);
     }
@@ -99,7 +103,7 @@ mod tests {
         assert_eq!(place(&["a", "…", "b"], "a\nb\n"), None);
         assert_eq!(place(&["…", "b", "…"], "a\nb\nc\nb\n"), None);
         assert_eq!(place(&["a", "…", "c", "d"], "a\nb\nc\ne\n"), Some((3, "e".into())));
-        assert_eq!(place(&["a", "…", "d"], "b\nd\n"), Some((0, "b".into())));
+        assert_eq!(place(&["a", "…", "d"], "b\nd\n"), Some((0, "b/d".into())));
     }
 
     #[test]

@@ -81,7 +81,9 @@ fn scan(letters: &[char], begin: usize) -> Option<(Printed, usize)> {
         end += 1;
     }
     let decimals = after_point.map_or(0, |whole| digits.len() - whole) as i32;
-    let mut mantissa: f64 = digits.parse().ok()?;
+    if digits.is_empty() {
+        return None;
+    }
     let mut exponent = -decimals;
     if matches!(at(end), 'e' | 'E')
         && let Some((power, after)) = whole(letters, end + 1)
@@ -94,12 +96,10 @@ fn scan(letters: &[char], begin: usize) -> Option<(Printed, usize)> {
         && after_point.is_none()
         && let Some((power, after)) = raised(letters, end)
     {
-        (mantissa, exponent, end) = (1.0, power, after);
+        (digits, exponent, end) = ("1".into(), power, after);
     }
-    // 10^−k is less exact than 1/10^k.
-    let power = 10.0_f64.powi(exponent.abs());
-    let scaled = |value: f64| if exponent < 0 { value / power } else { value * power };
-    Some((Printed { value: sign * scaled(mantissa), unit: scaled(1.0) }, end))
+    let scaled = |digits: &str| format!("{digits}e{exponent}").parse::<f64>().ok();
+    Some((Printed { value: sign * scaled(&digits)?, unit: scaled("1")? }, end))
 }
 
 /// A whole number with its sign.

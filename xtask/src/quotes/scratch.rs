@@ -4,7 +4,7 @@ use crate::program;
 use std::error::Error;
 use std::fs::{self, File};
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::{Component, Path, PathBuf};
 use std::process::{Child, Command, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
@@ -88,12 +88,23 @@ impl Scratch {
             }
             if seconds > limit || begun.elapsed().as_secs_f64() > PATIENCE * limit {
                 stop(&mut child)?;
+                self.clear(&out(line))?;
                 return Ok(Ran::TooLong);
             }
             sleep(LOOK);
         };
         let text = String::from_utf8_lossy(&fs::read(&path)?).into_owned();
         Ok(Ran::Ended(Printed { text, code: status.code(), seconds }))
+    }
+
+    /// Removes a folder that a command which was stopped had begun, lest the next find it.
+    fn clear(&self, name: &str) -> io::Result<()> {
+        let is_within = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+        let folder = self.folder.path().join(name);
+        if is_within && !name.is_empty() && folder.symlink_metadata().is_ok_and(|found| found.is_dir()) {
+            fs::remove_dir_all(folder)?;
+        }
+        Ok(())
     }
 }
 

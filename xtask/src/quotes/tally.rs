@@ -54,6 +54,17 @@ impl Tally {
         );
     }
 
+    /// Compares lines of a page, of which the first stands at a place, with what a command prints.
+    fn lines(&mut self, stand: &[&str], printed: &str, (page, first): (&Path, usize), command: &str) {
+        let difference = compare::difference(stand, printed);
+        self.compare(difference.is_none(), || {
+            let (at, came) = difference.unwrap_or_default();
+            let stands = stand.get(at).copied().unwrap_or(NOTHING);
+            let came = if came.is_empty() { NOTHING.into() } else { came.join("\n    ") };
+            unlike(&place(page, first + at), stands, &came, command)
+        });
+    }
+
     fn compare(&mut self, agrees: bool, otherwise: impl FnOnce() -> String) {
         if agrees {
             self.agreed += 1;
@@ -108,8 +119,6 @@ impl Work<'_> {
             Ok(printed) => printed,
             Err(why) => {
                 tally.out.push(format!("{}: {command}: {why}", place(page, *line)));
-                // What it left must not be in the way of others.
-                std::fs::remove_dir_all(scratch.path().join(scratch::out(command))).ok();
                 return Ok(false);
             }
         };
@@ -120,15 +129,7 @@ impl Work<'_> {
             }
             return Ok(true);
         }
-        let difference = compare::difference(below, &printed.text);
-        let told = |(at, came): (usize, String)| {
-            let stands = below.get(at).copied().unwrap_or("nothing more");
-            format!(
-                "{}: stands there\n    {stands}\n  came out\n    {came}\n  of\n    {command}",
-                place(page, line + 1 + at)
-            )
-        };
-        tally.compare(difference.is_none(), || difference.map(told).unwrap_or_default());
+        tally.lines(below, &printed.text, (page, line + 1), command);
         Ok(true)
     }
 
@@ -170,13 +171,8 @@ impl Work<'_> {
                 .as_ref()
                 .map(|file| std::fs::read_to_string(scratch.path().join(file)))
                 .transpose()?;
-            let difference = compare::difference(&block.lines, is.as_ref().unwrap_or(&last));
-            let told = |(at, came): (usize, String)| {
-                let stands = block.lines.get(at).copied().unwrap_or("nothing more");
-                let place = place(copy.page(run), block.line + at);
-                format!("{place}: stands there\n    {stands}\n  came out\n    {came}\n  of\n    {typed}")
-            };
-            tally.compare(difference.is_none(), || difference.map(told).unwrap_or_default());
+            let printed = is.as_ref().unwrap_or(&last);
+            tally.lines(&block.lines, printed, (copy.page(run), block.line), &typed);
         }
         for name in &run.figure {
             self.figure(name, run, scratch.path().join(&out).as_path(), &mut tally)?;
@@ -227,15 +223,8 @@ impl Work<'_> {
             page::places(list::text_of(self.pages, &run.page), &sought).first().copied().unwrap_or_default();
         let (stands, came) = (sentences(&stands), sentences(&came));
         for at in 0..stands.len().max(came.len()) {
-            let of = |all: &[String]| all.get(at).cloned().unwrap_or_else(|| "nothing more".into());
-            tally.compare(stands.get(at) == came.get(at), || {
-                let place = place(&run.page, line);
-                format!(
-                    "{place}: stands there\n    {}\n  came out\n    {}\n  of\n    {sought}",
-                    of(&stands),
-                    of(&came)
-                )
-            });
+            let [stands, came] = [&stands, &came].map(|all| all.get(at).map_or(NOTHING, String::as_str));
+            tally.compare(stands == came, || unlike(&place(&run.page, line), stands, came, &sought));
         }
         Ok(())
     }
@@ -255,6 +244,8 @@ impl Work<'_> {
     }
 }
 
+/// What stands beyond the end.
+const NOTHING: &str = "(nothing more)";
 /// What is kept of figures.
 const RECORD: &str = "record.json";
 
@@ -266,6 +257,10 @@ fn sentences(entry: &Value) -> Vec<String> {
         Value::Object(all) => all.values().flat_map(sentences).collect(),
         _ => Vec::new(),
     }
+}
+
+fn unlike(place: &str, stands: &str, came: &str, command: &str) -> String {
+    format!("{place}: stands there\n    {stands}\n  came out\n    {came}\n  of\n    {command}")
 }
 
 fn place(page: &Path, line: usize) -> String {
@@ -280,4 +275,52 @@ fn has_worked(printed: &Printed) -> bool {
 fn last_line(printed: &Printed) -> String {
     let error = printed.text.lines().find(|line| line.starts_with("error")).or(printed.text.lines().last());
     format!("ended with {:?}: {}", printed.code, error.unwrap_or_default())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::path::PathBuf;
+
+    /// What comes of a page and a list, with the program itself.
+    fn tally(page: &str, list: &str) -> Tally {
+        let root = crate::root();
+        let mut pages = Pages::read(&root).unwrap();
+        pages.texts.insert("a.md".into(), page.into());
+        let list: List = toml::from_str(&format!("brought = [\"my-tissue\"]\n{list}")).unwrap();
+        let work =
+            Work { root: &root, pages: &pages, list: &list, limit: 60.0, brought: None, is_asked: &|_| true };
+        let mut tally = work.consoles(&PathBuf::from("a.md")).unwrap();
+        list.run.iter().for_each(|run| tally.add(work.run(run).unwrap()));
+        tally
+    }
+
+    const COMMAND: &str = "voronudge evaluate fixtures/reference-small --alpha 0 --out out";
+
+    #[test]
+    fn numbers_that_are_off_are_told_with_their_place() {
+        let list = format!(
+            "[[run]]\npage = \"a.md\"\ncommands = [\"{COMMAND}\"]\nquote = [\
+             {{ words = \"{{20}} or {{21}} cells\", from = ['[/cells/present/0]', '[/cells/present/0]'] }},\
+             {{ words = \"20 cells, 20 that count\" }}, {{ words = \"no cells\" }},\
+             {{ words = \"area {{1.10}}\", from = ['mean([out/areas.npy])'] }}]\n"
+        );
+        let tally = tally("There are\n20 or 21 cells, area 1.10,\n20 cells, 20 that count, no cells", &list);
+        assert_eq!((tally.agreed, tally.off.len(), tally.out.len()), (3, 2, 0), "{:?}", tally.off);
+        assert!(tally.off[0].starts_with("a.md:2: 21 stands there, 20.00 came out"), "{}", tally.off[0]);
+        assert!(tally.off[1].starts_with("a.md:3: \"no cells\" is not printed"), "{}", tally.off[1]);
+    }
+
+    #[test]
+    fn consoles_are_compared_line_by_line_and_those_of_a_reader_left_out() {
+        let page = format!(
+            "```console\n$ {COMMAND}\n…\nwritten to out\n```\n```console\n$ {COMMAND}\nwritten to out\n```\n\
+             ```console\n$ voronudge infer my-tissue --out fit\n```\n```console\n$ voronudge info nowhere\n```\n"
+        );
+        let tally = tally(&page, "");
+        assert_eq!((tally.agreed, tally.off.len(), tally.out.len()), (1, 2, 1), "{:?}", tally.off);
+        assert!(tally.off[0].starts_with("a.md:8: stands there"), "{}", tally.off[0]);
+        assert!(tally.off[1].starts_with("a.md:14: ended with Some(2)"), "{}", tally.off[1]);
+        assert!(tally.out[0].contains("needs my-tissue"), "{}", tally.out[0]);
+    }
 }
