@@ -19,6 +19,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use tally::{Tally, Work};
 
+/// Letters of a job that are shown in the course of the work.
+const WIDTH: usize = 120;
 /// Jobs at once.
 const AT_ONCE: usize = 2;
 
@@ -118,7 +120,7 @@ fn made(jobs: &[Job<'_>], work: &Work<'_>) -> Tally {
             let tally = job.make(work);
             let mut done = done.lock().unwrap_or_else(PoisonError::into_inner);
             let told = job.told(work.pages);
-            let first = told.lines().next().unwrap_or_default();
+            let first: String = told.lines().next().unwrap_or_default().chars().take(WIDTH).collect();
             eprintln!(
                 "{}/{}  {:5.1} s  {} off  {first}",
                 done.len() + 1,
