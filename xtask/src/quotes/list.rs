@@ -115,6 +115,14 @@ pub enum Relation {
 }
 
 impl Run {
+    /// Its commands in a line, all but the first and the last left out.
+    pub fn told(&self) -> String {
+        match &self.commands[..] {
+            [first, .., last] if self.commands.len() > 2 => format!("{first}; …; {last}"),
+            commands => commands.join("; "),
+        }
+    }
+
     /// The pages that quote it.
     pub fn pages(&self) -> impl Iterator<Item = &Path> {
         let quotes = self.quote.iter().map(|quote| quote.page(self));

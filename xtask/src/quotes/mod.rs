@@ -97,14 +97,14 @@ impl Job<'_> {
                     typed.map(|typed| format!("{}:{}: {}", page.display(), typed.line, typed.command));
                 lines.collect::<Vec<_>>().join("\n")
             }
-            Self::Run(run) => format!("{}: {}", run.page.display(), run.commands.join("; ")),
+            Self::Run(run) => format!("{}: {}", run.page.display(), run.told()),
         }
     }
 
     fn make(&self, work: &Work<'_>) -> Tally {
         let (made, what) = match self {
             Self::Consoles(page) => (work.consoles(page), page.display().to_string()),
-            Self::Run(run) => (work.run(run), run.commands.join("; ")),
+            Self::Run(run) => (work.run(run), run.told()),
         };
         made.unwrap_or_else(|error| Tally { off: vec![format!("{what}: {error}")], ..Tally::default() })
     }

@@ -136,7 +136,7 @@ impl Work<'_> {
     /// Runs commands of the list and compares what is quoted of them.
     pub fn run(&self, run: &Run) -> Result<Tally, Box<dyn Error>> {
         let mut tally = Tally::default();
-        let typed = run.commands.join("; ");
+        let typed = run.told();
         let mut give_up = |why: String| tally.out.push(format!("{}: {typed}: {why}", run.page.display()));
         if run.seconds > self.limit {
             give_up(format!("takes {:.0} s", run.seconds));
@@ -186,7 +186,7 @@ impl Work<'_> {
             .first()
             .copied()
             .unwrap_or_default();
-        let (place, typed) = (place(page, line), run.commands.join("; "));
+        let (place, typed) = (place(page, line), run.told());
         if quote.from.is_empty() {
             let told = || format!("{place}: \"{}\" is not printed\n    {typed}", quote.plain());
             tally.compare(compare::has_words(last, &quote.plain()), told);
