@@ -9,6 +9,7 @@ mod fuzz;
 mod oracle;
 mod peers;
 mod program;
+mod quotes;
 mod soak;
 mod study;
 
@@ -42,6 +43,8 @@ enum Command {
     Fuzz(fuzz::Arguments),
     /// Compare the program with what else one might use on the same movies, and print tables.
     Peers(peers::Arguments),
+    /// Run again what pages quote, and compare: consoles, and the numbers of docs/quotes.toml.
+    Quotes(quotes::Arguments),
     /// Kill runs of the program at random moments, take them up again, and compare with runs that were left alone.
     Soak(soak::Arguments),
     /// Run a statistical study and print its table.
@@ -66,6 +69,7 @@ fn main() -> ExitCode {
         Command::Figures(arguments) => figures::run(&root, &arguments),
         Command::Fuzz(arguments) => fuzz::run(&root, &arguments),
         Command::Peers(arguments) => peers::run(&root, &arguments),
+        Command::Quotes(arguments) => quotes::run(&root, &arguments),
         Command::Soak(arguments) => soak::run(&root, &arguments),
         Command::Study(arguments) => study::run(&arguments),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),

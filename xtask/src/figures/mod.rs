@@ -19,7 +19,7 @@ mod structure;
 use crate::Outcome;
 use clap::Args;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::{BLUE, GREEN, VERMILLION};
@@ -36,6 +36,9 @@ pub struct Arguments {
     /// Small systems and short runs: to see that it works, not to be shown.
     #[arg(long)]
     quick: bool,
+    /// Folder for pictures and their record, in place of those of the gallery, which then stays as it is.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
     /// Lists the names.
     #[arg(long)]
     list: bool,
@@ -176,7 +179,7 @@ const EVEN: [AxisScale; 2] = [AxisScale::Linear; 2];
 type Record = BTreeMap<String, Entry>;
 
 /// Where pictures and the record stand, from the root.
-const FOLDER: &str = "docs/figures/gallery";
+pub(crate) const FOLDER: &str = "docs/figures/gallery";
 
 pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
     let figures = all();
@@ -188,7 +191,12 @@ pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
     if let Some(name) = unknown {
         return Err(format!("there is no figure {name}; `cargo xtask figures --list` lists them").into());
     }
-    let folder = if arguments.quick { root.join("target/figures") } else { root.join(FOLDER) };
+    let gallery = root.join(FOLDER);
+    let folder = match &arguments.out {
+        Some(out) => out.clone(),
+        None if arguments.quick => root.join("target/figures"),
+        None => gallery.clone(),
+    };
     std::fs::create_dir_all(&folder)?;
     let asked =
         |figure: &&Figure| arguments.names.is_empty() || arguments.names.iter().any(|n| n == figure.name);
@@ -202,11 +210,13 @@ pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
         entry.found.iter().for_each(|found| println!("found: {found}"));
         entry.panels.iter().for_each(|[file, _]| println!("{}", folder.join(file).display()));
         if size == Size::Full {
-            let mut record = record(root)?;
+            let mut record = record(&folder)?;
             record.insert(figure.name.into(), entry);
             let text = serde_json::to_string_pretty(&record)? + "\n";
             std::fs::write(folder.join("record.json"), text)?;
-            std::fs::write(root.join("docs/gallery.md"), page::render(&figures, &record))?;
+            if folder == gallery {
+                std::fs::write(root.join("docs/gallery.md"), page::render(&figures, &record))?;
+            }
         }
     }
     Ok(())
@@ -224,8 +234,8 @@ fn keep(figure: &Figure, made: Made, folder: &Path) -> std::io::Result<Entry> {
     Ok(Entry { settings: made.settings, found: made.found, panels })
 }
 
-fn record(root: &Path) -> Result<Record, Box<dyn std::error::Error>> {
-    match std::fs::read_to_string(root.join(FOLDER).join("record.json")) {
+fn record(folder: &Path) -> Result<Record, Box<dyn std::error::Error>> {
+    match std::fs::read_to_string(folder.join("record.json")) {
         Ok(text) => Ok(serde_json::from_str(&text)?),
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(Record::new()),
         Err(error) => Err(error.into()),
@@ -252,7 +262,7 @@ mod tests {
     #[test]
     fn the_page_is_that_of_the_record() {
         let root = crate::root();
-        let record = record(&root).unwrap();
+        let record = record(&root.join(FOLDER)).unwrap();
         let page = std::fs::read_to_string(root.join("docs/gallery.md")).unwrap();
         assert_eq!(page, page::render(&all(), &record));
         for [file, _] in record.values().flat_map(|entry| &entry.panels) {
