@@ -218,15 +218,16 @@ impl Environment {
         Ok(Self { beyond_edge, ..self })
     }
 
-    /// The same with parameters that differ from cell to cell.
+    /// The same with parameters that differ from cell to cell, in place of any that were given before.
     ///
     /// # Errors
     /// [`EnvironmentError::Cells`] if other data are for another number of cells.
     pub fn with_cell_factors(self, factors: CellFactors) -> Result<Self, EnvironmentError> {
+        let alike = self.having(CellFactors::default());
         if let Some(cells) = factors.cells() {
-            self.fits("parameters of cells", cells)?;
+            alike.fits("parameters of cells", cells)?;
         }
-        Ok(self.having(factors))
+        Ok(alike.having(factors))
     }
 
     /// The same for factors that fit.

@@ -90,6 +90,11 @@ fn to_half_turn(angle: f64) -> f64 {
 }
 
 impl Exchange {
+    /// The tracks of its four cells.
+    pub fn cells(&self) -> [usize; 4] {
+        [self.lost[0], self.lost[1], self.made[0], self.made[1]]
+    }
+
     /// By which angle the four cells have turned anticlockwise, from −π/2 to π/2: from the contact lost to the one made it is a quarter turn and this.
     pub fn turn(&self) -> f64 {
         to_half_turn(self.made_direction - self.lost_direction - FRAC_PI_2)

@@ -3,8 +3,9 @@
 //! Measurements of one state are functions of positions and tessellation. A [`Recording`] is cells followed over frames, in a periodic box or an open field of
 //! view, with gaps in their tracks, and [`observe`] measures all that can be measured on one, with standard errors. A simulated movie in
 //! which the same cells are seen as in a measured one is measured by the same [`Plan`], so that the two can be compared point by point. [`nematic`] asks of the shapes of
-//! cells as a nematic: order and half-integer defects, and what cells do around these; [`exchanges`] of T1 transitions one by one; [`fluctuations()`] by which matrix waves relax.
+//! cells as a nematic: order and half-integer defects, and what cells do around these; [`exchanges`] of T1 transitions one by one, [`avalanches()`] of those that come together; [`fluctuations()`] by which matrix waves relax.
 
+mod avalanches;
 mod block_average;
 mod contacts;
 mod curve;
@@ -33,6 +34,7 @@ mod vorticity;
 mod wave_shells;
 mod window;
 
+pub use avalanches::{Avalanche, Avalanches, avalanches, drops};
 pub use block_average::BlockAverage;
 pub use curve::Curve;
 pub use displacement::mean_square_displacement;

@@ -49,6 +49,38 @@ pub enum Quantity {
     ExchangeAlignment,
     /// Mean angle by which the four cells turn anticlockwise.
     ExchangeTurn,
+    /// Share of avalanches, T1 transitions that touch within a time, of a size.
+    AvalancheSizes,
+    /// The same of transitions at each other's times.
+    AvalancheSizesShuffled,
+    /// `⟨s²⟩/⟨s⟩` of their sizes.
+    AvalancheSize,
+    /// The same of transitions at each other's times.
+    AvalancheSizeShuffled,
+    /// `⟨s²⟩/⟨s⟩` against the time within which transitions touch.
+    AvalancheThreshold,
+    /// The same of transitions at each other's times.
+    AvalancheThresholdShuffled,
+    /// Mean time from the first to the last transition of the avalanche of one.
+    AvalancheDuration,
+    /// Mean root mean square distance from the middle of the avalanche of one.
+    AvalancheExtent,
+    /// Share of bursts, T1 transitions anywhere that follow each other within a time, of a size.
+    BurstSizes,
+    /// The same of transitions at any time.
+    BurstSizesShuffled,
+    /// `⟨s²⟩/⟨s⟩` of their sizes.
+    BurstSize,
+    /// The same of transitions at any time.
+    BurstSizeShuffled,
+    /// `⟨s²⟩/⟨s⟩` against the time within which transitions follow each other.
+    BurstThreshold,
+    /// The same of transitions at any time.
+    BurstThresholdShuffled,
+    /// Mean fall of the shear stress over a burst.
+    BurstStressDrop,
+    /// Share of T1 transitions that the same cells undo within that time.
+    ExchangeReversal,
     /// Mean of `P/√A`.
     MeanShapeIndex,
     /// Density of the distribution of `P/√A`.
@@ -91,7 +123,7 @@ pub enum Quantity {
 
 impl Quantity {
     /// All of them, in the order of reports.
-    pub const ALL: [Self; 32] = [
+    pub const ALL: [Self; 48] = [
         Self::MeanSquareVelocity,
         Self::MeanSquareDisplacement,
         Self::VelocityAutocorrelation,
@@ -105,6 +137,22 @@ impl Quantity {
         Self::ExchangeDirection,
         Self::ExchangeAlignment,
         Self::ExchangeTurn,
+        Self::AvalancheSizes,
+        Self::AvalancheSizesShuffled,
+        Self::AvalancheSize,
+        Self::AvalancheSizeShuffled,
+        Self::AvalancheThreshold,
+        Self::AvalancheThresholdShuffled,
+        Self::AvalancheDuration,
+        Self::AvalancheExtent,
+        Self::BurstSizes,
+        Self::BurstSizesShuffled,
+        Self::BurstSize,
+        Self::BurstSizeShuffled,
+        Self::BurstThreshold,
+        Self::BurstThresholdShuffled,
+        Self::BurstStressDrop,
+        Self::ExchangeReversal,
         Self::MeanShapeIndex,
         Self::ShapeIndex,
         Self::Area,
@@ -142,6 +190,22 @@ impl Quantity {
             Self::ExchangeDirection => "t1_direction",
             Self::ExchangeAlignment => "t1_alignment",
             Self::ExchangeTurn => "t1_turn",
+            Self::AvalancheSizes => "avalanche_sizes",
+            Self::AvalancheSizesShuffled => "avalanche_sizes_shuffled",
+            Self::AvalancheSize => "avalanche_size",
+            Self::AvalancheSizeShuffled => "avalanche_size_shuffled",
+            Self::AvalancheThreshold => "avalanche_size_by_time",
+            Self::AvalancheThresholdShuffled => "avalanche_size_by_time_shuffled",
+            Self::AvalancheDuration => "avalanche_duration",
+            Self::AvalancheExtent => "avalanche_extent",
+            Self::BurstSizes => "burst_sizes",
+            Self::BurstSizesShuffled => "burst_sizes_shuffled",
+            Self::BurstSize => "burst_size",
+            Self::BurstSizeShuffled => "burst_size_shuffled",
+            Self::BurstThreshold => "burst_size_by_time",
+            Self::BurstThresholdShuffled => "burst_size_by_time_shuffled",
+            Self::BurstStressDrop => "burst_stress_drop",
+            Self::ExchangeReversal => "t1_reversed",
             Self::MeanShapeIndex => "mean_shape_index",
             Self::ShapeIndex => "shape_index",
             Self::Area => "area",
@@ -180,6 +244,22 @@ impl Quantity {
             Self::ExchangeDirection => "directions of contacts that are made",
             Self::ExchangeAlignment => "contacts made along x, ⟨cos 2φ⟩",
             Self::ExchangeTurn => "turn of cells in a T1, anticlockwise",
+            Self::AvalancheSizes => "sizes of avalanches",
+            Self::AvalancheSizesShuffled => "sizes of avalanches at random",
+            Self::AvalancheSize => "T1 transitions in the avalanche of one",
+            Self::AvalancheSizeShuffled => "the same at random times",
+            Self::AvalancheThreshold => "sizes of avalanches by threshold",
+            Self::AvalancheThresholdShuffled => "sizes of avalanches at random by threshold",
+            Self::AvalancheDuration => "duration of the avalanche of a T1",
+            Self::AvalancheExtent => "extent of the avalanche of a T1",
+            Self::BurstSizes => "sizes of bursts",
+            Self::BurstSizesShuffled => "sizes of bursts at random",
+            Self::BurstSize => "T1 transitions in the burst of one",
+            Self::BurstSizeShuffled => "the same at any time",
+            Self::BurstThreshold => "sizes of bursts by threshold",
+            Self::BurstThresholdShuffled => "sizes of bursts at random by threshold",
+            Self::BurstStressDrop => "fall of the shear stress in a burst",
+            Self::ExchangeReversal => "T1 transitions undone at once",
             Self::MeanShapeIndex => "mean shape index",
             Self::ShapeIndex => "distribution of the shape index",
             Self::Area => "distribution of the area",
@@ -221,7 +301,15 @@ impl Quantity {
             | Self::DefectVelocityAlong
             | Self::DefectVelocityAcross
             | Self::ExchangeAlignment
-            | Self::ExchangeTurn => return None,
+            | Self::ExchangeTurn
+            | Self::AvalancheSize
+            | Self::AvalancheSizeShuffled
+            | Self::AvalancheDuration
+            | Self::AvalancheExtent
+            | Self::BurstSize
+            | Self::BurstSizeShuffled
+            | Self::BurstStressDrop
+            | Self::ExchangeReversal => return None,
             Self::MeanSquareDisplacement
             | Self::VelocityAutocorrelation
             | Self::ResidualAutocorrelation
@@ -235,6 +323,14 @@ impl Quantity {
             | Self::ExchangeCorrelation
             | Self::SwirlAroundPlus
             | Self::SwirlAroundMinus => ("distance", Dimensions::LENGTH),
+            Self::AvalancheSizes
+            | Self::AvalancheSizesShuffled
+            | Self::BurstSizes
+            | Self::BurstSizesShuffled => ("T1 transitions", Dimensions::NONE),
+            Self::AvalancheThreshold
+            | Self::AvalancheThresholdShuffled
+            | Self::BurstThreshold
+            | Self::BurstThresholdShuffled => ("longest time between transitions", Dimensions::TIME),
             Self::ExchangeDirection => ("angle from x, radians", Dimensions::NONE),
             Self::ShapeIndex => ("shape index P/√A", Dimensions::NONE),
             Self::Area => ("area / mean area", Dimensions::NONE),
@@ -252,7 +348,9 @@ impl Quantity {
                 Dimensions { length: 2, time: -2 }
             }
             Self::MeanSquareDisplacement => Dimensions { length: 2, time: 0 },
-            Self::TransitionRate => Dimensions { length: 0, time: -1 },
+            Self::TransitionRate | Self::BurstStressDrop => Dimensions { length: 0, time: -1 },
+            Self::AvalancheDuration => Dimensions::TIME,
+            Self::AvalancheExtent => Dimensions::LENGTH,
             Self::DefectDensity => Dimensions { length: -2, time: 0 },
             Self::DefectVelocityAlong
             | Self::DefectVelocityAcross

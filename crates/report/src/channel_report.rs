@@ -81,10 +81,31 @@ pub struct TurnoverRecord {
     pub proliferation_rate: Option<f64>,
     /// Its decay length.
     pub proliferation_length: f64,
-    /// `vertex` or `division`.
+    /// `vertex`, `division` or `cycle`.
     pub injection: &'static str,
-    /// Distance of a daughter from her mother, if cells divide.
+    /// Distance of a daughter from her mother, if cells divide, or of two daughters, if it was given.
     pub division_distance: Option<f64>,
+    /// Growth and division, if cells have cycles.
+    pub cycle: Option<CycleRecord>,
+}
+
+/// Cycles of growth and division.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+pub struct CycleRecord {
+    /// Coefficient of variation of their lengths that was asked for.
+    pub variation: f64,
+    /// Preferred area at division over that of the model.
+    pub size_at_division: f64,
+    /// `long` or `random`.
+    pub axis: &'static str,
+    /// Preferred area over that of the model, mean over cells and time.
+    pub mean_size: f64,
+    /// Cycles from birth to division in the run.
+    pub cycles: usize,
+    /// How long they took in the mean.
+    pub mean_time: f64,
+    /// Their standard deviation.
+    pub time_deviation: f64,
 }
 
 /// Numbers of cells.
@@ -219,6 +240,8 @@ pub struct DisturbanceRecord {
     pub vertex_mean: f64,
     /// Mean for births beside a mother.
     pub division_mean: f64,
+    /// Mean for divisions in two, if cells have cycles.
+    pub cycle_mean: Option<f64>,
 }
 
 /// Everything `estimate-chirality` reports.

@@ -30,6 +30,8 @@ pub struct ObserveReport {
     pub common_motion_removed: bool,
     /// Shapes as a nematic.
     pub nematic: ObservedNematic,
+    /// Avalanches of T1 transitions, if there are any.
+    pub avalanches: Option<ObservedAvalanches>,
     /// Single numbers, by name.
     pub numbers: BTreeMap<&'static str, ObservedNumber>,
     /// Functions, by name.
@@ -47,6 +49,17 @@ pub struct ObservedNematic {
     pub minus: usize,
     /// Parameters of the model whose stresses are averaged around defects, if they are.
     pub stress_of: Option<BTreeMap<&'static str, f64>>,
+}
+
+/// T1 transitions that come together.
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct ObservedAvalanches {
+    /// Longest time between two that do.
+    pub threshold: Quantity,
+    /// How many avalanches there are, of transitions that touch.
+    pub avalanches: usize,
+    /// How many bursts, of transitions anywhere.
+    pub bursts: usize,
 }
 
 /// A measured number.

@@ -125,6 +125,12 @@ pub enum Error {
         /// Number of cells asked for.
         cells: usize,
     },
+    /// Parameters of single cells that cannot be.
+    #[error("{source}")]
+    Environment {
+        /// What the model said.
+        source: voronudge_model::EnvironmentError,
+    },
     /// A rate or a length of the turnover of cells that cannot be.
     #[error("the {name} is {value}, but it must be {required}")]
     Turnover {
@@ -224,6 +230,7 @@ impl Error {
             Self::Rate { .. } => Some("leave it out for the default"),
             Self::Response { .. } => Some("another frequency may be away from a mode of the tissue"),
             Self::Interrupted => None,
+            Self::Environment { .. } => Some("give one finite multiple for each cell"),
             Self::Turnover { .. } => Some("give rates per cell and time, and lengths in the unit of the box"),
             Self::ShearedChannel { .. } => Some("give a box with a right angle"),
             Self::ClosedChannel => Some("give walls left and right only"),

@@ -68,5 +68,8 @@ pub use sensitivity::{Derivatives, Sensitivity, sensitivities};
 pub use simulation::{Bond, Direction, Simulation, State, derivatives};
 pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
-pub use turnover::{EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Proliferation, Turnover};
+pub use turnover::{
+    CellCycle, DivisionAxis, EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Progress,
+    Proliferation, Turnover,
+};
 pub use walls::{CellsAndImages, Walls};

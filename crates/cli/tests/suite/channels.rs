@@ -26,10 +26,12 @@ fn a_channel_is_a_data_set_with_profiles_and_lives() {
     let out = Folder::new();
     succeed(&format!("{SHORT} --frames 3"), &[("--out", out.path())]);
     let names = [
+        "age.npy",
         "birth_disturbance.npy",
         "birth_rate.npy",
         "dataset.toml",
         "density.npy",
+        "distance.npy",
         "extrusion_rate.npy",
         "face.npy",
         "flux_rate.npy",
@@ -39,6 +41,7 @@ fn a_channel_is_a_data_set_with_profiles_and_lives() {
         "positions.npy",
         "report.html",
         "report.json",
+        "shape_by_age.npy",
         "stress_xx.npy",
         "stress_xy.npy",
         "stress_yx.npy",
@@ -135,6 +138,38 @@ fn a_channel_between_walls_says_so() {
     assert!(page.contains("torque-free walls at both edges") && page.contains("downwards at the left one"));
 }
 
+/// Cells that grow and divide: as many as at first, mothers that end where two daughters begin, and shapes by age of all that are seen.
+#[test]
+fn a_channel_whose_cells_grow_and_divide_says_so() {
+    let out = Folder::new();
+    succeed(&format!("{SHORT} --injection cycle --frames 3"), &[("--out", out.path())]);
+    let report = report(out.path());
+    assert_described(&report, "channel");
+    assert!(report["turnover"]["injection"] == "cycle" && report["turnover"]["cycle"]["axis"] == "long");
+    assert_eq!(number(&report, "/cells/births"), number(&report, "/cells/extrusions"));
+    assert_eq!((number(&report, "/cells/fewest"), number(&report, "/cells/most")), (48.0, 48.0));
+    let size = number(&report, "/turnover/cycle/mean_size");
+    assert!((0.7..1.386).contains(&size), "{size}");
+    let lineage = fs::read_to_string(out.file("lineage.csv")).unwrap();
+    assert!(lineage.starts_with("life,origin,mother,born,extruded,divided,cell,first_frame,last_frame\n"));
+    let rows: Vec<Vec<&str>> = lineage.lines().skip(1).map(|line| line.split(',').collect()).collect();
+    let divided: Vec<usize> = (0..rows.len()).filter(|&life| !rows[life][5].is_empty()).collect();
+    assert_eq!(divided.len() as f64, number(&report, "/cells/births"));
+    for mother in divided {
+        let daughters = rows.iter().filter(|row| row[2] == mother.to_string() && row[3] == rows[mother][5]);
+        assert_eq!(daughters.count(), 2);
+    }
+    let shapes: Array3<f64> = read(&out.file("shape_by_age.npy"));
+    assert_eq!(shapes.dim(), (6, 10, 3));
+    assert!(shapes.index_axis(Axis(2), 0).iter().all(|p| p.is_nan() || (3.54..8.0).contains(p)), "{shapes}");
+    // 48 cells every 0.1/K_P of 20 h, less founders that are not old enough.
+    let seen = shapes.index_axis(Axis(2), 2).sum();
+    assert!(seen <= 48.0 * 86.0 && seen > 48.0 * 40.0, "{seen}");
+    let disturbance: Array2<f64> = read(&out.file("birth_disturbance.npy"));
+    assert_eq!(disturbance.dim(), (200, 3));
+    assert!(fs::read_to_string(out.file("report.html")).unwrap().contains("divide in two"));
+}
+
 #[test]
 fn results_do_not_depend_on_threads() {
     let profile = |threads: &str, walls: &str| {
@@ -147,7 +182,7 @@ fn results_do_not_depend_on_threads() {
         );
         fs::read_to_string(out.file("folded_profile.csv")).unwrap()
     };
-    for walls in ["", "--walls x"] {
+    for walls in ["", "--walls x", "--injection cycle", "--injection cycle --walls x"] {
         assert_eq!(profile("1", walls), profile("2", walls));
     }
     assert_ne!(profile("1", ""), profile("1", "--walls x"));
@@ -200,6 +235,10 @@ fn senseless_channels_are_refused() {
         ("channel --K_P 0", "K_P is 0"),
         ("channel --samples 0", "--samples is 0"),
         ("channel --injection division --division-distance -1", "distance of a daughter"),
+        ("channel --injection cycle --cycle-variation 2", "variation of cell cycles is 2"),
+        ("channel --injection cycle --division-size 0", "size of a cell at its division is 0"),
+        ("channel --injection cycle --division-distance 0", "distance of two daughters is 0"),
+        ("channel --division-axis random", "--division-axis is given, but cells have no cycles"),
         ("channel --time -1", "duration is -1"),
         ("channel --walls both", "possible values: x"),
         ("channel --walls", "a value is required"),

@@ -89,6 +89,43 @@ fn a_field_of_view_shows_what_the_whole_is_like() {
     }
 }
 
+/// Every transition belongs to one avalanche and to one burst; a longer threshold makes fewer of both, larger ones; a file whose y points down has the same.
+#[test]
+fn avalanches_of_transitions_are_told() {
+    let (run, out, longer) = (Folder::new(), Folder::new(), Folder::new());
+    let line = "simulate --cells 100 --P_0 3.9 --alpha 0.3 --shear-rate 0.05 --time 6 --frames 120 --seed 4";
+    succeed(line, &[("--out", run.path())]);
+    let parameters = run.file("report.json");
+    let stress = ("--parameters", parameters.as_path());
+    succeed("observe --stress", &[("", run.path()), stress, ("--out", out.path())]);
+    succeed("observe --burst-time 0.5", &[("", run.path()), ("--out", longer.path())]);
+    let (found, later) = (report(out.path()), report(longer.path()));
+    assert_described(&found, "observe.schema.json");
+    assert_described(&later, "observe.schema.json");
+    let transitions: Array2<f64> = read(&out.file("t1.npy"));
+    let counts = |folder: &Folder| {
+        let all: Array2<f64> = read(&folder.file("avalanches.npy"));
+        let of = |kind: f64| {
+            all.rows().into_iter().filter(|row| row[0] == kind).map(|row| row[3]).collect::<Vec<_>>()
+        };
+        assert!(all.rows().into_iter().all(|row| row[1] <= row[2] && row[4] >= 4.0 && row[5] >= 0.0));
+        let with_stress = all.rows().into_iter().filter(|row| row[9].is_finite()).count();
+        let sizes = [of(0.0), of(1.0)];
+        sizes.iter().for_each(|all| assert_eq!(all.iter().sum::<f64>(), transitions.nrows() as f64));
+        (sizes.map(|all| all.len()), with_stress)
+    };
+    let ([local, whole], with_stress) = counts(&out);
+    assert_eq!(with_stress, whole);
+    assert_eq!(number(&found, "/avalanches/bursts"), whole as f64);
+    let ([local_later, whole_later], without) = counts(&longer);
+    assert!(local_later < local && whole_later < whole && whole < local && without == 0);
+    let size = |report: &serde_json::Value| number(report, "/numbers/avalanche_size/value");
+    assert!(size(&later) > size(&found) && size(&found) >= 1.0);
+    let curve: Array2<f64> = read(&out.file("avalanche_size_by_time.npy"));
+    assert!((curve[(0, 1)] - size(&found)).abs() < 1e-12);
+    assert_refused("observe", run.path(), &["--burst-time", "-1"], &["--burst-time is -1"]);
+}
+
 #[test]
 fn one_frame_without_velocities_has_no_motion_and_says_so() {
     let (data, cells, out) = (fixture("open-field"), Folder::new(), Folder::new());

@@ -4,7 +4,7 @@ mod channel;
 mod lyapunov;
 mod pinching;
 
-pub use channel::{ChannelProfile, ChannelRecorder, Estimate};
+pub use channel::{ChannelProfile, ChannelRecorder, Estimate, ShapeRecorder, ShapesByAge};
 pub use lyapunov::{LyapunovExponent, LyapunovSchedule, largest_lyapunov_exponent};
 pub use pinching::{PinchedFlow, Pinching, pinched_flow};
 

@@ -4,7 +4,9 @@ use super::Simulation;
 use crate::Error;
 use crate::scaled::without_derivatives;
 use crate::walls::Mirrored;
+use std::sync::Arc;
 use voronudge_geometry::{MovingTessellation, PeriodicBox, Scalar, Vector};
+use voronudge_model::{CellFactors, Environment, EnvironmentError};
 
 impl<S: Scalar> Simulation<S> {
     /// The periodic box, as it was before any shear.
@@ -59,5 +61,37 @@ impl<S: Scalar> Simulation<S> {
         self.spacing = (self.cell_box.area() / cells as f64).sqrt();
         (self.now.positions, self.now.headings) = (positions, headings);
         self.settle()
+    }
+
+    /// The same, with parameters of their own from now on.
+    pub(crate) fn replace_cells_with(
+        &mut self,
+        positions: Vec<Vector<S>>,
+        headings: Vec<S>,
+        factors: Result<CellFactors, EnvironmentError>,
+    ) -> Result<(), Error> {
+        let environment = self.having(factors)?;
+        let before = std::mem::replace(&mut self.model.environment, environment);
+        let replaced = self.replace_cells(positions, headings);
+        if replaced.is_err() {
+            self.model.environment = before;
+        }
+        replaced
+    }
+
+    /// Cells have parameters of their own from now on.
+    pub(crate) fn give_factors(
+        &mut self,
+        factors: Result<CellFactors, EnvironmentError>,
+    ) -> Result<(), Error> {
+        self.model.environment = self.having(factors)?;
+        self.settle()
+    }
+
+    fn having(&self, factors: Result<CellFactors, EnvironmentError>) -> Result<Arc<Environment>, Error> {
+        let environment = Environment::clone(&self.model.environment);
+        (factors.and_then(|factors| environment.with_cell_factors(factors)))
+            .map(Arc::new)
+            .map_err(|source| Error::Environment { source })
     }
 }

@@ -1,10 +1,12 @@
 //! Extrusion and proliferation of cells between the steps of a simulation.
 
+mod cycle;
 mod disturbance;
 mod lineage;
 mod places;
 mod rates;
 
+pub use cycle::{CellCycle, DivisionAxis, Progress};
 pub use lineage::{Life, Origin};
 pub use rates::{EdgeRate, Injection, Proliferation, Turnover};
 
@@ -52,6 +54,8 @@ pub struct LivingTissue {
     channel: Channel,
     identities: Vec<usize>,
     lives: Vec<Life>,
+    /// Where cells are in their cycles (N), if they have any.
+    cycles: Vec<Progress>,
     last: LastStep,
 }
 
@@ -70,25 +74,32 @@ pub struct LastStep {
     pub extrusions: Vec<Vector<f64>>,
     /// Where cells were born.
     pub births: Vec<Vector<f64>>,
+    /// Where cells divided, of which each has two of the births.
+    pub divisions: Vec<Vector<f64>>,
 }
 
 impl LivingTissue {
-    /// Turnover of the cells of a simulation from now on, in the channel of its box.
+    /// Turnover of the cells of a simulation from now on, in the channel of its box. Cells that have cycles are anywhere in them.
     ///
     /// # Errors
     /// [`Error::Turnover`] if a rate is negative or not finite, or a length not positive; [`Error::ShearedChannel`] for a
     /// sheared box, [`Error::ClosedChannel`] between four walls; [`Error::TooManyCells`] if there are too many already.
-    pub fn new(simulation: Simulation, turnover: Turnover) -> Result<Self, Error> {
+    pub fn new(mut simulation: Simulation, turnover: Turnover) -> Result<Self, Error> {
         turnover.check()?;
         let channel = Channel::of(&simulation)?;
         let (cells, time) = (simulation.positions().len(), simulation.time());
         if cells > turnover.most_cells {
             return Err(Error::TooManyCells { time, cells, limit: turnover.most_cells });
         }
-        let founder = Life { origin: Origin::Founder, born: time, extruded: None, mother: None };
-        let lives = vec![founder; cells];
+        let lives = vec![Life::begun(Origin::Founder, time, None); cells];
         let identities = (0..cells).collect();
-        Ok(Self { simulation, turnover, channel, identities, lives, last: LastStep::default() })
+        let mut cycles = Vec::new();
+        if let Injection::Cycle(cycle) = turnover.injection {
+            let mut rng = stream(turnover.seed, simulation.state().steps, u64::MAX - 2);
+            cycles.extend((0..cells).map(|_| cycle.anywhere(&mut rng)));
+            simulation.give_factors(cycle.factors(&cycles))?;
+        }
+        Ok(Self { simulation, turnover, channel, identities, lives, cycles, last: LastStep::default() })
     }
 
     /// The simulation: positions, velocities and tessellation of the cells alive.
@@ -111,6 +122,11 @@ impl LivingTissue {
         &self.lives
     }
 
+    /// Where each cell is in its cycle (N), if cells have cycles.
+    pub fn cycles(&self) -> &[Progress] {
+        &self.cycles
+    }
+
     /// What happened in the last step.
     pub fn last_step(&self) -> &LastStep {
         &self.last
@@ -129,13 +145,24 @@ impl LivingTissue {
         self.last.from.extend_from_slice(self.simulation.positions());
         self.last.extrusions.clear();
         self.last.births.clear();
+        self.last.divisions.clear();
         let moved = self.simulation.step_or_parts(time_step);
         self.last.to.clear();
         self.last.to.extend_from_slice(self.simulation.positions());
         self.last.bonds.clear();
         moved?;
         self.last.bonds.extend(self.simulation.bonds());
+        self.run_on(time_step);
         self.turn_over(time_step)
+    }
+
+    /// Phases of cells that divide at rates of their own.
+    fn run_on(&mut self, time_step: f64) {
+        if let Proliferation::Independent(rate) = self.turnover.proliferation {
+            for (own, r) in self.cycles.iter_mut().zip(self.simulation.positions()) {
+                own.phase += rate.at(self.channel.edge_distance(*r)) * time_step;
+            }
+        }
     }
 
     fn turn_over(&mut self, time_step: f64) -> Result<(), Error> {
@@ -147,7 +174,7 @@ impl LivingTissue {
             Demand::Mothers(mothers) => mothers.len(),
         };
         if extruded.is_empty() && births == 0 {
-            return Ok(());
+            return self.grow();
         }
         let (time, limit) = (self.simulation.time(), self.turnover.most_cells);
         match self.identities.len() + births - extruded.len() {
@@ -163,7 +190,16 @@ impl LivingTissue {
                 .map(|mother| places.of_mother(mother, &mut rng))
                 .collect::<Result<_, _>>()?,
         };
-        self.exchange(&extruded, &born, &mut rng)
+        let cycles = places.into_cycles();
+        self.exchange(&extruded, &born, cycles, &mut rng)
+    }
+
+    /// Cells become as large as they are to be at their phases.
+    fn grow(&mut self) -> Result<(), Error> {
+        match self.turnover.injection {
+            Injection::Cycle(cycle) => self.simulation.give_factors(cycle.factors(&self.cycles)),
+            _ => Ok(()),
+        }
     }
 
     /// The cells for which an event of a rate happens in a step, ascending.
@@ -178,26 +214,46 @@ impl LivingTissue {
         positions.filter(happens).map(|(cell, _)| cell).collect()
     }
 
-    /// New cells take the numbers of extruded ones; the rest is appended or closed up.
-    fn exchange(&mut self, extruded: &[usize], born: &[Birth], rng: &mut impl Rng) -> Result<(), Error> {
+    /// New cells take the numbers of extruded ones, and one of two daughters that of her mother; the rest is appended or closed up.
+    fn exchange(
+        &mut self,
+        extruded: &[usize],
+        born: &[Birth],
+        cycles: Vec<Progress>,
+        rng: &mut impl Rng,
+    ) -> Result<(), Error> {
         let time = self.simulation.time();
         let state = self.simulation.state();
         let (mut positions, mut headings) = (state.positions.clone(), state.headings.clone());
-        let mut identities = self.identities.clone();
+        let (mut identities, mut cycles) = (self.identities.clone(), cycles);
+        let cycle = match self.turnover.injection {
+            Injection::Cycle(cycle) => Some(cycle),
+            _ => None,
+        };
         let origin = match self.turnover.injection {
             Injection::Vertex => Origin::Vertex,
-            Injection::Division { .. } => Origin::Division,
+            Injection::Division { .. } | Injection::Cycle(_) => Origin::Division,
         };
+        let mut lives = Vec::new();
         for (order, birth) in born.iter().enumerate() {
-            let life = self.lives.len() + order;
-            let heading = (!state.headings.is_empty()).then(|| rng.random_range(0.0..std::f64::consts::TAU));
-            if let Some(&cell) = extruded.get(order) {
-                (positions[cell], identities[cell]) = (birth.place, life);
-                headings.iter_mut().skip(cell).take(1).zip(heading).for_each(|(old, new)| *old = new);
-            } else {
-                positions.push(birth.place);
-                identities.push(life);
-                headings.extend(heading);
+            let mother = birth.mother.map(|cell| self.identities[cell]);
+            let own = [(Some(birth.place), extruded.get(order)), (birth.sister, birth.mother.as_ref())];
+            for (place, cell) in own.into_iter().filter_map(|(place, cell)| Some((place?, cell))) {
+                let life = self.lives.len() + lives.len();
+                lives.push(Life::begun(origin, time, mother));
+                let heading =
+                    (!state.headings.is_empty()).then(|| rng.random_range(0.0..std::f64::consts::TAU));
+                let progress = cycle.map(|cycle| cycle.newborn(rng));
+                if let Some(&cell) = cell {
+                    (positions[cell], identities[cell]) = (place, life);
+                    headings.iter_mut().skip(cell).take(1).zip(heading).for_each(|(old, new)| *old = new);
+                    cycles.iter_mut().skip(cell).take(1).zip(progress).for_each(|(old, new)| *old = new);
+                } else {
+                    positions.push(place);
+                    identities.push(life);
+                    headings.extend(heading);
+                    cycles.extend(progress);
+                }
             }
         }
         for &cell in extruded.iter().skip(born.len()).rev() {
@@ -206,18 +262,30 @@ impl LivingTissue {
             if !headings.is_empty() {
                 headings.remove(cell);
             }
+            if !cycles.is_empty() {
+                cycles.remove(cell);
+            }
         }
-        self.simulation.replace_cells(positions, headings)?;
+        match cycle {
+            Some(cycle) => {
+                self.simulation.replace_cells_with(positions, headings, cycle.factors(&cycles))?;
+            }
+            None => self.simulation.replace_cells(positions, headings)?,
+        }
         for &cell in extruded {
             self.lives[self.identities[cell]].extruded = Some(time);
             self.last.extrusions.push(self.last.to[cell]);
         }
+        self.lives.extend(lives);
         for birth in born {
-            let mother = birth.mother.map(|cell| self.identities[cell]);
-            self.lives.push(Life { origin, born: time, extruded: None, mother });
             self.last.births.push(birth.place);
+            if let (Some(place), Some(mother)) = (birth.sister, birth.mother) {
+                self.lives[self.identities[mother]].divided = Some(time);
+                self.last.births.push(place);
+                self.last.divisions.push(self.last.to[mother]);
+            }
         }
-        self.identities = identities;
+        (self.identities, self.cycles) = (identities, cycles);
         Ok(())
     }
 }

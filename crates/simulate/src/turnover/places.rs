@@ -1,6 +1,7 @@
 //! Places for new cells.
 
-use super::{Injection, LivingTissue, Proliferation};
+use super::cycle::distance_of_halves;
+use super::{CellCycle, DivisionAxis, Injection, LivingTissue, Progress, Proliferation};
 use crate::{Channel, Error};
 use rand::Rng;
 use rand::distr::{Distribution, weighted::WeightedIndex};
@@ -12,6 +13,8 @@ pub(super) struct Birth {
     pub place: Vector<f64>,
     /// Index of the mother among the cells of the step.
     pub mother: Option<usize>,
+    /// The place of a second daughter, if the mother is no more.
+    pub sister: Option<Vector<f64>>,
 }
 
 /// A new cell is this far from a wall at least, in mean spacings: on it, it would lie on its own mirror image.
@@ -29,6 +32,8 @@ pub(super) struct Places<'a> {
     taken: Vec<bool>,
     /// Whether each birth that replaces an extruded cell is in the right half; nothing without walls.
     halves: Vec<bool>,
+    /// Where cells are in their cycles, if they have any.
+    cycles: Vec<Progress>,
     births: usize,
     time_step: f64,
 }
@@ -42,7 +47,8 @@ impl<'a> Places<'a> {
             let positions = tissue.simulation.positions();
             halves.extend(extruded.iter().map(|&cell| tissue.channel.is_right(positions[cell])));
         }
-        Self { tissue, injection: tissue.turnover.injection, taken, halves, births, time_step }
+        let (injection, cycles) = (tissue.turnover.injection, tissue.cycles.clone());
+        Self { tissue, injection, taken, halves, cycles, births, time_step }
     }
 
     /// The same by another way of injection.
@@ -70,13 +76,63 @@ impl<'a> Places<'a> {
                     })
                     .collect()
             }
+            Injection::Cycle(cycle) => (0..self.births)
+                .map(|birth| {
+                    let mother = self.next_of_cycles(birth, decay_length)?;
+                    Ok(self.in_two(mother, cycle, rng))
+                })
+                .collect(),
         }
+    }
+
+    /// Where cells are in their cycles now.
+    pub fn into_cycles(self) -> Vec<Progress> {
+        self.cycles
+    }
+
+    /// Lets all phases, in the half of the birth where there are two, run on at `exp(−d_b/d)` until the next one of them ends.
+    fn next_of_cycles(&mut self, birth: usize, decay_length: f64) -> Result<usize, Error> {
+        let positions = self.tissue.simulation.positions();
+        let half = self.halves.get(birth);
+        let mut weights = self.weights(positions.iter().copied(), decay_length);
+        for ((weight, r), taken) in weights.iter_mut().zip(positions).zip(&self.taken) {
+            if *taken || half.is_some_and(|right| self.tissue.channel.is_right(*r) != *right) {
+                *weight = 0.0;
+            }
+        }
+        let left = |(own, weight): (&Progress, &f64)| (own.length - own.phase).max(0.0) / weight;
+        let next =
+            self.cycles.iter().zip(&weights).map(left).enumerate().filter(|(_, time)| time.is_finite());
+        let (mother, time) = next.min_by(|a, b| a.1.total_cmp(&b.1)).ok_or_else(|| self.no_place())?;
+        self.cycles.iter_mut().zip(&weights).for_each(|(own, weight)| own.phase += weight * time);
+        self.taken[mother] = true;
+        Ok(mother)
+    }
+
+    /// One that divides near its end, drawn by weight: of the last fifth of the cycles, or if there is none of all.
+    pub fn in_two_near_the_end(
+        &self,
+        cycle: CellCycle,
+        decay_length: f64,
+        rng: &mut impl Rng,
+    ) -> Result<Birth, Error> {
+        let positions = self.tissue.simulation.positions();
+        let mut weights = self.weights(positions.iter().copied(), decay_length);
+        let is_near = |own: &Progress| own.phase > 0.8 * own.length;
+        if self.cycles.iter().any(is_near) {
+            let early = self.cycles.iter().zip(&mut weights).filter(|(own, _)| !is_near(own));
+            early.for_each(|(_, weight)| *weight = 0.0);
+        }
+        let mother = self.draw(0, &weights, |cell| positions[cell], rng)?;
+        Ok(self.in_two(mother, cycle, rng))
     }
 
     /// The place of the daughter of a given mother.
     pub fn of_mother(&mut self, mother: usize, rng: &mut impl Rng) -> Result<Birth, Error> {
-        if let Injection::Division { distance } = self.injection {
-            return Ok(self.beside(mother, distance, rng));
+        match self.injection {
+            Injection::Division { distance } => return Ok(self.beside(mother, distance, rng)),
+            Injection::Cycle(cycle) => return Ok(self.in_two(mother, cycle, rng)),
+            Injection::Vertex => {}
         }
         let (tessellation, positions) =
             (self.tissue.simulation.tessellation(), self.tissue.simulation.positions_with_images());
@@ -94,7 +150,7 @@ impl<'a> Places<'a> {
         }
         let chosen = free[rng.random_range(0..free.len())];
         beyond(chosen).into_iter().chain([mother]).for_each(|cell| self.taken[cell] = true);
-        Ok(Birth { place: vertices[chosen], mother: Some(mother) })
+        Ok(Birth { place: vertices[chosen], mother: Some(mother), sister: None })
     }
 
     fn on_any_vertices(&mut self, decay_length: f64, rng: &mut impl Rng) -> Result<Vec<Birth>, Error> {
@@ -123,7 +179,7 @@ impl<'a> Places<'a> {
                 let (cells, place) =
                     vertices[self.draw(birth, &weights, |vertex| vertices[vertex].1, rng)?];
                 cells.iter().for_each(|&cell| self.taken[cell] = true);
-                Ok(Birth { place, mother: None })
+                Ok(Birth { place, mother: None, sister: None })
             })
             .collect()
     }
@@ -158,7 +214,31 @@ impl<'a> Places<'a> {
             TAU - first - (TAU - angle) / PI * (last - first)
         };
         let place = from + Vector::new(angle.cos(), angle.sin()) * distance;
-        Birth { place, mother: Some(mother) }
+        Birth { place, mother: Some(mother), sister: None }
+    }
+
+    /// The places of two daughters at equal distances from where their mother was; between walls the axis is turned as far as it must for both to be in
+    /// front of them.
+    fn in_two(&self, mother: usize, cycle: CellCycle, rng: &mut impl Rng) -> Birth {
+        let simulation = &self.tissue.simulation;
+        let from = simulation.positions()[mother];
+        let mut polygon = CellPolygon::default();
+        polygon.fill(simulation.tessellation(), simulation.positions_with_images(), mother);
+        let angle = match cycle.axis {
+            DivisionAxis::Long => {
+                let [xx, xy] = polygon.shape_tensor();
+                0.5 * xy.atan2(xx)
+            }
+            DivisionAxis::Random => rng.random_range(0.0..TAU),
+        };
+        let axis = Vector::new(angle.cos(), angle.sin());
+        let apart = 0.5 * cycle.distance.unwrap_or_else(|| distance_of_halves(&polygon, axis));
+        let [left, right] = room(self.tissue.channel, from, CLEARANCE * simulation.spacing());
+        let most = (left.min(right) / apart).clamp(0.0, 1.0);
+        let x = axis.x.clamp(-most, most);
+        let y = if x == axis.x { axis.y } else { (1.0 - x * x).sqrt().copysign(axis.y) };
+        let way = Vector::new(x, y) * apart;
+        Birth { place: from + way, mother: Some(mother), sister: Some(from - way) }
     }
 
     /// `exp(−d_b/d)` of each place, relative to the largest.
@@ -203,7 +283,13 @@ impl Demand {
         match tissue.turnover.proliferation {
             Proliferation::Replacing { decay_length } => Self::Replacing { decay_length },
             Proliferation::Independent(rate) => {
-                let mut mothers = tissue.drawn(rate, time_step, rng);
+                let mut mothers = match tissue.turnover.injection {
+                    Injection::Cycle(_) => {
+                        let ends = |own: &Progress| own.phase >= own.length;
+                        (0..tissue.cycles.len()).filter(|&cell| ends(&tissue.cycles[cell])).collect()
+                    }
+                    _ => tissue.drawn(rate, time_step, rng),
+                };
                 mothers.retain(|cell| extruded.binary_search(cell).is_err());
                 Self::Mothers(mothers)
             }

@@ -1,5 +1,6 @@
 //! How often cells are extruded and born, and where.
 
+use super::CellCycle;
 use crate::Error;
 use serde::{Deserialize, Serialize};
 
@@ -69,6 +70,10 @@ pub enum Injection {
         /// Distance from mother to daughter.
         distance: f64,
     },
+    /// Cells grow and divide in two at the ends of their cycles, of which a mother has two daughters at equal distances from where she was.
+    /// With [`Proliferation::Independent`] phases run at the rate of the place. With [`Proliferation::Replacing`] they run at `exp(−d_b/d)`, for each cell that is
+    /// extruded as far as the next division, so that lengths that vary by one draw mothers by that weight.
+    Cycle(CellCycle),
 }
 
 /// The turnover of cells: who is extruded, who is born, and where, between the steps of a simulation.
@@ -115,6 +120,7 @@ impl Injection {
             Self::Division { distance } if !(distance.is_finite() && distance > 0.0) => {
                 Err(not_usable("distance of a daughter from its mother", distance, "positive and finite"))
             }
+            Self::Cycle(cycle) => cycle.check(),
             _ => Ok(()),
         }
     }
@@ -124,6 +130,6 @@ fn check_length(name: &'static str, value: f64) -> Result<(), Error> {
     if value > 0.0 { Ok(()) } else { Err(not_usable(name, value, "positive")) }
 }
 
-fn not_usable(name: &'static str, value: f64, required: &'static str) -> Error {
+pub(super) fn not_usable(name: &'static str, value: f64, required: &'static str) -> Error {
     Error::Turnover { name, value, required }
 }

@@ -10,7 +10,7 @@ use voronudge_report::figure::{
 };
 use voronudge_report::markers::Marker;
 use voronudge_report::page::Figure;
-use voronudge_simulate::measure::{ChannelProfile, Estimate};
+use voronudge_simulate::measure::{ChannelProfile, Estimate, ShapesByAge};
 
 /// What is drawn.
 #[derive(Clone, Copy)]
@@ -19,7 +19,11 @@ pub(super) struct Figures<'a> {
     pub findings: &'a Findings,
     pub full: &'a ChannelProfile,
     pub folded: &'a ChannelProfile,
+    pub by_age: &'a ShapesByAge,
 }
+
+/// Largest changes of a velocity by births on vertices, beside a mother, and in two where cells have cycles.
+pub(super) type Disturbances<'a> = (&'a Vec<f64>, &'a Vec<f64>, Option<&'a Vec<f64>>);
 
 /// Points of a curve that is a formula.
 const STEPS: usize = 200;
@@ -203,8 +207,8 @@ impl Figures<'_> {
     }
 
     /// The share of births that disturb velocities by no more than the abscissa.
-    pub fn disturbance(&self, [vertex, division]: &[Vec<f64>; 2]) -> Figure {
-        let cumulative = |values: &[f64]| {
+    pub fn disturbance(&self, (vertex, division, in_two): Disturbances<'_>) -> Figure {
+        let cumulative = |values: &[f64]| -> Vec<[f64; 2]> {
             let mut sorted = values.to_vec();
             sorted.sort_by(f64::total_cmp);
             let share = |index: usize| (index + 1) as f64 / values.len() as f64;
@@ -217,16 +221,67 @@ impl Figures<'_> {
             self.request.division_distance,
             self.request.units.length_text()
         );
-        let curves = [
+        let mut curves = vec![
             curve("on a vertex", BLUE, Stroke::Solid, cumulative(vertex)),
             curve(&beside, VERMILLION, Stroke::Dashed, cumulative(division)),
         ];
+        if let Some(in_two) = in_two {
+            curves.push(curve("division in two", GREEN, Stroke::Dotted, cumulative(in_two)));
+        }
         let label = self.velocity("largest change of a velocity");
         let svg = self.chart("disturbance by a birth", [&label, "share of births below"], &[], &curves);
         Figure::new(
             svg,
             "How much one birth changes the velocity of a cell at once, at the end of the run, for random places of births: a new cell on \
              a vertex disturbs its surroundings less than one beside its mother.",
+        )
+    }
+
+    /// Whether young cells have other shapes than old ones.
+    pub fn shapes(&self) -> Figure {
+        let ShapesByAge { distances, ages, shape_index, .. } = self.by_age;
+        let unit = self.request.units.length_text();
+        let colours = [BLUE, VERMILLION, GREEN, GREY, INK, BLUE];
+        let markers = [Marker::Circle, Marker::Diamond, Marker::Square, Marker::Triangle];
+        let oldest = ages.len() - 1;
+        // The middle of a class of ages in its logarithm; of the oldest, and of the youngest, as if classes went on alike.
+        let at = |class: usize| match class {
+            class if class == oldest => ages[oldest - 1] * 2f64.sqrt(),
+            class => ages[class] / 2f64.sqrt(),
+        };
+        let shown: Vec<usize> =
+            (0..distances.len()).filter(|row| row % 2 == 0 || row + 1 == distances.len()).collect();
+        let labels: Vec<String> = (shown.iter())
+            .map(|&row| {
+                let low = row.checked_sub(1).map_or(0.0, |before| distances[before]);
+                match distances[row] {
+                    high if high.is_finite() => format!("{low} to {high} {unit}"),
+                    _ => format!("beyond {low} {unit}"),
+                }
+            })
+            .collect();
+        let points: Vec<_> = (shown.iter().zip(&labels).enumerate())
+            .map(|(order, (&row, label))| PointSeries {
+                label,
+                colour: colours[order],
+                marker: markers[order % markers.len()],
+                points: (shape_index[row].iter().enumerate())
+                    .filter(|(_, own)| own.value.is_finite())
+                    .map(|(class, own)| ErrorPoint { at: [at(class), own.value], error: [None, own.error] })
+                    .collect(),
+            })
+            .collect();
+        let age = format!("age ({})", self.request.units.time_text());
+        let svg = points_and_curves(&PointsAndCurves {
+            title: "shapes of young and old cells",
+            labels: [&age, "P/√A"],
+            scales: [AxisScale::Logarithmic, AxisScale::Linear],
+            series: &points,
+            curves: &[],
+        });
+        Figure::new(
+            svg,
+            "Mean perimeter over the root of the area against the age of cells, for distances from the edge. The last points are of all older cells.",
         )
     }
 

@@ -71,7 +71,10 @@ impl Frames {
         if !self.kept.is_empty() {
             self.write_data_set(out, tissue, units, (&columns, count))?;
         }
-        let mut table = String::from("life,origin,mother,born,extruded,cell,first_frame,last_frame\n");
+        // Where cells have no cycles none divides in two, and there is no column for it.
+        let dividing = !tissue.cycles().is_empty();
+        let column = if dividing { ",divided" } else { "" };
+        let mut table = format!("life,origin,mother,born,extruded{column},cell,first_frame,last_frame\n");
         let text = |number: Option<usize>| number.map_or(String::new(), |number| number.to_string());
         for (number, life) in lives.iter().enumerate() {
             let origin = match life.origin {
@@ -79,11 +82,15 @@ impl Frames {
                 Origin::Vertex => "vertex",
                 Origin::Division => "division",
             };
-            let extruded = life.extruded.map_or(String::new(), |time| time.to_string());
+            let end = |end: Option<f64>| end.map_or(String::new(), |time| time.to_string());
+            let mut ends = end(life.extruded);
+            if dividing {
+                let _ = write!(ends, ",{}", end(life.divided));
+            }
             let [first, last] = [0, 1].map(|end| text(seen[number].map(|ends| ends[end])));
             let _ = writeln!(
                 table,
-                "{number},{origin},{},{},{extruded},{},{first},{last}",
+                "{number},{origin},{},{},{ends},{},{first},{last}",
                 text(life.mother),
                 life.born,
                 text(columns[number])

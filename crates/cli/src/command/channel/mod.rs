@@ -2,11 +2,13 @@
 
 mod arrays;
 mod continuum;
+mod cycle;
 mod figures;
 mod frames;
 mod page;
 mod report;
 mod request;
+mod shapes;
 
 use crate::arguments::{CommonArguments, ParameterArguments};
 use crate::failure::Failure;
@@ -49,6 +51,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("channel", &arguments.common)?;
     let request = arguments.channel.resolve(&arguments.parameters, arguments.common.seed)?;
     let mut frames = Frames::new(arguments.frames, &request.schedule)?;
+    let mut shapes = shapes::Shapes::new(&request)?;
     let mut tissue = tissue(&request, arguments.common.seed)?;
     let inputs = arguments.parameters.file().into_iter().chain(arguments.channel.equation_of_state());
     let mut out = arguments.common.output(inputs)?;
@@ -57,6 +60,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut interrupted = false;
     let outcome = run_channel(&mut tissue, &request.schedule, |tissue, done, total| {
         frames.after_step(done, tissue);
+        shapes.after_step(done, &request, tissue);
         interrupted = progress.step("channel", done as u64, total as u64).is_break();
         if interrupted { ControlFlow::Break(()) } else { ControlFlow::Continue(()) }
     })?;
@@ -88,23 +92,37 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     let (full, folded) = (outcome.recorder.profile(), outcome.recorder.folded_profile());
     let disturbance = disturbance(&request, &tissue, arguments.common.seed);
+    let in_two = (request.cycle.map(Injection::Cycle))
+        .and_then(|own| tissue.birth_disturbance(own, DRAWS, arguments.common.seed).ok());
     let record = disturbance.as_ref().map(|[vertex, division]| DisturbanceRecord {
         draws: DRAWS,
         division_distance: request.division_distance,
         vertex_mean: mean(vertex),
         division_mean: mean(division),
+        cycle_mean: in_two.as_deref().map(mean),
     });
-    let findings = report::findings(&mut run, &request, (&tissue, &outcome), &folded, record)?;
+    let cycles = request.cycle.as_ref().map(|cycle| cycle::record(cycle, &tissue, shapes.mean_size()));
+    let findings = report::findings(&mut run, &request, (&tissue, &outcome), &folded, (record, cycles))?;
     arrays::write(&mut out, &full, &folded)?;
     frames.write(&mut out, &tissue, &request.named)?;
     if let Some([vertex, division]) = &disturbance {
-        let both = Array2::from_shape_fn((DRAWS, 2), |(draw, way)| [vertex, division][way][draw]);
-        out.write_array("birth_disturbance.npy", both.view())?;
+        let all: Vec<&Vec<f64>> = [vertex, division].into_iter().chain(&in_two).collect();
+        let table = Array2::from_shape_fn((DRAWS, all.len()), |(draw, way)| all[way][draw]);
+        out.write_array("birth_disturbance.npy", table.view())?;
     }
+    let by_age = shapes.found();
+    shapes::write(&mut out, &by_age)?;
     let json = findings.report.to_json()?;
     out.write_text("report.json", &json)?;
-    let figures = figures::Figures { request: &request, findings: &findings, full: &full, folded: &folded };
-    out.write_text("report.html", &page::page(&figures, disturbance.as_ref())?)?;
+    let figures = figures::Figures {
+        request: &request,
+        findings: &findings,
+        full: &full,
+        folded: &folded,
+        by_age: &by_age,
+    };
+    let disturbances = disturbance.as_ref().map(|[vertex, division]| (vertex, division, in_two.as_ref()));
+    out.write_text("report.html", &page::page(&figures, disturbances)?)?;
     let summary = page::summary(&findings.report, out.path());
     let answer = if outcome.ended.is_some() { Answer::Negative } else { Answer::Positive };
     run.finish(Some(out), &json, &summary)?;

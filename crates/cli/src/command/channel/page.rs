@@ -1,10 +1,10 @@
 //! A channel as a page and as a summary.
 
-use super::figures::Figures;
+use super::figures::{Disturbances, Figures};
 use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
-use voronudge_report::channel_report::{ChannelReport, DecayRecord};
+use voronudge_report::channel_report::{ChannelReport, CycleRecord, DecayRecord, DisturbanceRecord};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Section, SectionPage};
 use voronudge_simulate::measure::Estimate;
@@ -50,7 +50,7 @@ const GUIDE: [[&str; 2]; 5] = [
     ],
 ];
 
-pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -> Result<String, Failure> {
+pub(super) fn page(figures: &Figures<'_>, disturbance: Option<Disturbances<'_>>) -> Result<String, Failure> {
     let report = &figures.findings.report;
     let mut sections = vec![
         Section {
@@ -78,19 +78,26 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
             ..Section::default()
         },
     ];
-    if let (Some(both), Some(record)) = (disturbance, &report.birth_disturbance) {
+    if let (Some(all), Some(record)) = (disturbance, &report.birth_disturbance) {
         sections.push(Section {
             heading: "What a birth disturbs".into(),
             text: vec![format!(
-                "The largest change of a velocity is {} {} in the mean for births on vertices and {} for births beside a mother.",
+                "The largest change of a velocity is {} {} in the mean for births on vertices and {} for births beside a mother{}.",
                 significant(record.vertex_mean, 3),
                 report.units.velocity_text(),
                 significant(record.division_mean, 3),
+                in_two(record, ", and {} for divisions in two"),
             )],
-            figures: vec![figures.disturbance(both)],
+            figures: vec![figures.disturbance(all)],
             ..Section::default()
         });
     }
+    sections.push(Section {
+        heading: "Young and old cells".into(),
+        text: report.turnover.cycle.iter().map(|cycle| cycles(report, cycle)).collect(),
+        figures: vec![figures.shapes()],
+        ..Section::default()
+    });
     let mut guide = GUIDE.to_vec();
     guide.insert(1, if report.walls.is_some() { WALLED } else { PERIODIC });
     let page = SectionPage {
@@ -103,6 +110,25 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<&[Vec<f64>; 2]>) -
         run: &report.run,
     };
     Ok(page.render()?)
+}
+
+/// What is to be said of divisions in two, if there are any.
+fn in_two(record: &DisturbanceRecord, said: &str) -> String {
+    record.cycle_mean.map_or(String::new(), |mean| said.replace("{}", &significant(mean, 3)))
+}
+
+/// What came of the cycles of cells.
+fn cycles(report: &ChannelReport, cycle: &CycleRecord) -> String {
+    format!(
+        "Cells grow to {} times the preferred area of the model and divide in two; over all it is {} times that. {} cycles ended in the run, which took {} ± {} {} \
+         (mean and standard deviation).",
+        significant(cycle.size_at_division, 3),
+        significant(cycle.mean_size, 3),
+        cycle.cycles,
+        significant(cycle.mean_time, 3),
+        significant(cycle.time_deviation, 2),
+        report.units.time_text(),
+    )
 }
 
 fn headline(report: &ChannelReport, at_edge: Option<&Estimate>) -> String {
@@ -290,15 +316,19 @@ pub(super) fn summary(report: &ChannelReport, out: &Path) -> String {
         rate_unit(report),
         significant(report.conservation.largest_in_errors, 2)
     );
+    if let Some(cycle) = &report.turnover.cycle {
+        let _ = writeln!(text, "cycles       {}", cycles(report, cycle));
+    }
     if let Some(text_of_liquid) = liquid(report) {
         let _ = writeln!(text, "{text_of_liquid}");
     }
     if let Some(record) = &report.birth_disturbance {
         let _ = writeln!(
             text,
-            "a birth      changes velocities by up to {} on a vertex, {} beside a mother (means, {})",
+            "a birth      changes velocities by up to {} on a vertex, {} beside a mother{} (means, {})",
             significant(record.vertex_mean, 3),
             significant(record.division_mean, 3),
+            in_two(record, ", {} in two"),
             report.units.velocity_text()
         );
     }

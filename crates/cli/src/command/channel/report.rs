@@ -8,8 +8,8 @@ use crate::failure::Failure;
 use crate::run::Run;
 use voronudge_infer::{DecayFit, DecayPoint, DecayShape, Intercept, fit_decay};
 use voronudge_report::channel_report::{
-    CellNumbers, ChannelReport, ConservationRecord, DecayRecord, DisturbanceRecord, MomentumRecord,
-    TurnoverRecord,
+    CellNumbers, ChannelReport, ConservationRecord, CycleRecord, DecayRecord, DisturbanceRecord,
+    MomentumRecord, TurnoverRecord,
 };
 use voronudge_report::infer_report::InputFile;
 use voronudge_simulate::measure::{ChannelProfile, Estimate};
@@ -35,7 +35,7 @@ pub(super) fn findings(
     request: &ChannelRequest,
     (tissue, outcome): (&LivingTissue, &ChannelRun),
     folded: &ChannelProfile,
-    disturbance: Option<DisturbanceRecord>,
+    (disturbance, cycles): (Option<DisturbanceRecord>, Option<CycleRecord>),
 ) -> Result<Findings, Failure> {
     let width = request.cell_box.lengths()[0];
     // Founders are lives too; everything else was born.
@@ -113,11 +113,14 @@ pub(super) fn findings(
             injection: match turnover.injection {
                 Injection::Vertex => "vertex",
                 Injection::Division { .. } => "division",
+                Injection::Cycle(_) => "cycle",
             },
             division_distance: match turnover.injection {
                 Injection::Vertex => None,
                 Injection::Division { distance } => Some(distance),
+                Injection::Cycle(cycle) => cycle.distance,
             },
+            cycle: cycles,
         },
         relaxation: request.schedule.relaxation,
         time: request.schedule.time,
@@ -130,7 +133,8 @@ pub(super) fn findings(
             last: tissue.identities().len(),
             fewest: outcome.cells[0],
             most: outcome.cells[1],
-            births: lives.len() - request.cells,
+            // Of the two lives that a division begins one goes on for the mother's.
+            births: lives.len() - request.cells - lives.iter().filter(|life| life.divided.is_some()).count(),
             extrusions: lives.iter().filter(|life| life.extruded.is_some()).count(),
         },
         ended: outcome.ended.as_ref().map(ToString::to_string),

@@ -1,5 +1,6 @@
 //! What a channel is asked to be, in the units of its preset or of the user.
 
+use super::cycle::CycleArguments;
 use crate::arguments::{ParameterArguments, positive};
 use crate::command::drawing::units_of_model;
 use crate::command::equation_of_state::{self, MeasuredEquation};
@@ -11,7 +12,7 @@ use voronudge_geometry::PeriodicBox;
 use voronudge_model::Parameters;
 use voronudge_report::Units;
 use voronudge_simulate::{
-    ChannelSchedule, EdgeRate, Injection, Proliferation, Turnover, Walls, recommended_time_step,
+    CellCycle, ChannelSchedule, EdgeRate, Injection, Proliferation, Turnover, Walls, recommended_time_step,
 };
 
 #[derive(Debug, Args)]
@@ -53,9 +54,11 @@ pub(super) struct ChannelArguments {
     /// Where new cells appear.
     #[arg(long, value_enum, default_value_t = InjectionName::Vertex)]
     injection: InjectionName,
-    /// Distance of a daughter from her mother [default: 0.2 cell sizes].
+    /// Distance between the two cells after a division [default: 0.2 cell sizes beside a mother; of cycles that of the centroids of her halves].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     division_distance: Option<f64>,
+    #[command(flatten)]
+    cycle: CycleArguments,
     /// End before there are more cells than this [default: four times those of the beginning].
     #[arg(long, value_name = "CELLS", allow_negative_numbers = true)]
     most_cells: Option<usize>,
@@ -97,6 +100,8 @@ enum InjectionName {
     Vertex,
     /// Beside a mother.
     Division,
+    /// Cells grow over a cycle and divide in two at its end.
+    Cycle,
 }
 
 /// A checked request.
@@ -111,6 +116,7 @@ pub(super) struct ChannelRequest {
     pub cells: usize,
     pub parameters: Parameters<f64>,
     pub turnover: Turnover,
+    pub cycle: Option<CellCycle>,
     pub schedule: ChannelSchedule,
     pub division_distance: f64,
     pub equation: Option<MeasuredEquation>,
@@ -172,6 +178,7 @@ impl ChannelArguments {
         };
         let proliferation_length = decay(self.proliferation_length, 6.25, 0.25);
         let division_distance = self.division_distance.unwrap_or(0.2 * cell_size);
+        let cycle = self.cycle.resolve(self.injection == InjectionName::Cycle, self.division_distance)?;
         let turnover = Turnover {
             extrusion: EdgeRate {
                 rate: rate(self.extrusion_rate, 0.33, 0.77),
@@ -183,9 +190,10 @@ impl ChannelArguments {
                     Proliferation::Independent(EdgeRate { rate, decay_length: proliferation_length })
                 }
             },
-            injection: match self.injection {
-                InjectionName::Vertex => Injection::Vertex,
-                InjectionName::Division => Injection::Division { distance: division_distance },
+            injection: match (self.injection, cycle) {
+                (_, Some(cycle)) => Injection::Cycle(cycle),
+                (InjectionName::Division, _) => Injection::Division { distance: division_distance },
+                _ => Injection::Vertex,
             },
             most_cells: self.most_cells.unwrap_or(4 * cells as usize),
             seed,
@@ -235,6 +243,7 @@ impl ChannelArguments {
             cells: cells as usize,
             parameters,
             turnover,
+            cycle,
             schedule,
             division_distance,
             equation,

@@ -1,5 +1,6 @@
 //! `voronudge observe`: what can be measured on the cells of a data set, whatever moves them.
 
+mod avalanches;
 mod nematic;
 mod page;
 mod report;
@@ -9,6 +10,7 @@ use crate::command::recorded::{RecordingArguments, Velocities};
 use crate::failure::Failure;
 use crate::program::Answer;
 use crate::run::Run;
+use avalanches::AvalancheArguments;
 use clap::Args;
 use ndarray::Array2;
 use nematic::NematicArguments;
@@ -26,12 +28,15 @@ pub(crate) struct Arguments {
     #[command(flatten)]
     nematic: NematicArguments,
     #[command(flatten)]
+    avalanches: AvalancheArguments,
+    #[command(flatten)]
     common: CommonArguments,
 }
 
 pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let mut run = Run::begin("observe", &arguments.common)?;
     arguments.recording.check()?;
+    arguments.avalanches.check()?;
     let model = arguments.nematic.model()?;
     let data = arguments.recording.data.load()?;
     let place = arguments.recording.place();
@@ -40,6 +45,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let out = arguments.common.reserve(inputs)?;
     let recorded = arguments.recording.record(&data, &frames)?;
     let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;
+    let all = exchanges(&recorded.recording);
+    let avalanches =
+        arguments.avalanches.measure(&recorded, (&plan, &all), model.as_ref(), arguments.common.seed);
     let nematic = arguments.nematic.measure(&recorded, &plan, model)?;
     let mut out = out.begin()?;
     if recorded.velocities == Velocities::None {
@@ -47,9 +55,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     let mut curves = observe(&recorded.recording, &plan);
     if frames.len() > 1 {
-        let all = exchanges(&recorded.recording);
         out.write_array("t1.npy", rows(&all, &data, &frames).view())?;
         curves.extend(exchange_statistics(&recorded.recording, &plan, &all));
+    }
+    if let Some(found) = &avalanches {
+        found.write(&mut out, &data, &frames)?;
+        curves.extend(found.avalanches.curves.iter().cloned());
     }
     curves.extend(nematic.nematic.curves.iter().cloned());
     nematic.write(&mut out, &data, &frames)?;
@@ -64,14 +75,19 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         out.write_array(&format!("{}.npy", curve.of.name()), table.view())?;
     }
     let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
-    let report =
-        report::report(run.record(Some(&data)), &units, &frames, (&recorded, &plan), (&curves, &nematic));
+    let report = report::report(
+        run.record(Some(&data)),
+        &units,
+        &frames,
+        (&recorded, &plan),
+        (&curves, &nematic, avalanches.as_ref()),
+    );
     let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let title = arguments.recording.title();
     out.write_text(
         "report.html",
-        &page::page(&title, &report, &recorded.recording, (&curves, &nematic), &units)?,
+        &page::page(&title, &report, &recorded.recording, (&curves, &nematic, avalanches.as_ref()), &units)?,
     )?;
     let summary = page::summary(&report, out.path());
     run.finish(Some(out), &json, &summary)?;

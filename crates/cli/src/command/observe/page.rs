@@ -1,5 +1,6 @@
 //! The result as a page and as a summary.
 
+use super::avalanches::Found;
 use super::nematic::Measured;
 use crate::command::drawing::{borders, cells_view};
 use crate::failure::Failure;
@@ -42,6 +43,12 @@ const GUIDE: &[[&str; 2]] = &[
         "ψ = (1/z) Σ exp(6iθ) over the directions to the z neighbours of a cell; Ψ_6 is the modulus of its mean.",
     ],
     [
+        "Avalanches",
+        "T1 transitions whose cells are the same or next to each other, at most the threshold apart in time, belong together; so do, in bursts of the whole field, all \
+         that follow each other. Compare with the same transitions at random times: these have avalanches, too, the larger, the longer the threshold and the more \
+         transitions there are.",
+    ],
+    [
         "Defects",
         "Shapes of cells, smoothed over a Gaussian, have a long axis everywhere but at defects, around which it turns by half a turn: one way (+½, a comet) or the other (−½, three arms). \
          Shapes that know nothing of each other have 1/(4πw²) of them to a unit area, w the width of the Gaussian; fewer are a sign of order.",
@@ -52,7 +59,7 @@ pub(super) fn page(
     title: &str,
     report: &ObserveReport,
     recording: &Recording,
-    (curves, nematic): (&[Curve], &Measured),
+    (curves, nematic, avalanches): (&[Curve], &Measured, Option<&Found>),
     units: &Units,
 ) -> Result<String, Failure> {
     let figures = |all: &[Quantity]| -> Vec<Figure> {
@@ -95,6 +102,7 @@ pub(super) fn page(
         .into_iter()
         .filter(|section| !section.figures.is_empty()),
     );
+    sections.extend(avalanches.map(|found| found.section(units)));
     let first = recording.frames().first();
     sections.extend(first.map(|frame| nematic.section(frame, label(report), units)));
     sections.push(Section {

@@ -1,5 +1,6 @@
 //! The result as a report.
 
+use super::avalanches::Found;
 use super::nematic::Measured;
 use crate::command::recorded::Recorded;
 use voronudge_observables::{Curve, Dimensions, Plan};
@@ -12,7 +13,7 @@ pub(super) fn report(
     units: &Units,
     frames: &[usize],
     (recorded, plan): (&Recorded, &Plan),
-    (curves, nematic): (&[Curve], &Measured),
+    (curves, nematic, avalanches): (&[Curve], &Measured, Option<&Found>),
 ) -> ObserveReport {
     let unit = |of: Dimensions| units.powers(of.length, of.time);
     let number = |curve: &Curve| ObservedNumber {
@@ -44,6 +45,7 @@ pub(super) fn report(
         velocities: recorded.velocities.name(),
         common_motion_removed: recorded.common_motion_removed,
         nematic: nematic.record(units),
+        avalanches: avalanches.map(|found| found.record(units)),
         numbers: curves
             .iter()
             .filter(|curve| curve.of.is_number())

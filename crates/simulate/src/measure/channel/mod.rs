@@ -3,7 +3,9 @@
 mod estimate;
 mod profile;
 mod recorder;
+mod shapes;
 
 pub use estimate::Estimate;
 pub use profile::ChannelProfile;
 pub use recorder::ChannelRecorder;
+pub use shapes::{ShapeRecorder, ShapesByAge};

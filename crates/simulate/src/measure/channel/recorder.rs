@@ -96,12 +96,16 @@ impl ChannelRecorder {
                 }
             });
         }
-        for (places, sign) in [(&step.births, 1.0), (&step.extrusions, -1.0)] {
+        // Of a division each of the two daughters counts as half a birth, but both are there and the mother is not.
+        let births = if step.divisions.is_empty() { 1.0 } else { 0.5 };
+        for (places, sign, count) in
+            [(&step.births, 1.0, births), (&step.extrusions, -1.0, 1.0), (&step.divisions, -1.0, 0.0)]
+        {
             for place in places {
                 let at = place.x / width;
                 let (bin, beyond) = (number(at.floor()), at - at.floor());
                 let counts = if sign > 0.0 { &mut sample.births } else { &mut sample.deaths };
-                counts[bin] += 1.0;
+                counts[bin] += count;
                 sample.net_at_face[bin] += sign * (1.0 - beyond);
                 sample.net_at_face[bin + 1] += sign * beyond;
             }

@@ -1,9 +1,12 @@
 //! Extrusion and proliferation, in a periodic box and between walls.
 
+mod cycles;
 mod periodic;
 mod walled;
 
-use voronudge_simulate::{EdgeRate, Injection, LivingTissue, Proliferation, Turnover};
+use voronudge_simulate::{
+    CellCycle, DivisionAxis, EdgeRate, Injection, LivingTissue, Proliferation, Turnover,
+};
 
 const TURNOVER: Turnover = Turnover {
     extrusion: EdgeRate { rate: 0.77, decay_length: 1.4 },
@@ -13,12 +16,15 @@ const TURNOVER: Turnover = Turnover {
     seed: 3,
 };
 
+const CYCLE: CellCycle =
+    CellCycle { variation: 0.3, size_at_division: 1.386, distance: None, axis: DivisionAxis::Long };
+
 /// The cells of a tissue are the lives without an end.
 fn assert_the_living_are_told(tissue: &LivingTissue) {
     let lives = tissue.lives();
     let mut living = tissue.identities().to_vec();
     living.sort_unstable();
-    let expected: Vec<usize> = (0..lives.len()).filter(|&life| lives[life].extruded.is_none()).collect();
+    let expected: Vec<usize> = (0..lives.len()).filter(|&life| lives[life].goes_on()).collect();
     assert_eq!(living, expected);
 }
 

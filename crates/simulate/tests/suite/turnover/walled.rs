@@ -1,6 +1,6 @@
 //! Extrusion and proliferation between torque-free walls.
 
-use super::{TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
+use super::{CYCLE, TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector, areas};
 use voronudge_model::{Model, Parameters};
@@ -145,7 +145,8 @@ fn daughters_are_in_front_of_the_walls() {
 #[test]
 fn the_books_balance_up_to_the_walls() {
     let bins = 16;
-    for turnover in [TURNOVER, DIVISION, MOTHERS] {
+    let cycles = Turnover { injection: Injection::Cycle(CYCLE), ..TURNOVER };
+    for turnover in [TURNOVER, DIVISION, MOTHERS, cycles] {
         let mut tissue = tissue(turnover);
         let mut recorder = ChannelRecorder::new(tissue.channel(), bins).unwrap();
         let width = WIDTH / bins as f64;
