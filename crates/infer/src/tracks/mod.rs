@@ -52,6 +52,7 @@ mod seen_motions;
 mod settling;
 mod states;
 mod surface;
+mod surroundings;
 mod tangent;
 #[cfg(test)]
 mod tests;

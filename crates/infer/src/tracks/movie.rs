@@ -6,7 +6,7 @@ use super::states::States;
 use crate::{Error, Observation};
 use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Vector};
-use voronudge_model::{Column, Effect, Environment};
+use voronudge_model::Environment;
 
 /// A cell has room for itself if none is nearer than this, in units of ℓ₀.
 const ROOM: f64 = 0.5;
@@ -224,33 +224,6 @@ impl Movie {
         Self { share, ..self }
     }
 
-    /// Gives labels to the cells that the movie was made from; a track has that of its first name.
-    #[must_use]
-    pub fn with_labels(self, labels: Vec<Option<i64>>) -> Self {
-        Self { labels, ..self }
-    }
-
-    /// What surrounds the cells.
-    pub(crate) fn environment(&self) -> Arc<Environment> {
-        self.environment.clone()
-    }
-
-    /// The same of the cells of some tracks, with their labels.
-    pub(super) fn environment_of(&self, tracks: &[u32]) -> Arc<Environment> {
-        if self.labels.is_empty() {
-            return self.environment.clone();
-        }
-        let label = |track: &u32| {
-            let (_, name) = self.tracks[*track as usize].names.first()?;
-            self.labels.get(*name).copied().flatten()
-        };
-        let labels = tracks.iter().map(label).collect();
-        // There is nothing else about cells that it could disagree with.
-        Environment::clone(&self.environment)
-            .with_labels(labels)
-            .map_or_else(|_| self.environment.clone(), Arc::new)
-    }
-
     /// The share c of the way from a cell's site to its centroid at which its position is measured.
     pub fn share(&self) -> f64 {
         self.share
@@ -272,15 +245,6 @@ impl Movie {
     /// there by chance, given how well the motion of its neighbours predicts that of a cell.
     pub fn join(&mut self) -> usize {
         join(self)
-    }
-
-    /// The columns of an effect among its cells.
-    ///
-    /// # Errors
-    /// The reason why the effect cannot act there.
-    pub fn columns(&self, effect: &Effect) -> Result<Vec<Column>, &'static str> {
-        let earlier = Environment::clone(&self.environment).with_earlier(vec![Some(Vector::zeros())]);
-        effect.columns(&earlier.unwrap_or_default(), self.domain)
     }
 
     /// Number of frames.

@@ -4,11 +4,11 @@ use std::collections::BTreeMap;
 
 use voronudge_report::infer_report::{
     ActivityReport, AmbiguityReport, BootstrapResult, CellCounts, EigenDirection, Fit, FitMethod, FitStatus,
-    FlowGrid, FlowWindow, GivenConstraints, GivenPrior, InferReport, InputFile, LandscapeResult, LatentCells,
-    MeanRemoved, MeasuredPositions, MeasuredWindow, Measurement, MeasurementSource, NaiveParameters, Nmse,
-    Noise, NoiseSource, Nudge, Parameter, Parameters, PositionKind, ProfileResult, ProspectOf,
-    ProspectsReport, Quantity, RegionSource, RunRecord, SeenRegion, SpreadReport, Transitions, TriedWindow,
-    Verdict, VerdictKind,
+    FlowGrid, FlowWindow, GivenConstraints, GivenPrior, InferReport, InputFile, KindDifference, KindReport,
+    LandscapeResult, LatentCells, MeanRemoved, MeasuredPositions, MeasuredWindow, Measurement,
+    MeasurementSource, NaiveParameters, Nmse, Noise, NoiseSource, Nudge, Parameter, Parameters, PositionKind,
+    ProfileResult, ProspectOf, ProspectsReport, Quantity, RegionSource, RunRecord, SeenRegion, SpreadReport,
+    Transitions, TriedWindow, Verdict, VerdictKind,
 };
 use voronudge_report::{CellStatus, CellView, ChangedEdges, FrameView, InferPage, Uncertainty, Units};
 
@@ -24,6 +24,53 @@ pub fn noise(index: usize, stream: u64) -> f64 {
         state ^= state >> 27;
     }
     (state >> 11) as f64 / (1u64 << 52) as f64 - 1.0
+}
+
+fn fitted(value: f64, half: f64, unit: &str) -> Parameter {
+    Parameter {
+        value,
+        ci95: Some([value - half, value + half]),
+        fixed: false,
+        unit: unit.to_owned(),
+        words: "K_P alpha is known to 2 %.".into(),
+    }
+}
+
+fn held(value: f64, unit: &str) -> Parameter {
+    Parameter { value, ci95: None, fixed: true, unit: unit.into(), words: "It is held.".into() }
+}
+
+fn parameters() -> Parameters {
+    Parameters {
+        K_A: held(0.0008, "1/(um^2*min)"),
+        K_P: fitted(0.021, 0.0057, "1/min"),
+        P_0: fitted(44.4, 1.6, "um"),
+        A_0: held(124.8, "um^2"),
+        alpha: fitted(3.4, 0.9, ""),
+        K_P_alpha: fitted(0.0714, 0.0031, "1/min"),
+        shape_index: fitted(3.97, 0.14, ""),
+    }
+}
+
+/// The cells of a label, as in a fit of two kinds.
+fn kind(label: i64) -> KindReport {
+    let is_reference = label == 0;
+    let difference = KindDifference { value: 0.8, ci95: [0.3, 1.3] };
+    KindReport {
+        label,
+        cells: 320,
+        is_reference,
+        parameters: parameters(),
+        differences: if is_reference {
+            BTreeMap::new()
+        } else {
+            BTreeMap::from([("alpha".into(), difference)])
+        },
+        p: if is_reference { 1.0 } else { 0.002 },
+        p_adjusted: if is_reference { 1.0 } else { 0.002 },
+        differs: !is_reference,
+        words: format!("cells of label {label}"),
+    }
 }
 
 /// A honeycomb with jittered vertices, `side` × `side` cells, the rim left out.
@@ -122,20 +169,6 @@ pub fn page<'a>(
 
 /// A filled report.
 pub fn report() -> InferReport {
-    let fitted = |value: f64, half: f64, unit: &str| Parameter {
-        value,
-        ci95: Some([value - half, value + half]),
-        fixed: false,
-        unit: unit.to_owned(),
-        words: "K_P alpha is known to 2 %.".into(),
-    };
-    let held = |value: f64, unit: &str| Parameter {
-        value,
-        ci95: None,
-        fixed: true,
-        unit: unit.into(),
-        words: "It is held.".into(),
-    };
     let direction = |eigenvalue: f64, components: [f64; 4]| EigenDirection {
         eigenvalue,
         direction: ["K_A", "K_P", "K_P_P_0", "K_P_alpha"]
@@ -194,15 +227,7 @@ pub fn report() -> InferReport {
             bounds: BTreeMap::from([("K_P".into(), [0.0, f64::INFINITY])]),
             priors: BTreeMap::from([("P_0".into(), GivenPrior { mean: 44.0, standard_deviation: 4.0 })]),
         },
-        parameters: Parameters {
-            K_A: held(0.0008, "1/(um^2*min)"),
-            K_P: fitted(0.021, 0.0057, "1/min"),
-            P_0: fitted(44.4, 1.6, "um"),
-            A_0: held(124.8, "um^2"),
-            alpha: fitted(3.4, 0.9, ""),
-            K_P_alpha: fitted(0.0714, 0.0031, "1/min"),
-            shape_index: fitted(3.97, 0.14, ""),
-        },
+        parameters: parameters(),
         activity: Some(ActivityReport {
             v_0: fitted(0.31, 0.04, "um min⁻¹"),
             D_r: held(0.02, "min⁻¹"),
@@ -223,6 +248,7 @@ pub fn report() -> InferReport {
             named: true,
             words: "cells differ in alpha by 11 %".into(),
         }],
+        by_label: [0, 3].map(kind).into(),
         implied_moduli: None,
         naive: NaiveParameters {
             K_A: f64::NAN,
