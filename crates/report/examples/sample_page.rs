@@ -8,6 +8,8 @@ mod discover_sample;
 mod figure_sample;
 #[path = "../tests/report/onward_sample.rs"]
 mod onward_sample;
+#[path = "../tests/report/parameters_sample.rs"]
+mod parameters_sample;
 #[path = "../tests/report/sample.rs"]
 mod sample;
 

@@ -11,6 +11,7 @@ mod inference_figures;
 mod movies;
 mod onward_sample;
 mod pages;
+mod parameters_sample;
 mod phase_figures;
 mod sample;
 mod spectrum_figures;
