@@ -24,6 +24,9 @@ pub enum AxisScale {
     Logarithmic,
 }
 
+/// Decades that a logarithmic axis has at least.
+const NARROWEST: f64 = 0.3;
+
 /// One axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -60,7 +63,12 @@ impl Axis {
         if !ends[0].is_finite() {
             return None;
         }
-        let room = 0.04 * (ends[1] - ends[0]).max(1e-9 * ends[1].abs()).max(1e-12);
+        let span = ends[1] - ends[0];
+        let room = match logarithmic {
+            // Ticks of less than a factor of two would need digits that nobody reads.
+            true => (0.04 * span).max(0.5 * (NARROWEST - span)),
+            false => 0.04 * span.max(1e-9 * ends[1].abs()).max(1e-12),
+        };
         let at_zero = !logarithmic && ends[0] >= 0.0 && ends[0] < 0.2 * ends[1];
         let range = [if at_zero { 0.0 } else { ends[0] - room }, ends[1] + room];
         Some(match logarithmic {

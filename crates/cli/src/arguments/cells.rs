@@ -282,6 +282,7 @@ mod tests {
         let factor = |cell| 0.875 * environment.cell_factors().factor(CellParameter::Chirality, cell);
         assert_eq!([factor(0), factor(1)], [2.0, -1.0]);
         // Two kinds of opposite chirality have no mean.
+        parameters.chirality = 0.5;
         by_labels(&["alpha=0:-1.5,1:0.5"], &mut parameters).unwrap();
         assert_eq!(parameters.chirality, -1.5);
         for fault in ["alpha=2:1", "alpha=0", "alpha=0:x", "alpha=0:1,0:2", "beta=0:1"] {
