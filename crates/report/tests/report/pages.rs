@@ -39,13 +39,15 @@ fn the_page_is_self_contained() {
         "2 starts ended at objectives from 871.0 to 873.5",
         "v<sub>0</sub>",
         "polarities: what the cells move by of themselves",
+        "Kinds of cells",
+        "cells of label 3",
         "What to measure next",
         "<b>0.0016</b> <span class=\"quiet\">(× 0.55)</span>",
     ] {
         let found = html.contains(text);
         assert!(found, "{text}");
     }
-    assert_eq!(html.matches("<svg xmlns").count(), 1 + 3 + 2 * 7 + 1);
+    assert_eq!(html.matches("<svg xmlns").count(), 1 + 1 + 3 + 2 * 7 + 1);
 }
 
 #[test]
