@@ -183,7 +183,10 @@ fn what_cells_cannot_have_of_their_own_is_refused() {
     let start = format!("simulate --start {}", at(&data));
     refused(format!("{start} --label-parameter alpha=7:1"), &["label 7"]);
     refused(format!("{start} --label-parameter alpha=1"), &["no label with a finite value"]);
-    refused(format!("{start} --label-parameter alpha=0:1 --cell-spread alpha=0.1"), &["alpha", "twice"]);
+    refused(
+        format!("{start} --alpha 1 --label-parameter alpha=0:1 --cell-spread alpha=0.1"),
+        &["alpha", "twice"],
+    );
     refused(format!("infer {} --by-label alpha", at(&plain)), &["--by-label", "labels"]);
     refused(format!("infer {} --by-label K_P", at(&data)), &["another K_P"]);
     refused(format!("infer {} --by-label alpha --vary alpha", at(&data)), &["--by-label", "--vary"]);
