@@ -10,7 +10,7 @@ use std::path::Path;
 fn two_types(rest: &str) -> Folder {
     let out = Folder::new();
     let line = format!(
-        "simulate --cells 100 --P_0 3.9 --alpha 1 --cell-spread P_0=0.02 --cell-spread alpha=0.4 --cell-distribution two-types \
+        "simulate --cells 64 --P_0 3.9 --alpha 1 --cell-spread P_0=0.02 --cell-spread alpha=0.4 --cell-distribution two-types \
          --seed 4 --dt 0.005 {rest}"
     );
     succeed(&line, &[("--out", out.path())]);
@@ -29,14 +29,14 @@ fn fit(data: &Folder, rest: &str) -> serde_json::Value {
 fn types_are_told_by_their_labels() {
     let data = two_types("--time 2 --frames 40");
     let labels: Array1<i64> = read(&data.path().join("labels.npy"));
-    assert_eq!(labels.sum(), 50);
+    assert_eq!(labels.sum(), 32);
     let alpha: Array1<f64> = read(&data.path().join("cell_alpha.npy"));
     for (label, own) in labels.iter().zip(&alpha) {
         assert!((own - if *label == 1 { 1.4 } else { 0.6 }).abs() < 1e-12);
     }
     let velocities = "--frames 39 --position-noise 0.001 --velocity-noise 0.1%";
     for (rest, tolerance) in
-        [(velocities, 0.002), ("--frames 36..40 --position-noise 0.002 --velocities TRACKS", 0.05)]
+        [(velocities, 0.002), ("--frames 37..40 --position-noise 0.002 --velocities TRACKS", 0.05)]
     {
         // Without velocities the tracks themselves are fitted.
         let rest = match rest.strip_suffix(" --velocities TRACKS") {
