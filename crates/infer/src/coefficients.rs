@@ -190,10 +190,19 @@ impl CoefficientSpace {
 
     /// Covariance of the coefficients of the base model from that of β.
     pub fn covariance(&self, free: &DMatrix<f64>) -> Matrix4<f64> {
-        let base = self.basis.rows(0, BASE);
-        let full = base * free * base.transpose();
-        Matrix4::from_fn(|row, column| full[(row, column)])
+        covariance_of(&self.base_rows(), free)
     }
+
+    /// `∂c/∂β` of the coefficients of the base model (4, free).
+    pub(crate) fn base_rows(&self) -> DMatrix<f64> {
+        self.basis.rows(0, BASE).into_owned()
+    }
+}
+
+/// Covariance of coefficients from that of β, by which they change as these rows (4, free) say.
+pub(crate) fn covariance_of(rows: &DMatrix<f64>, free: &DMatrix<f64>) -> Matrix4<f64> {
+    let full = rows * free * rows.transpose();
+    Matrix4::from_fn(|row, column| full[(row, column)])
 }
 
 /// Parameters of the model from the coefficients of its terms; `P_0` and `α` are ratios to `K_P`.

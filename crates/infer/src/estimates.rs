@@ -1,5 +1,6 @@
 //! From fitted coefficients and their information matrix to estimates and directions.
 
+use crate::coefficients::covariance_of;
 use crate::quadratic::{Functional, Interval, Quadratic, Ratio};
 use crate::quantity::BASE;
 use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, ParameterEstimates, Quantity};
@@ -51,8 +52,7 @@ impl Rows {
 
     /// Their covariance, from that of β.
     fn covariance(&self, free: &DMatrix<f64>) -> Matrix4<f64> {
-        let full = &self.gradient * free * self.gradient.transpose();
-        Matrix4::from_fn(|row, column| full[(row, column)])
+        covariance_of(&self.gradient, free)
     }
 
     fn functional(&self, index: usize) -> Functional {
@@ -93,7 +93,7 @@ impl Fitted<'_> {
     /// The coefficients of cells in which coefficients of effects, by their number, are added to those of the base model.
     pub fn rows(&self, added: [Option<usize>; BASE]) -> Rows {
         let mut origin: Vector4<f64> = self.space.origin().fixed_rows::<BASE>(0).into();
-        let mut gradient = self.space.basis().rows(0, BASE).into_owned();
+        let mut gradient = self.space.base_rows();
         for (k, effect) in added.into_iter().enumerate().filter_map(|(k, effect)| Some((k, effect?))) {
             origin[k] += self.space.origin()[BASE + effect];
             let sum = gradient.row(k) + self.space.basis().row(BASE + effect);

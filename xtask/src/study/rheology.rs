@@ -27,12 +27,8 @@ struct Setting {
     protocol: &'static str,
 }
 
-const SETTINGS: [Setting; 4] = [
-    Setting { view: View::Whole, ..SOLID },
-    Setting { name: "solid", ..SOLID },
-    Setting { view: View::Whole, ..LIQUID },
-    Setting { name: "liquid", ..LIQUID },
-];
+const SETTINGS: [Setting; 4] =
+    [Setting { view: View::Whole, ..SOLID }, SOLID, Setting { view: View::Whole, ..LIQUID }, LIQUID];
 const SOLID: Setting = Setting {
     name: "solid",
     truth: [3.4, 0.3],

@@ -6,8 +6,9 @@ use clap::Args;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use voronudge_io::DataSet;
-use voronudge_model::{CellFactors, CellParameter, Environment, EnvironmentError, Parameters};
+use voronudge_model::{CellFactors, CellParameter, Environment, EnvironmentError, Model, Parameters};
 
 /// Mean below which, relative to the largest value, a parameter has no mean to be a multiple of.
 const NO_MEAN: f64 = 1e-6;
@@ -243,6 +244,27 @@ impl OwnParameters {
             Some(labels) => environment.with_labels(labels).map_err(fault),
             None => Ok(environment),
         }
+    }
+
+    /// The same of all cells, so many.
+    pub fn of_all(
+        &self,
+        environment: Environment,
+        cells: usize,
+        labels: Option<Vec<Option<i64>>>,
+    ) -> Result<Environment, Failure> {
+        self.of_cells(environment, &(0..cells).collect::<Vec<_>>(), labels)
+    }
+
+    /// The base model of so many cells.
+    pub fn model(
+        &self,
+        parameters: &Parameters<f64>,
+        cells: usize,
+        labels: Option<Vec<Option<i64>>>,
+    ) -> Result<Model<f64>, Failure> {
+        let environment = self.of_all(Environment::default(), cells, labels)?;
+        Ok(Model::chiral_voronoi(parameters).within(&Arc::new(environment)))
     }
 
     /// The values of the cells of a data set, with their labels in one of its frames.

@@ -6,9 +6,9 @@ use crate::arguments::{CellArguments, Spreads, Verbosity};
 use crate::command::simulate::Start;
 use crate::failure::Failure;
 use crate::progress::{Looks, Progress};
-use std::sync::{Arc, Mutex};
+use std::sync::Mutex;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_model::{Environment, Model, Parameters};
+use voronudge_model::{Model, Parameters};
 use voronudge_simulate::moduli::{Dynamic, Elastic, Settled, Viscosity, viscous};
 use voronudge_simulate::{Simulation, seed_of_replica};
 
@@ -48,9 +48,7 @@ pub(super) fn models(
         let (count, labels) = (start.positions.len(), start.labels.as_deref());
         *parameters = given;
         let own = cells.read(count, labels, parameters)?.and(spreads.draw(count, *seed, parameters)?)?;
-        let numbers: Vec<usize> = (0..count).collect();
-        let environment = own.of_cells(Environment::default(), &numbers, start.labels.clone())?;
-        Ok(Model::chiral_voronoi(parameters).within(&Arc::new(environment)))
+        own.model(parameters, count, start.labels.clone())
     };
     starts.iter().map(model).collect()
 }

@@ -5,8 +5,7 @@ use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::{Args, ValueEnum};
 use serde::{Deserialize, Serialize};
-use std::sync::Arc;
-use voronudge_model::{Environment, Model, Parameters};
+use voronudge_model::{Model, Parameters};
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
 use voronudge_simulate::{MOST_STEPS, recommended_time_step, seed_of_run};
@@ -271,9 +270,7 @@ impl Request {
     pub fn model(&self, job: Job) -> Result<Model<f64>, Failure> {
         let mut parameters = self.parameters(job.point);
         let own = self.spreads.draw(self.cells, self.seed(job), &mut parameters)?;
-        let numbers: Vec<usize> = (0..self.cells).collect();
-        let environment = own.of_cells(Environment::default(), &numbers, None)?;
-        Ok(Model::chiral_voronoi(&parameters).within(&Arc::new(environment)))
+        own.model(&parameters, self.cells, None)
     }
 
     /// The time step at a point.

@@ -124,9 +124,8 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let domain = Domain::Periodic(start.cell_box);
     let tessellation = Tessellation::new(&start.positions, domain)?;
     let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
-    let numbers: Vec<usize> = (0..cells).collect();
     let surroundings = environment(&tessellation, &start.positions, &view)?;
-    let surroundings = own.of_cells(surroundings, &numbers, labels.clone())?;
+    let surroundings = own.of_all(surroundings, cells, labels.clone())?;
     let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
     let request = Request {
         cells,
