@@ -1,12 +1,15 @@
 //! Cells hidden from a tissue are found, and nothing is found where nothing is hidden.
 
-use claims::{Noise, Tissue};
+use claims::{Noise, TRUTH, Tissue};
 use rand::SeedableRng;
 use rand::seq::SliceRandom;
 use rand_pcg::Pcg64;
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use voronudge_geometry::{FieldOfView, Vector};
-use voronudge_infer::{ChangeKind, Completion, KnownNoise, Observation, Quantity, complete, infer};
+use voronudge_infer::{ChangeKind, Completion, Kinds, KnownNoise, Observation, Quantity, complete, infer};
+use voronudge_model::effect::{LabelParameter, LabelledParameter};
+use voronudge_model::{Environment, Model, velocities};
 
 const NOISE: Noise = Noise { position: 0.01, velocity: 0.05 };
 const CELLS: usize = 144;
@@ -197,4 +200,47 @@ fn noise_levels_need_not_be_known() {
     .unwrap();
     assert!(recovered(&set, &completion) >= 6);
     assert_eq!(completion.missed_rate, 0.05);
+}
+
+/// Where the parameters depend on a cell's label, cells that were not detected have the label that suits the velocities.
+#[test]
+fn hidden_cells_have_the_label_of_their_kind() {
+    let labels: Vec<Option<i64>> = (0..CELLS).map(|cell| Some((cell % 2) as i64)).collect();
+    let environment = Arc::new(Environment::default().with_labels(labels.clone()).unwrap());
+    let chirality = LabelParameter { label: 1, parameter: LabelledParameter::Chirality };
+    let own = -0.9 * TRUTH.chirality * TRUTH.perimeter_elasticity;
+    let model = Model::chiral_voronoi(&TRUTH).with(chirality.into(), own).within(&environment);
+    let kinds = Kinds { reference: 0, others: vec![1], parameters: vec![LabelledParameter::Chirality] };
+    let (mut right, mut found) = (0, 0);
+    for seed in 21..=23 {
+        let alike = Tissue::new(CELLS, seed).unwrap();
+        let tissue = alike.moving(velocities(&alike.tessellation, &alike.positions, &model));
+        let request = tissue.request(NOISE.known()).with_kinds(kinds.clone());
+        let whole = tissue.measured(NOISE, seed).unwrap();
+        let is_hidden = |cell: &usize| cell % 20 == 7 || cell % 20 == 16;
+        let kept: Vec<usize> = (0..CELLS).filter(|cell| !is_hidden(cell)).collect();
+        let at = kept.iter().map(|cell| whole.positions[*cell]).collect();
+        let of_cells: Vec<_> = kept.iter().map(|cell| whole.velocities.values()[*cell]).collect();
+        let domain = whole.tessellation.domain();
+        let observation = Observation::new(0, at, of_cells, domain, FieldOfView::default()).unwrap();
+        let observation = observation.with_labels(kept.iter().map(|cell| labels[*cell]).collect()).unwrap();
+        let go_on = &mut |_: voronudge_infer::Progress<'_>| ControlFlow::Continue(());
+        let completion = complete(&[observation], &request, None, go_on).unwrap();
+        let near = |r: Vector<f64>| {
+            let distance = |cell: &usize| domain.shortest(tissue.positions[*cell] - r).norm();
+            (0..CELLS).filter(is_hidden).find(|cell| distance(cell) < 0.5)
+        };
+        for change in &completion.frames[0].changes {
+            if let Some(cell) = near(change.added[0]) {
+                found += 1;
+                right += usize::from(change.labels == [labels[cell]]);
+            }
+        }
+        let fit = infer(&[completion.frames[0].observation.clone()], &request, go_on).unwrap();
+        let chiralities = fit.kinds.iter().map(|kind| kind.parameters.chirality.value);
+        for (value, share) in chiralities.zip([1.0, 0.1]) {
+            assert!((value / TRUTH.chirality - share).abs() < 0.05, "{value}");
+        }
+    }
+    assert!(found >= 36 && right + 3 >= found, "{found} found of 42, {right} with their label");
 }

@@ -96,6 +96,9 @@ pub enum Error {
     /// Parameters that cannot be held, bounded or weighted like this.
     #[error("{0}")]
     Constraint(&'static str),
+    /// Data about cells that are for other cells.
+    #[error(transparent)]
+    Surroundings(#[from] voronudge_model::EnvironmentError),
     /// Data that cannot tell whether cells differ.
     #[error("{0}")]
     Spread(&'static str),

@@ -173,6 +173,15 @@ impl Observation {
         Self { velocities: velocities.into(), ..self }
     }
 
+    /// Gives the cells labels (N), in place of any that they had.
+    ///
+    /// # Errors
+    /// [`Error::Environment`] if they are for other cells.
+    pub fn with_labels(self, labels: Vec<Option<i64>>) -> Result<Self, Error> {
+        let labelled = Environment::clone(&self.environment).with_labels(labels)?;
+        Ok(self.within(Arc::new(labelled)))
+    }
+
     /// What surrounds and preceded the cells.
     pub fn environment(&self) -> &Arc<Environment> {
         &self.environment

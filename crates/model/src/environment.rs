@@ -180,13 +180,14 @@ impl Environment {
         }
     }
 
-    /// The same with a measured label of each cell, where there is one.
+    /// The same with a measured label of each cell, where there is one, in place of any that were given before.
     ///
     /// # Errors
     /// [`EnvironmentError::Cells`] if other data are for another number of cells.
     pub fn with_labels(self, labels: Vec<Option<i64>>) -> Result<Self, EnvironmentError> {
-        self.fits("labels", labels.len())?;
-        Ok(Self { labels, ..self })
+        let unlabelled = Self { labels: Vec::new(), ..self };
+        unlabelled.fits("labels", labels.len())?;
+        Ok(Self { labels, ..unlabelled })
     }
 
     /// The same with one external field more.

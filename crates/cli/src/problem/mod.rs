@@ -206,49 +206,34 @@ impl Problem {
     /// # Errors
     /// Those of [`complete`], [`measure`] and their like for tracks.
     pub fn understand(&mut self, observe: Observer<'_>) -> Result<(), voronudge_infer::Error> {
-        self.find_cells(observe)?;
-        self.determine(observe)
-    }
-
-    /// Finds cells that were not detected, the first part of [`understand`](Self::understand); of a flow field all of it.
-    ///
-    /// # Errors
-    /// Those of the fits.
-    pub fn find_cells(&mut self, observe: Observer<'_>) -> Result<(), voronudge_infer::Error> {
         if let Some(mut tracks) = self.tracks.take() {
-            let found = self.complete_tracks(&mut tracks, observe);
+            let completed = self.complete_tracks(&mut tracks, observe);
+            let understood = completed.and_then(|()| self.measure_tracks(&mut tracks, observe));
             self.tracks = Some(tracks);
-            return found;
+            return understood;
         }
         if self.velocities.flow().is_some() {
             self.measure(observe)?;
+            return self.complete(observe);
         }
-        self.complete(observe)
+        self.complete(observe)?;
+        self.measure(observe)
     }
 
-    /// Determines how cells were measured, the second part of [`understand`](Self::understand).
+    /// Lets the cells of each label have parameters of their own, before it is found out how they were measured: missed cells and errors of
+    /// positions would take the blame for differences.
     ///
     /// # Errors
-    /// Those of the fits.
-    pub fn determine(&mut self, observe: Observer<'_>) -> Result<(), voronudge_infer::Error> {
-        if let Some(mut tracks) = self.tracks.take() {
-            let determined = self.measure_tracks(&mut tracks, observe);
-            self.tracks = Some(tracks);
-            return determined;
+    /// [`voronudge_infer::Error::Surroundings`].
+    pub fn distinguish(&mut self, kinds: Kinds, data: &DataSet) -> Result<(), voronudge_infer::Error> {
+        for (index, observation) in self.observations.iter_mut().enumerate() {
+            if let Some(labels) = data.labels_of(&self.snapshots[index], self.frames[index]) {
+                *observation = observation.clone().with_labels(labels)?;
+            }
         }
-        match self.velocities.flow() {
-            Some(_) => Ok(()),
-            None => self.measure(observe),
+        if let Some(tracks) = &mut self.tracks {
+            tracks.label(data, &self.frames);
         }
-    }
-
-    /// Lets the cells of each label have parameters of their own, before it is determined how they were measured: the measurement would take the
-    /// blame for differences.
-    ///
-    /// # Errors
-    /// [`Error::Surroundings`].
-    pub fn distinguish(&mut self, kinds: Kinds, data: &DataSet) -> Result<(), Error> {
-        self.surround(data)?;
         self.request = self.request.clone().with_kinds(kinds);
         Ok(())
     }

@@ -69,7 +69,7 @@ impl Tracks {
         for of_frame in frames.iter().filter_map(|&frame| data.all_labels(frame)) {
             labels.iter_mut().zip(of_frame).for_each(|(label, own)| *label = label.or(own));
         }
-        self.movie = self.movie.clone().with_labels(labels);
+        self.movie.label(&labels);
     }
 }
 

@@ -36,7 +36,7 @@ fn types_are_told_by_their_labels() {
     }
     let velocities = "--frames 39 --position-noise 0.001 --velocity-noise 0.1%";
     for (rest, tolerance) in
-        [(velocities, 0.002), ("--frames 37..40 --position-noise 0.002 --velocities TRACKS", 0.05)]
+        [(velocities, 0.002), ("--frames 38..40 --position-noise 0.002 --velocities TRACKS", 0.05)]
     {
         // Without velocities the tracks themselves are fitted.
         let rest = match rest.strip_suffix(" --velocities TRACKS") {

@@ -33,9 +33,13 @@ const LEAST_GAIN: f64 = 2.0;
 const FIRST_STEPS: usize = 8;
 const FOLLOWED: usize = 3;
 
+/// Where cells are looked for first, and their labels if cells have labels.
+type Start = (Vec<Vector<f64>>, Vec<Option<i64>>);
+
 /// Cells at the best places from a start.
 struct Arrangement {
     places: Vec<Vector<f64>>,
+    labels: Vec<Option<i64>>,
     standard_error: f64,
     /// −2 log of the probability of the velocities nearby and of so many cells at such places, up to a constant.
     cost: f64,
@@ -46,13 +50,13 @@ struct Arrangement {
 impl Arrangement {
     fn new(
         around: &Neighbourhood,
-        start: Vec<Vector<f64>>,
+        (start, labels): Start,
         steps: usize,
         evidence: &Evidence<'_>,
     ) -> Result<Self, Error> {
         let Evidence { law, polygons, rates, .. } = evidence;
         let spread = polygons.spread;
-        let guess = Guess { places: start.clone(), start, spread, target: None };
+        let guess = Guess { places: start.clone(), start, spread, target: None, labels };
         let placed = around.place(law, &guess, steps)?;
         let n = placed.information.nrows();
         let posterior = DMatrix::identity(n, n) + &placed.information * spread.powi(2);
@@ -70,6 +74,7 @@ impl Arrangement {
         let cost = if cost.is_finite() { cost } else { f64::INFINITY };
         Ok(Self {
             places: placed.positions,
+            labels: guess.labels,
             standard_error: spread * variance.sqrt(),
             cost,
             strain: placed.strain,
@@ -93,16 +98,24 @@ pub(super) fn rearranged(
     let mut best: Option<(f64, Vec<usize>, Arrangement)> = None;
     for group in groups {
         let around = Neighbourhood::new(scene, centre, &group, &[])?;
-        let there: Vec<Vector<f64>> = group.iter().filter_map(|change| place(*change)).collect();
+        let there: Start = (
+            group.iter().filter_map(|change| place(*change)).collect(),
+            group.iter().flat_map(|change| scene.changes[*change].labels.iter().copied()).collect(),
+        );
         let pairs = (0..DIRECTIONS).map(|k| {
             let angle = std::f64::consts::PI * k as f64 / DIRECTIONS as f64;
             let arm = Vector::new(angle.cos(), angle.sin()) * ARM;
-            vec![centre + arm, centre - arm]
+            (vec![centre + arm, centre - arm], scene.changes[index].labels.repeat(2))
         });
-        let others = there[1..].to_vec();
-        let starts: Vec<Vec<Vector<f64>>> = match others.is_empty() {
+        let others = (there.0[1..].to_vec(), there.1[1.min(there.1.len())..].to_vec());
+        let starts: Vec<Start> = match others.0.is_empty() {
             true => pairs.collect(),
-            false => pairs.flat_map(|pair| [pair.clone(), [pair, others.clone()].concat()]).collect(),
+            false => pairs
+                .flat_map(|pair: Start| {
+                    let both = ([&pair.0[..], &others.0].concat(), [&pair.1[..], &others.1].concat());
+                    [pair, both]
+                })
+                .collect(),
         };
         // Most cells are where they should be, which the first evaluation tells.
         if Arrangement::new(&around, there.clone(), 1, evidence)?.strain < STRAINED {
@@ -118,7 +131,7 @@ pub(super) fn rearranged(
         tried.truncate(FOLLOWED);
         let followed = tried
             .into_par_iter()
-            .map(|first| Arrangement::new(&around, first.places, STEPS, evidence))
+            .map(|first| Arrangement::new(&around, (first.places, first.labels), STEPS, evidence))
             .collect::<Result<Vec<_>, Error>>()?;
         let Some(other) = followed.into_iter().min_by(|a, b| a.cost.total_cmp(&b.cost)) else { continue };
         let gain = present.cost - other.cost - searched;
@@ -128,10 +141,11 @@ pub(super) fn rearranged(
     }
     Ok(best.map(|(gain, group, arrangement)| {
         let kept = scene.changes.iter().enumerate().filter(|(change, _)| !group.contains(change));
-        let added = arrangement.places.iter().map(|place| Change {
+        let added = arrangement.places.iter().enumerate().map(|(k, place)| Change {
             kind: ChangeKind::Inserted,
             removed: Vec::new(),
             added: vec![*place],
+            labels: arrangement.labels.get(k).copied().into_iter().collect(),
             standard_error: arrangement.standard_error,
             evidence: gain,
         });

@@ -29,6 +29,8 @@ pub struct Change {
     pub removed: Vec<usize>,
     /// Where it puts cells.
     pub added: Vec<Vector<f64>>,
+    /// The labels of those, where cells of each label have parameters of their own: the ones that suit the velocities best.
+    pub labels: Vec<Option<i64>>,
     /// Standard error of a coordinate of those.
     pub standard_error: f64,
     /// By how much −2 log likelihood falls, beyond the cost of the places, of having looked for them, and of the rate of such

@@ -145,7 +145,9 @@ pub fn complete(
             velocity: request.noise.velocity.unwrap_or(FIRST_VELOCITY_NOISE),
         };
         let known = request.noise.position.is_some() && request.noise.velocity.is_some();
-        let search = Search { request, space, levels, polygons, least_excess: if known { 1.0 } else { 0.0 } };
+        let labels = labels(frames, request);
+        let least_excess = if known { 1.0 } else { 0.0 };
+        let search = Search { request, space, levels, polygons, labels, least_excess };
         search.run(&mut scenes, &mut rates, &mut Watch { observe })?;
     }
     let completed = |scene: Scene<'_>| CompletedFrame {
@@ -163,7 +165,18 @@ struct Search<'a> {
     space: CoefficientSpace,
     levels: NoiseLevels,
     polygons: Polygons,
+    labels: Vec<(Option<i64>, f64)>,
     least_excess: f64,
+}
+
+/// The labels of cells that have parameters of their own, and −2 log of their shares of the cells; nothing where cells are alike.
+fn labels(frames: &[Observation], request: &Request) -> Vec<(Option<i64>, f64)> {
+    let Some(kinds) = &request.kinds else { return vec![(None, 0.0)] };
+    let of_cells = || frames.iter().flat_map(|frame| frame.environment().labels()).flatten();
+    let all = of_cells().count().max(1) as f64;
+    let share = |label: i64| of_cells().filter(|own| **own == label).count() as f64 / all;
+    let known = std::iter::once(kinds.reference).chain(kinds.others.iter().copied());
+    known.map(|label| (Some(label), -2.0 * share(label).max(f64::MIN_POSITIVE).ln())).collect()
 }
 
 impl Search<'_> {
@@ -231,7 +244,13 @@ impl Search<'_> {
         let targets = || scenes.iter().flat_map(|scene| scene.measured.explainable());
         let squares: f64 = targets().map(|v| v.norm_squared()).sum();
         let spread = 0.5 * squares / targets().count().max(1) as f64;
-        Evidence { law: self.law(coefficients, excess), polygons: &self.polygons, rates, spread }
+        Evidence {
+            law: self.law(coefficients, excess),
+            polygons: &self.polygons,
+            rates,
+            spread,
+            labels: &self.labels,
+        }
     }
 
     /// The changes with most evidence that are far from each other, for each frame.

@@ -10,6 +10,7 @@ use crate::{Error, Flow, Velocities};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use std::sync::Arc;
 use voronudge_geometry::{CellPolygon, Domain, Grid, Tessellation, Vector, Visibility, areas, circumcentre};
+use voronudge_model::Environment;
 
 /// Distance from the centre within which velocities are compared, in ℓ₀: two rings around a cell that moves.
 const COMPARED: f64 = 3.0;
@@ -35,6 +36,7 @@ pub(super) struct Neighbourhood {
     /// Data that are compared, and what is to be explained: of a cell, or of a point of the grid.
     targets: Vec<(usize, Vector<f64>)>,
     flow: Option<Flow>,
+    has_labels: bool,
 }
 
 /// Free cells with a normal prior of their places.
@@ -48,6 +50,22 @@ pub(super) struct Guess {
     pub spread: f64,
     /// What the velocity of the only one is to be.
     pub target: Option<Vector<f64>>,
+    /// Their labels, where cells have labels.
+    pub labels: Vec<Option<i64>>,
+}
+
+/// Cells beside those of a neighbourhood.
+#[derive(Clone, Copy)]
+struct Beside<'a> {
+    places: &'a [Vector<f64>],
+    target: Option<Vector<f64>>,
+    labels: &'a [Option<i64>],
+}
+
+impl Guess {
+    fn at<'a>(&'a self, places: &'a [Vector<f64>]) -> Beside<'a> {
+        Beside { places, target: self.target, labels: &self.labels }
+    }
 }
 
 /// Free cells at the places that suit the velocities best.
@@ -88,23 +106,30 @@ impl Neighbourhood {
             Velocities::OfCells(_) => None,
             Velocities::OnGrid(flow) => around(scene, flow, centre, &mut targets),
         };
-        Ok(Self { cells, positions, tessellation, targets, flow })
+        Ok(Self { cells, positions, tessellation, targets, flow, has_labels: scene.has_labels() })
+    }
+
+    /// What surrounds its cells and free ones.
+    fn environment(&self, free: Beside<'_>) -> Result<Arc<Environment>, Error> {
+        if !self.has_labels {
+            return Ok(Arc::default());
+        }
+        let of_free = free.places.iter().enumerate().map(|(k, _)| free.labels.get(k).copied().flatten());
+        let labels = self.cells.iter().map(|cell| cell.label).chain(of_free).collect();
+        Ok(Arc::new(Environment::default().with_labels(labels)?))
     }
 
     /// The velocities nearby with free cells.
-    fn residuals(
-        &self,
-        law: &Law<'_>,
-        free: &[Vector<f64>],
-        target: Option<Vector<f64>>,
-    ) -> Result<Residuals, Error> {
+    fn residuals(&self, law: &Law<'_>, beside: Beside<'_>) -> Result<Residuals, Error> {
+        let Beside { places: free, target, .. } = beside;
         let fixed = self.positions.len();
         let positions: Vec<Vector<f64>> = self.positions.iter().chain(free).copied().collect();
         let tessellation = if free.is_empty() { self.tessellation.clone() } else { tessellate(&positions)? };
         let sampling = self.flow.as_ref().map(|flow| {
             Sampling::new(flow, &tessellation, &positions, &vec![Visibility::Counted; positions.len()])
         });
-        let nudged = Nudged::placed(law.structure, Arc::default(), positions, tessellation, sampling);
+        let nudged =
+            Nudged::placed(law.structure, self.environment(beside)?, positions, tessellation, sampling);
         let evaluated = nudged.evaluate(law.coefficients);
         let jacobian = nudged.jacobian(law.coefficients, &evaluated);
         let own = target.map(|target| (fixed, target));
@@ -131,19 +156,15 @@ impl Neighbourhood {
     }
 
     /// How well the velocities nearby are explained with free cells, from the factors of places nearby.
-    fn misfit(
-        &self,
-        law: &Law<'_>,
-        (free, target): (&[Vector<f64>], Option<Vector<f64>>),
-        factors: &mut Vec<f64>,
-    ) -> Result<Misfit, Error> {
-        let misfit = self.residuals(law, free, target)?.misfit(factors);
+    fn misfit(&self, law: &Law<'_>, free: Beside<'_>, factors: &mut Vec<f64>) -> Result<Misfit, Error> {
+        let misfit = self.residuals(law, free)?.misfit(factors);
         misfit.ok_or_else(|| Error::Optimiser("velocities that are not finite".into()))
     }
 
     /// Deviance of the velocities nearby as things are.
     pub fn deviance(&self, law: &Law<'_>) -> Result<f64, Error> {
-        Ok(self.misfit(law, (&[], None), &mut Vec::new()).map_or(f64::INFINITY, |misfit| misfit.deviance))
+        let nothing = Beside { places: &[], target: None, labels: &[] };
+        Ok(self.misfit(law, nothing, &mut Vec::new()).map_or(f64::INFINITY, |misfit| misfit.deviance))
     }
 
     /// Damped Gauss–Newton on the places of free cells, the coefficients held. Steps are counted by evaluations.
@@ -154,7 +175,7 @@ impl Neighbourhood {
         };
         let mut z = guess.start.clone();
         let mut factors = Vec::new();
-        let Ok(mut misfit) = self.misfit(law, (&z, guess.target), &mut factors) else {
+        let Ok(mut misfit) = self.misfit(law, guess.at(&z), &mut factors) else {
             return Ok(Placed {
                 deviance: f64::INFINITY,
                 strain: f64::INFINITY,
@@ -170,7 +191,7 @@ impl Neighbourhood {
             let trial: Vec<Vector<f64>> = z.iter().zip(&delta).map(|(z, d)| z + d).collect();
             done += 1;
             let mut of_trial = factors.clone();
-            let other = self.misfit(law, (&trial, guess.target), &mut of_trial);
+            let other = self.misfit(law, guess.at(&trial), &mut of_trial);
             let next = other.as_ref().map_or(f64::INFINITY, |other| other.deviance + from_prior(&trial));
             match other {
                 Ok(other) if next < value => {

@@ -61,6 +61,8 @@ pub(super) struct Evidence<'a> {
     pub rates: &'a Rates,
     /// Variance of a component of the velocities themselves.
     pub spread: f64,
+    /// Labels that a cell may have whose label is not known, and −2 log of their share; nothing if cells have no labels.
+    pub labels: &'a [(Option<i64>, f64)],
 }
 
 /// Which changes are looked for.
@@ -181,15 +183,16 @@ fn judge(
     start: &[Vector<f64>],
     evidence: &Evidence<'_>,
 ) -> Result<Change, Error> {
-    let Evidence { law, polygons, rates, spread } = evidence;
+    let Evidence { law, polygons, rates, spread, .. } = evidence;
     let before = Neighbourhood::new(scene, proposal.centre, undone, &[])?;
     let (feature, guesses) = features(scene, &before, proposal, polygons)?;
+    let guesses = guesses.into_iter().flat_map(|guess| labelled(scene, proposal, guess, evidence.labels));
     let after = match proposal.removed.is_empty() {
         true => None,
         false => Some(Neighbourhood::new(scene, proposal.centre, undone, &proposal.removed)?),
     };
     let mut best: Option<(f64, Change)> = None;
-    for mut guess in guesses {
+    for (mut guess, unlikely) in guesses {
         if !start.is_empty() {
             guess.start =
                 start.iter().map(|at| proposal.centre + scene.between(proposal.centre, *at)).collect();
@@ -199,13 +202,14 @@ fn judge(
         let posterior = DMatrix::identity(n, n) + &placed.information * guess.spread.powi(2);
         let cost = placed.prior + posterior.determinant().max(1.0).ln();
         let own = lost(scene, proposal, *spread);
-        let value = placed.deviance + own + cost;
+        let value = placed.deviance + own + cost + unlikely;
         if best.as_ref().is_none_or(|(known, _)| value < *known) {
             let variance = posterior.try_inverse().map_or(1.0, |inverse| inverse.trace() / n.max(1) as f64);
             let change = Change {
                 kind: proposal.kind,
                 removed: proposal.removed.clone(),
                 added: placed.positions,
+                labels: guess.labels,
                 standard_error: guess.spread * variance.sqrt(),
                 evidence: 0.0,
             };
@@ -219,6 +223,24 @@ fn judge(
     // A change that cannot be judged is none.
     let gained = if gained.is_finite() { gained } else { f64::NEG_INFINITY };
     Ok(Change { evidence: gained, ..change })
+}
+
+/// A guess with the labels that its cells may have, and −2 log of how likely these are: those of the detections that the cells stand for, or
+/// any.
+fn labelled(
+    scene: &Scene<'_>,
+    proposal: &Proposal,
+    guess: Guess,
+    labels: &[(Option<i64>, f64)],
+) -> Vec<(Guess, f64)> {
+    if !scene.has_labels() {
+        return vec![(guess, 0.0)];
+    }
+    let of = |label| Guess { labels: vec![label; guess.start.len()], ..guess.clone() };
+    match proposal.removed.first() {
+        Some(detection) => vec![(of(scene.measured.environment().label(*detection)), 0.0)],
+        None => labels.iter().map(|(label, unlikely)| (of(*label), *unlikely)).collect(),
+    }
 }
 
 /// Deviance of measured velocities that a change no longer explains, as those of anything that moves.
@@ -247,8 +269,13 @@ fn features(
         .filter_map(|cell| before.cells.iter().position(|other| other.origin == Origin::Detected(*cell)))
         .collect();
     let area: f64 = own.iter().map(|cell| before.polygon(*cell).map_or(f64::NAN, |p| p.shape().area)).sum();
-    let guess =
-        |places: Vec<Vector<f64>>, spread: f64| Guess { start: places.clone(), places, spread, target: None };
+    let guess = |places: Vec<Vector<f64>>, spread: f64| Guess {
+        start: places.clone(),
+        places,
+        spread,
+        target: None,
+        labels: Vec::new(),
+    };
     Ok(match proposal.kind {
         ChangeKind::Inserted => {
             let circle = before.empty_circle(proposal.centre, &[])?;

@@ -23,6 +23,7 @@ pub(super) struct Cell {
     pub target: Option<Vector<f64>>,
     /// `(σ_i / σ_r)²` of a measured position.
     pub variance: Option<f64>,
+    pub label: Option<i64>,
 }
 
 /// A frame with its changes.
@@ -77,8 +78,15 @@ impl<'a> Scene<'a> {
                 Velocities::OfCells(origins.iter().map(of).collect())
             }
         };
-        self.observation = self.measured.with_cells(&kept, positions, velocities)?;
+        let observation = self.measured.with_cells(&kept, positions, velocities)?;
         (self.origins, self.changes) = (origins, changes);
+        self.observation = match self.has_labels() {
+            true => {
+                let labels = self.origins.iter().map(|origin| self.label(*origin)).collect();
+                observation.with_labels(labels)?
+            }
+            false => observation,
+        };
         Ok(())
     }
 
@@ -120,19 +128,34 @@ impl<'a> Scene<'a> {
         cells
     }
 
+    /// Whether cells have labels.
+    pub fn has_labels(&self) -> bool {
+        !self.measured.environment().labels().is_empty()
+    }
+
+    fn label(&self, origin: Origin) -> Option<i64> {
+        match origin {
+            Origin::Detected(cell) => self.measured.environment().label(cell),
+            Origin::Added(index, place) => self.changes[index].labels.get(place).copied().flatten(),
+        }
+    }
+
     fn cell(&self, origin: Origin, position: Vector<f64>) -> Cell {
+        let label = self.label(origin);
         match origin {
             Origin::Detected(cell) => Cell {
                 origin,
                 position,
                 target: self.cells_target(cell),
                 variance: Some(self.measured.stiffness(cell)).filter(|m| *m > 0.0).map(f64::recip),
+                label,
             },
             Origin::Added(index, _) => Cell {
                 origin,
                 position,
                 target: self.joint_target(&self.changes[index].removed, self.changes[index].added.len()),
                 variance: None,
+                label,
             },
         }
     }

@@ -66,12 +66,13 @@ pub(super) fn unite(movie: &mut Movie, next: &[Option<usize>]) {
     let followers: BTreeSet<usize> = next.iter().copied().flatten().collect();
     let mut tracks: Vec<Track> = Vec::with_capacity(next.len() - followers.len());
     for head in (0..next.len()).filter(|track| !followers.contains(track)) {
-        let mut whole = Track { first: 0, seen: Vec::new(), names: Vec::new() };
+        let mut whole = Track { first: 0, seen: Vec::new(), names: Vec::new(), label: None };
         let mut part = Some(head);
         while let Some(own) = part {
             let piece = &movie.tracks[own];
             whole.go_on(movie.domain, piece.first, piece.seen.iter().copied());
             whole.names.extend(&piece.names);
+            whole.label = whole.label.or(piece.label);
             part = next[own];
         }
         tracks.push(whole);

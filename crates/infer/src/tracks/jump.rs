@@ -128,7 +128,8 @@ pub(super) fn cut(movie: &mut Movie, jumps: &[Jump]) {
         let Some(track) = movie.tracks.iter_mut().find(is_own) else { continue };
         let rest = track.seen.split_off(after - track.first);
         track.seen.truncate(before + 1 - track.first);
-        movie.tracks.push(Track { first: after, seen: rest, names: vec![(after, jump.cell)] });
+        let (names, label) = (vec![(after, jump.cell)], track.label);
+        movie.tracks.push(Track { first: after, seen: rest, names, label });
     }
 }
 

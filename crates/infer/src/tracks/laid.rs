@@ -68,7 +68,7 @@ impl<'a> Laid<'a> {
                 }
             }
             let names = track.names.iter().map(|(from, name)| (2 * from, *name)).collect();
-            Track { first: 2 * track.first, seen, names }
+            Track { first: 2 * track.first, seen, names, label: track.label }
         };
         let tracks = movie.tracks.iter().enumerate().map(of_track).collect();
         let between = movie.times.windows(2).flat_map(|pair| [pair[0], 0.5 * (pair[0] + pair[1])]);

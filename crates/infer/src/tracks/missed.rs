@@ -39,6 +39,7 @@ pub struct Latent {
 #[derive(Debug, Clone, Copy)]
 struct Found {
     place: Vector<f64>,
+    label: Option<i64>,
     standard_error: f64,
     evidence: f64,
 }
@@ -51,6 +52,15 @@ struct Chain {
 }
 
 impl Chain {
+    /// The label that has most evidence in its frames together.
+    fn label(&self) -> Option<i64> {
+        let mut evidence: BTreeMap<i64, f64> = BTreeMap::new();
+        for (label, found) in self.found.iter().filter_map(|found| Some((found.label?, found))) {
+            *evidence.entry(label).or_default() += found.evidence;
+        }
+        evidence.into_iter().max_by(|a, b| a.1.total_cmp(&b.1)).map(|(label, _)| label)
+    }
+
     /// The frame after the last in which it was found.
     fn end(&self) -> usize {
         self.first + self.found.len()
@@ -79,7 +89,8 @@ pub fn complete_tracks(
         let found = |change: &Change| {
             let place = change.added.first()?;
             let place = place - motions[index].around(*place, None) * aside;
-            Some(Found { place, standard_error: change.standard_error, evidence: change.evidence })
+            let label = change.labels.first().copied().flatten();
+            Some(Found { place, label, standard_error: change.standard_error, evidence: change.evidence })
         };
         inserted.filter_map(found).collect()
     };
@@ -103,15 +114,18 @@ fn snapshots(movie: &Movie) -> Result<Vec<Observation>, Error> {
                 places.entry(*track).or_default().push(*r);
             }
         }
-        let (mut positions, mut velocities) = (Vec::new(), Vec::new());
+        let (mut positions, mut velocities, mut tracks) = (Vec::new(), Vec::new(), Vec::new());
         for (track, all) in places.iter().filter(|(_, all)| all.len() == frames) {
+            tracks.push(*track);
             positions.push(all.iter().sum::<Vector<f64>>() / frames as f64);
             let own = &movie.tracks[*track as usize];
             let is_seen = own.at(first).is_some() && own.at(last).is_some();
             let moved = all[frames - 1] - all[0] - drift;
             velocities.push(is_seen.then(|| moved / (movie.times[last] - movie.times[first])));
         }
-        Observation::new(first, positions, velocities, movie.domain, movie.field_of_view.clone())
+        let cells =
+            Observation::new(first, positions, velocities, movie.domain, movie.field_of_view.clone())?;
+        Ok(cells.within(movie.environment_of(&tracks)))
     };
     instants(movie)?.windows(frames).enumerate().map(snapshot).collect()
 }
@@ -146,7 +160,7 @@ fn with_cells(movie: &Movie, motions: &[Motion<'_>], chains: &[Chain]) -> (Movie
     let mut taken = vec![false; movie.tracks.len()];
     let (mut cells, mut found) = (Vec::new(), Vec::new());
     for chain in chains {
-        let mut whole = Track { first: 0, seen: Vec::new(), names: Vec::new() };
+        let mut whole = Track { first: 0, seen: Vec::new(), names: Vec::new(), label: None };
         for part in (Way { movie, motions, taken: &taken, chain }).parts() {
             match part {
                 Part::Latent(frame, position) => {
@@ -157,10 +171,12 @@ fn with_cells(movie: &Movie, motions: &[Motion<'_>], chains: &[Chain]) -> (Movie
                     let track = &movie.tracks[number];
                     whole.go_on(movie.domain, track.first, track.seen.iter().copied());
                     whole.names.extend(&track.names);
+                    whole.label = whole.label.or(track.label);
                     taken[number] = true;
                 }
             }
         }
+        whole.label = whole.label.or_else(|| chain.label());
         if whole.names.is_empty() {
             let least = chain.found.iter().map(|found| found.standard_error).fold(f64::INFINITY, f64::min);
             found.push([least, chain.found.iter().map(|found| found.evidence).sum()]);
@@ -257,6 +273,7 @@ impl Latent {
                             kind: ChangeKind::Inserted,
                             removed: Vec::new(),
                             added: vec![*position],
+                            labels: vec![movie.tracks[track].label],
                             standard_error: *standard_error,
                             evidence: *evidence,
                         });

@@ -38,6 +38,8 @@ pub struct Track {
     /// Its names, each with the frame from which on it bears it: its number in the frames that the movie was made from. None for a cell that
     /// was never detected.
     pub names: Vec<(usize, usize)>,
+    /// Its label, if cells have labels.
+    pub label: Option<i64>,
 }
 
 impl Track {
@@ -153,8 +155,6 @@ pub struct Movie {
     pub(super) stage: Vec<Vector<f64>>,
     /// What terms refer to: the middle of the box, or the mean place of the cells.
     pub(super) environment: Arc<Environment>,
-    /// Labels of the cells that the movie was made from, or none at all.
-    pub(super) labels: Vec<Option<i64>>,
 }
 
 impl Movie {
@@ -184,18 +184,8 @@ impl Movie {
         let usual = lengths[lengths.len() / 2];
         let stage = vec![Vector::zeros(); times.len()];
         let environment = Arc::new(Environment::default().about(middle(domain, frames)));
-        let mut movie = Self {
-            times,
-            tracks,
-            domain,
-            field_of_view,
-            drift,
-            share: 0.0,
-            usual,
-            stage,
-            environment,
-            labels: Vec::new(),
-        };
+        let mut movie =
+            Self { times, tracks, domain, field_of_view, drift, share: 0.0, usual, stage, environment };
         for frame in 1..movie.frames() {
             movie.stage[frame] = movie.stage[frame - 1] + movie.median_step(frame - 1);
         }
@@ -371,5 +361,5 @@ fn track(frames: &[Vec<Option<Vector<f64>>>], cell: usize, domain: Domain) -> Op
         previous = place.or(previous);
         place.map(|position| Sighting { position, error: 1.0 })
     });
-    Some(Track { first, seen: seen.collect(), names: vec![(first, cell)] })
+    Some(Track { first, seen: seen.collect(), names: vec![(first, cell)], label: None })
 }

@@ -39,7 +39,8 @@ impl Movie {
             };
             let seen: Vec<_> = (first..end).map(sighting).collect();
             let names = track.name(first).map(|name| (0, name)).into_iter().collect();
-            (!seen.is_empty()).then(|| (Track { first: first - from, seen, names }, number))
+            (!seen.is_empty())
+                .then(|| (Track { first: first - from, seen, names, label: track.label }, number))
         };
         let (tracks, numbers) = self.tracks.iter().enumerate().filter_map(part).unzip();
         let part = Self {

@@ -6,10 +6,11 @@ use voronudge_geometry::Vector;
 use voronudge_model::{Column, Effect, Environment};
 
 impl Movie {
-    /// Gives labels to the cells that the movie was made from; a track has that of its first name.
-    #[must_use]
-    pub fn with_labels(self, labels: Vec<Option<i64>>) -> Self {
-        Self { labels, ..self }
+    /// Gives labels to the cells that the movie was made from; a track has that of the first of its names that has one.
+    pub fn label(&mut self, labels: &[Option<i64>]) {
+        for track in self.tracks.iter_mut().filter(|track| !track.names.is_empty()) {
+            track.label = track.names.iter().find_map(|(_, name)| labels.get(*name).copied().flatten());
+        }
     }
 
     /// What surrounds the cells.
@@ -19,14 +20,10 @@ impl Movie {
 
     /// The same of the cells of some tracks, with their labels.
     pub(super) fn environment_of(&self, tracks: &[u32]) -> Arc<Environment> {
-        if self.labels.is_empty() {
+        let labels: Vec<_> = tracks.iter().map(|track| self.tracks[*track as usize].label).collect();
+        if labels.iter().all(Option::is_none) {
             return self.environment.clone();
         }
-        let label = |track: &u32| {
-            let (_, name) = self.tracks[*track as usize].names.first()?;
-            self.labels.get(*name).copied().flatten()
-        };
-        let labels = tracks.iter().map(label).collect();
         // There is nothing else about cells that it could disagree with.
         Environment::clone(&self.environment)
             .with_labels(labels)
@@ -38,7 +35,9 @@ impl Movie {
     /// # Errors
     /// The reason why the effect cannot act there.
     pub fn columns(&self, effect: &Effect) -> Result<Vec<Column>, &'static str> {
-        let earlier = Environment::clone(&self.environment).with_earlier(vec![Some(Vector::zeros())]);
+        let tracks: Vec<u32> = (0..self.tracks.len() as u32).collect();
+        let earlier = vec![Some(Vector::zeros()); tracks.len()];
+        let earlier = Environment::clone(&self.environment_of(&tracks)).with_earlier(earlier);
         effect.columns(&earlier.unwrap_or_default(), self.domain)
     }
 }

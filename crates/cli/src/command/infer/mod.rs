@@ -166,11 +166,8 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
     let mut out = out.begin()?;
     let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
     let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
-    let found = prepared.find_cells(&mut |state| progress.tell(state));
-    if let (Ok(()), Some(kinds)) = (&found, kinds) {
-        prepared.distinguish(kinds, &data)?;
-    }
-    let understood = found.and_then(|()| prepared.determine(&mut |state| progress.tell(state)));
+    let told_apart = kinds.map_or(Ok(()), |kinds| prepared.distinguish(kinds, &data));
+    let understood = told_apart.and_then(|()| prepared.understand(&mut |state| progress.tell(state)));
     measurement::caution(&prepared, &mut run);
     let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
     let answered = fitted.and_then(|(result, tracked)| {
