@@ -29,7 +29,7 @@ struct Row {
 }
 
 /// A table with a row for each way of seeing and each difference.
-pub fn run(sets: u64, first: u64, out: &Path) -> Outcome {
+pub fn run(sets: u64, first: u64, only: &[String], out: &Path) -> Outcome {
     let program = Program::new(None, "--fix K_A=0.1 --by-label P_0,alpha")?;
     println!(
         "| seen | kinds | named different | covered: P_0 of both kinds, of the difference | α of both kinds, of the difference | median error of the difference (% of the mean): P_0, α |"
@@ -37,6 +37,10 @@ pub fn run(sets: u64, first: u64, out: &Path) -> Outcome {
     println!("|---|---|---|---|---|---|");
     for view in [View::Whole, View::Window, View::Tracks] {
         for (number, (name, shares)) in SETTINGS.iter().enumerate() {
+            let setting = format!("{}, {name}", view.name());
+            if !only.is_empty() && !only.iter().any(|part| setting.contains(part.as_str())) {
+                continue;
+            }
             let rows = on_one_core_each(sets, |set| {
                 let seed = first + set;
                 let folder = out.join(format!("{number}-{}-{seed}", view as u8));

@@ -132,7 +132,8 @@ pub fn run(arguments: &Arguments) -> Outcome {
             spreads::run(arguments.seeds, arguments.cells, &arguments.only, searching)
         }
         Study::ByLabel => {
-            by_label::run(arguments.seeds, arguments.measured.seed, &arguments.folder("by-label"))
+            let out = arguments.folder("by-label");
+            by_label::run(arguments.seeds, arguments.measured.seed, &arguments.only, &out)
         }
         Study::Rheology => {
             let out = arguments.folder("rheology");
