@@ -161,39 +161,3 @@ impl Domain {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn wrapping_lands_in_the_box_and_differs_by_a_lattice_vector() {
-        let cell = PeriodicBox::sheared([3.0, 2.0], 0.7).unwrap();
-        for r in [Vector::new(-0.1, 5.3), Vector::new(7.0, -4.1), Vector::new(0.0, 0.0)] {
-            let w = cell.wrap(r);
-            assert!((0.0..3.0).contains(&w.x) && (0.0..2.0).contains(&w.y), "{w}");
-            assert!((r - w - cell.translation(cell.image(r))).norm() < 1e-14);
-        }
-    }
-
-    #[test]
-    fn any_shear_makes_a_box_of_the_same_lattice() {
-        let cell = PeriodicBox::sheared([3.0, 2.0], 0.7).unwrap();
-        for strain in [0.0, 1.3, -2000.0, 6143.0, 6145.0, -1e4, 123_456.5, -1e8] {
-            let sheared = cell.after_shear(strain).unwrap();
-            let widths = (0.7 + 2.0 * strain - sheared.offset()) / 3.0;
-            assert!((widths - widths.round()).abs() < 1e-7, "{strain}: {widths}");
-            assert_eq!(widths.round() == 0.0, (0.7 + 2.0 * strain).abs() < 3.0 * 4096.0, "{strain}");
-        }
-        assert!(cell.runs_on(3000.0) && !cell.runs_on(3200.0) && !cell.runs_on(f64::NAN));
-        for strain in [f64::NAN, f64::INFINITY, 2e9] {
-            assert!(matches!(cell.after_shear(strain), Err(Error::BoxOffset { .. })));
-        }
-    }
-
-    #[test]
-    fn unusable_boxes_are_refused() {
-        assert!(matches!(PeriodicBox::new([0.0, 1.0]), Err(Error::BoxSide { axis: 'x', .. })));
-        assert!(matches!(PeriodicBox::new([1.0, f64::NAN]), Err(Error::BoxSide { axis: 'y', .. })));
-    }
-}

@@ -259,6 +259,3 @@ impl Heights {
         (is_maximum && step.x.abs() <= 1.0 && step.y.abs() <= 1.0).then_some(step)
     }
 }
-
-#[cfg(test)]
-mod tests;

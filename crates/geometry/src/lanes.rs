@@ -94,23 +94,3 @@ macro_rules! operator {
 operator!(Add, add, AddAssign, add_assign);
 operator!(Sub, sub, SubAssign, sub_assign);
 operator!(Mul, mul, MulAssign, mul_assign);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn each_lane_is_a_number() {
-        let (a, b) = ([1.0, -0.3, 4e200, 7.5], [0.1, 3.0, -2.0, f64::MIN_POSITIVE]);
-        let formula = |a: f64, b: f64| (-a * b - a + b * 2.0 - 0.5) * (b * b).sqrt().recip() + 1.0;
-        let lanes = {
-            let (a, b) = (Lanes(a), Lanes(b));
-            let mut sum = -a * b - a;
-            sum += b * 2.0;
-            sum -= Lanes::constant(0.5);
-            sum *= (b * b).root().inverse();
-            sum + 1.0
-        };
-        assert_eq!(lanes.0, std::array::from_fn(|lane| formula(a[lane], b[lane])));
-    }
-}

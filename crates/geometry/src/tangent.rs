@@ -121,34 +121,3 @@ macro_rules! with_constants_and_assigning {
 with_constants_and_assigning!(Add, add, AddAssign, add_assign, |slope, _| slope);
 with_constants_and_assigning!(Sub, sub, SubAssign, sub_assign, |slope, _| slope);
 with_constants_and_assigning!(Mul, mul, MulAssign, mul_assign, |slope, by| slope * by);
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::Lanes;
-    use num_dual::DualSVec64;
-
-    fn formula<S: Arithmetic>(a: S, b: S) -> S {
-        let mut sum = -a * b - a + b * 2.0;
-        sum += (a * a + b * b + 1.0).root().inverse();
-        sum -= b - 0.25;
-        sum *= a;
-        sum
-    }
-
-    #[test]
-    fn slopes_are_those_of_dual_numbers() {
-        let [a, b] = [[1.0, -0.3, 4e20, 7.5], [0.1, 3.0, -2.0, 1e-3]];
-        let lanes = formula(Tangent::<_, 2>::along(Lanes(a), 0), Tangent::along(Lanes(b), 1));
-        for lane in 0..Lanes::WIDTH {
-            let dual = |x: f64, k| DualSVec64::<2>::from_re(x).derivative(k);
-            let expected = formula(dual(a[lane], 0), dual(b[lane], 1));
-            let eps = expected.eps.0.unwrap();
-            assert_eq!(lanes.value.0[lane], expected.re);
-            for direction in 0..2 {
-                let (found, expected) = (lanes.slopes[direction].0[lane], eps[direction]);
-                assert!((found - expected).abs() <= 1e-15 * expected.abs(), "{found} {expected}");
-            }
-        }
-    }
-}

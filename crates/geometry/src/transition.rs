@@ -88,38 +88,3 @@ fn ordered(from: usize, to: usize, image: [i16; 2]) -> Edge {
     let (a, b) = (from as u32, to as u32);
     if a <= b { (a, b, image) } else { (b, a, [-image[0], -image[1]]) }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::{Domain, MovingTessellation, PeriodicBox, Renewal, Side, Vector};
-
-    /// Small displacements of cells in a periodic box: as many transitions as flips, each with a side that shrinks through zero.
-    #[test]
-    fn transitions_are_the_flips() {
-        let place = |i: i32, t: f64| {
-            let x = f64::from(i);
-            let still =
-                Vector::new(f64::from(i % 12) + 0.3 * x.sin(), f64::from(i / 12) + 0.3 * (2.0 * x).cos());
-            still + Vector::new((3.0 * x).cos(), (5.0 * x).sin()) * t
-        };
-        let domain = Domain::Periodic(PeriodicBox::new([12.0, 12.0]).unwrap());
-        let [first, last]: [Vec<Vector<f64>>; 2] =
-            [0.0, 0.05].map(|t| (0..144).map(|i| place(i, t)).collect());
-        let mut moving = MovingTessellation::new(&first, domain).unwrap();
-        let before = moving.tessellation().clone();
-        let Renewal::Flipped(flips) = moving.renew(&last).unwrap() else { panic!("rebuilt") };
-        let after = moving.tessellation();
-        let found = Transition::between(&before, after);
-        assert!(flips > 0);
-        assert_eq!(found.len(), flips);
-        assert!(Transition::between(&before, &before).is_empty());
-        for Transition { lost, gained } in found {
-            let length = |tessellation, positions, (cell, h)| {
-                Side::new(tessellation, positions, cell, h).unwrap().length
-            };
-            assert!(length(&before, &first, lost) > 0.0 && length(&before, &last, lost) < 0.0);
-            assert!(length(after, &first, gained) < 0.0 && length(after, &last, gained) > 0.0);
-        }
-    }
-}

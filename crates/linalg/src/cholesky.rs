@@ -16,6 +16,15 @@ use faer::{Conj, MatMut, Par, Side};
 /// For matrices that are small.
 const SEQUENTIAL: Par = Par::Seq;
 
+/// How the columns of a factor are kept.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum FactorForm {
+    /// Each for itself.
+    Simplicial,
+    /// Those with entries in the same rows together, as dense blocks.
+    Supernodal,
+}
+
 /// A factorised matrix `P A Pᵀ = L Lᵀ`, P a permutation.
 #[derive(Debug)]
 pub struct Cholesky {
@@ -31,6 +40,20 @@ impl Cholesky {
     /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`].
     pub fn new(matrix: &SymmetricMatrix) -> Result<Self, Error> {
         Self::with_threshold(matrix, SupernodalThreshold::AUTO)
+    }
+
+    /// The same by a factor of one form; [`Cholesky::new`] takes the one that should take less time.
+    ///
+    /// # Errors
+    /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`].
+    pub fn in_form(matrix: &SymmetricMatrix, form: FactorForm) -> Result<Self, Error> {
+        Self::with_threshold(
+            matrix,
+            match form {
+                FactorForm::Simplicial => SupernodalThreshold::FORCE_SIMPLICIAL,
+                FactorForm::Supernodal => SupernodalThreshold::FORCE_SUPERNODAL,
+            },
+        )
     }
 
     /// Above the threshold of operations per entry, columns of the factor are taken together as dense blocks.
@@ -58,6 +81,14 @@ impl Cholesky {
         match outcome {
             Ok(_) => Ok(Self { symbolic, values }),
             Err(LltError::NonPositivePivot { .. }) => Err(Error::NotPositiveDefinite),
+        }
+    }
+
+    /// In which form the factor is.
+    pub fn form(&self) -> FactorForm {
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(_) => FactorForm::Simplicial,
+            SymbolicCholeskyRaw::Supernodal(_) => FactorForm::Supernodal,
         }
     }
 
@@ -98,131 +129,5 @@ impl Cholesky {
             }
         };
         2.0 * half
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use nalgebra::DMatrix;
-
-    #[test]
-    fn an_indefinite_matrix_is_refused() {
-        let matrix = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![1.0, 2.0, 1.0]).unwrap();
-        assert_eq!(Cholesky::new(&matrix).unwrap_err(), Error::NotPositiveDefinite);
-    }
-
-    const FORMS: [SupernodalThreshold; 3] = [
-        SupernodalThreshold::AUTO,
-        SupernodalThreshold::FORCE_SIMPLICIAL,
-        SupernodalThreshold::FORCE_SUPERNODAL,
-    ];
-
-    /// A five-point Laplacian on a square grid that is held at zero around, plus a shift.
-    fn laplacian(side: usize, shift: f64) -> SymmetricMatrix {
-        let n = side * side;
-        let (mut start, mut row, mut value) = (vec![0], Vec::new(), Vec::new());
-        for i in 0..n {
-            row.push(i);
-            value.push(4.0);
-            for j in [(i % side + 1 < side).then_some(i + 1), (i + side < n).then_some(i + side)]
-                .into_iter()
-                .flatten()
-            {
-                row.push(j);
-                value.push(-1.0);
-            }
-            start.push(row.len());
-        }
-        let mut matrix = SymmetricMatrix::new(start, row, value).unwrap();
-        matrix.shift_diagonal(shift);
-        matrix
-    }
-
-    fn times(matrix: &SymmetricMatrix, x: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; x.len()];
-        for column in 0..x.len() {
-            for k in matrix.places().0[column]..matrix.places().0[column + 1] {
-                product[matrix.places().1[k]] += matrix.values()[k] * x[column];
-                if matrix.places().1[k] != column {
-                    product[column] += matrix.values()[k] * x[matrix.places().1[k]];
-                }
-            }
-        }
-        product
-    }
-
-    /// Two right-hand sides at once.
-    #[test]
-    fn solutions_satisfy_the_equations() {
-        let matrix = laplacian(12, 0.3);
-        let n = matrix.order();
-        let given: Vec<f64> = (0..2 * n).map(|i| (i as f64).sin()).collect();
-        for form in FORMS {
-            let mut x = given.clone();
-            Cholesky::with_threshold(&matrix, form).unwrap().solve(&mut x);
-            for (x, b) in x.chunks(n).zip(given.chunks(n)) {
-                let worst = times(&matrix, x).iter().zip(b).map(|(p, b)| (p - b).abs()).fold(0.0, f64::max);
-                assert!(worst < 1e-13, "{worst:e}");
-            }
-        }
-    }
-
-    /// The eigenvalues of the Laplacian are `4 − 2 cos(π j/(s+1)) − 2 cos(π k/(s+1))`, j and k from 1 to s.
-    #[test]
-    fn the_log_determinant_of_a_laplacian_is_the_sum_over_its_eigenvalues() {
-        let (side, shift) = (60, 0.01);
-        let matrix = laplacian(side, shift);
-        let wave = |k: usize| 2.0 - 2.0 * (std::f64::consts::PI * k as f64 / (side as f64 + 1.0)).cos();
-        let expected: f64 =
-            (1..=side).flat_map(|j| (1..=side).map(move |k| (shift + wave(j) + wave(k)).ln())).sum();
-        for form in FORMS {
-            let factor = Cholesky::with_threshold(&matrix, form).unwrap();
-            let simplicial = matches!(factor.symbolic.raw(), SymbolicCholeskyRaw::Simplicial(_));
-            assert!(form == SupernodalThreshold::AUTO || simplicial == (form == FORMS[1]));
-            let found = factor.log_determinant();
-            assert!((found - expected).abs() < 1e-12 * expected, "{found} {expected}");
-        }
-    }
-
-    /// Bands with pseudo-random entries.
-    #[test]
-    fn log_determinants_agree_with_dense_factors() {
-        for (order, band) in [(1, 0), (2, 1), (7, 3), (40, 5), (40, 39)] {
-            let columns = || (0..order).map(|column| column..(column + band + 1).min(order));
-            let start = std::iter::once(0).chain(columns().scan(0, |end, rows| {
-                *end += rows.len();
-                Some(*end)
-            }));
-            let start: Vec<usize> = start.collect();
-            let row: Vec<usize> = columns().flatten().collect();
-            let value: Vec<f64> = (0..row.len()).map(|k| (7.0 * k as f64).sin()).collect();
-            let mut matrix = SymmetricMatrix::new(start, row, value).unwrap();
-            matrix.shift_diagonal(2.0 * band as f64 + 1.5);
-            for _ in 0..2 {
-                let mut dense = DMatrix::zeros(order, order);
-                for column in 0..order {
-                    for k in matrix.places().0[column]..matrix.places().0[column + 1] {
-                        dense[(matrix.places().1[k], column)] = matrix.values()[k];
-                    }
-                }
-                let lower = dense.cholesky().unwrap().unpack();
-                let expected = 2.0 * lower.diagonal().map(f64::ln).sum();
-                for form in FORMS {
-                    let found = Cholesky::with_threshold(&matrix, form).unwrap().log_determinant();
-                    assert!((found - expected).abs() < 1e-13 * (1.0 + expected.abs()), "{found} {expected}");
-                }
-                matrix.shift_diagonal(0.7);
-            }
-        }
-    }
-
-    /// The determinant of the diagonal matrix, 1e-3000, is below the smallest `f64`.
-    #[test]
-    fn a_tiny_determinant_has_a_log_determinant() {
-        let matrix =
-            SymmetricMatrix::new((0..=1000).collect(), (0..1000).collect(), vec![1e-3; 1000]).unwrap();
-        let found = Cholesky::new(&matrix).unwrap().log_determinant();
-        assert!((found - 1000.0 * 1e-3f64.ln()).abs() < 1e-9);
     }
 }

@@ -94,12 +94,6 @@ impl Dissection {
         boundary.dedup();
         self.fronts[index].boundary = boundary;
     }
-
-    /// Numbers in the factors, for blocks of 2 × 2.
-    #[cfg(test)]
-    fn entries(&self) -> usize {
-        self.fronts.iter().map(|front| 4 * front.own * (front.own + 2 * front.boundary.len())).sum()
-    }
 }
 
 /// What is to be dissected.
@@ -186,49 +180,5 @@ impl Cut<'_> {
             .collect();
         ends.dedup();
         ends.into_iter().map(|end| [sorted[..end].to_vec(), sorted[end..].to_vec()]).collect()
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::sample;
-
-    fn places(side: usize) -> Vec<Place> {
-        sample::places(side).into_iter().map(|[x, y]| Some([x, y, 0.0])).collect()
-    }
-
-    #[test]
-    fn every_node_is_eliminated_once_and_knows_what_it_couples_to() {
-        let side = 23;
-        let matrix = sample::lattice(side, 0.2);
-        let transposed = matrix.transposed();
-        let dissection = Dissection::new(&Graph::of_blocks(&matrix, &transposed), &places(side));
-        let mut seen = dissection.order.clone();
-        seen.sort_unstable();
-        assert!(seen.iter().enumerate().all(|(i, &node)| i == node as usize) && seen.len() == side * side);
-        for front in &dissection.fronts {
-            for position in front.first..front.first + front.own {
-                let node = dissection.order[position] as usize;
-                for (other, _) in matrix.row(node).chain(transposed.row(node)) {
-                    let other = dissection.position[other];
-                    assert_eq!(front.local(other).is_some(), other as usize >= front.first);
-                }
-            }
-            for &child in &front.children {
-                assert!(dissection.fronts[child].boundary.iter().all(|&p| front.local(p).is_some()));
-            }
-        }
-        // A tenth of the dense matrix.
-        assert!(dissection.entries() < (2 * side * side).pow(2) / 2);
-    }
-
-    /// Places that tell nothing: the order is poor, not wrong.
-    #[test]
-    fn coinciding_places_are_no_obstacle() {
-        let matrix = sample::lattice(9, 0.2);
-        let graph = Graph::of_blocks(&matrix, &matrix.transposed());
-        let dissection = Dissection::new(&graph, &[Some([0.0; 3]); 81]);
-        assert_eq!(dissection.order.len(), 81);
     }
 }

@@ -24,15 +24,13 @@ mod graph;
 mod linear_system;
 mod partial_eigen;
 mod room;
-#[cfg(test)]
-mod sample;
 mod selected_inverse;
 mod separator;
 mod sparse_lu;
 mod symmetric_matrix;
 
 pub use block_sparse::BlockSparse;
-pub use cholesky::Cholesky;
+pub use cholesky::{Cholesky, FactorForm};
 pub use dense_eigen::{Wanted, eigen, eigen_complex};
 pub use dissected_cholesky::{DissectedCholesky, DissectedPattern};
 pub use eigenpairs::Eigenpairs;

@@ -137,37 +137,3 @@ impl Crossing {
         [near, far]
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Every coupling across is cut, and by no more nodes than any other choice would take.
-    #[test]
-    fn the_separator_is_the_smallest_that_separates() {
-        let (near, far) = (5, 6);
-        for seed in 0..40 {
-            let coupled =
-                |a: usize, b: usize| (f64::from(seed) + 7.1 * a as f64 + 1.7 * b as f64).sin() > 0.4;
-            let edges: Vec<(usize, usize)> = (0..near)
-                .flat_map(|a| (near..near + far).map(move |b| (a, b)))
-                .filter(|&(a, b)| coupled(a, b))
-                .collect();
-            let rows: Vec<usize> = edges.iter().map(|(_, b)| *b).collect();
-            let start: Vec<usize> =
-                (0..=near + far).map(|column| edges.partition_point(|(a, _)| *a < column)).collect();
-            let graph = Graph::of_lower_triangle(&start, &rows, 1);
-            let mut seat = vec![NONE; near + far];
-            let sides = [(0..near as u32).collect(), (near as u32..(near + far) as u32).collect()];
-            let halves = separate(&graph, sides, &mut seat);
-            let covers =
-                |chosen: u32| edges.iter().all(|(a, b)| chosen >> a & 1 == 1 || chosen >> b & 1 == 1);
-            let chosen = halves.separator.iter().fold(0, |chosen, node| chosen | 1 << node);
-            assert!(covers(chosen) && seat.iter().all(|k| *k == NONE));
-            let fewest = (0..1u32 << (near + far)).filter(|c| covers(*c)).map(u32::count_ones).min();
-            assert_eq!(fewest, Some(halves.separator.len() as u32));
-            let all = halves.sides.iter().map(Vec::len).sum::<usize>() + halves.separator.len();
-            assert_eq!(all, near + far);
-        }
-    }
-}

@@ -26,8 +26,6 @@ mod shape;
 mod spectra;
 mod structure_factor;
 mod tapers;
-#[cfg(test)]
-mod tests;
 mod transitions;
 mod velocity;
 mod vorticity;
@@ -42,10 +40,12 @@ pub use error::Error;
 pub use exchanges::{Exchange, exchange_statistics, exchanges};
 pub use fluctuations::{
     DynamicStructure, FluctuationRequest, Fluctuations, LongWaves, Relaxation, ShellFluctuations,
-    StructurePart, Tell, WaveField, fluctuations, together,
+    StructurePart, Tell, WaveField, fluctuations, relaxation_of_waves, together,
 };
 pub use hexatic::{Hexatic, hexatic, hexatic_among};
-pub use nematic::{Around, Defect, Nematic, SQUARES, Stresses, largest_width, nematic};
+pub use nematic::{
+    Around, Defect, Nematic, SQUARES, Stresses, around_defects, defects_of_shapes, largest_width, nematic,
+};
 pub use observe::{correlations, observe};
 pub use plan::Plan;
 pub use quantity::{Dimensions, Quantity};

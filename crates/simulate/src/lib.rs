@@ -70,6 +70,6 @@ pub use spatial_order::sort_in_space;
 pub use time_step::recommended_time_step;
 pub use turnover::{
     CellCycle, DivisionAxis, EdgeRate, Injection, LastStep, Life, LivingTissue, Origin, Progress,
-    Proliferation, Turnover,
+    Proliferation, Turnover, distance_of_halves,
 };
 pub use walls::{CellsAndImages, Walls};

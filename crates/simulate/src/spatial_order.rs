@@ -47,19 +47,3 @@ fn along_hilbert_curve(mut x: u32, mut y: u32) -> u64 {
     }
     place
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_curve_goes_from_square_to_neighbouring_square() {
-        let side = 32u32;
-        let scale = (1 << ORDER) / side;
-        let mut squares: Vec<_> = (0..side * side).map(|k| (k % side, k / side)).collect();
-        squares.sort_by_key(|&(x, y)| along_hilbert_curve(x * scale, y * scale));
-        for pair in squares.windows(2) {
-            assert_eq!(pair[0].0.abs_diff(pair[1].0) + pair[0].1.abs_diff(pair[1].1), 1, "{pair:?}");
-        }
-    }
-}

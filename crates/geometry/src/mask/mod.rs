@@ -2,8 +2,6 @@
 
 mod contacts;
 mod perimeter;
-#[cfg(test)]
-mod tests;
 
 use crate::{Error, Vector};
 use std::collections::BTreeMap;

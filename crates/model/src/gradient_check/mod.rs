@@ -43,15 +43,13 @@ mod polygons;
 mod report;
 mod sample;
 mod symmetry;
-#[cfg(test)]
-mod tests;
 
 pub use crate::Axis;
 pub use report::{GradientReport, GradientRow, Place, Quantity};
 
 use crate::{
-    BlockMatrix, Column, Effect, Environment, Exactness, FlowResponse, ForceTerm, Model, Parameters, Parity,
-    base_terms, jacobian, velocities,
+    BlockMatrix, Column, Effect, Environment, Exactness, FlowResponse, ForceTerm, Model, PARAMETER_NAMES,
+    Parameters, Parity, base_terms, jacobian, velocities,
 };
 use comparison::Comparison;
 use sample::Sample;
@@ -117,6 +115,44 @@ pub fn check_model(
         Subject::new(MODEL_WITH_EFFECTS, model.clone().within(&sample.environment), &sample, EFFECT_CELLS);
     let displaced = subject.displaced.len();
     Ok(GradientReport { cells: positions.len(), displaced, rows: subject.rows(&images) })
+}
+
+/// Checks velocities (N) and their derivatives by the positions that are said to be those of a model, under the name [`MODEL`].
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn check_claimed(
+    positions: &[Vector<f64>],
+    domain: Domain,
+    model: &Model<f64>,
+    velocities: &[Vector<f64>],
+    jacobian: &BlockMatrix,
+) -> Result<GradientReport, Error> {
+    let sample = Sample::new(positions, domain)?;
+    let subject = Subject {
+        velocities: velocities.to_vec(),
+        jacobian: jacobian.clone(),
+        ..Subject::new(MODEL, model.clone(), &sample, CELL_LIMIT)
+    };
+    let rows = subject.rows(&Images::of(&sample)?);
+    Ok(GradientReport { cells: positions.len(), displaced: subject.displaced.len(), rows })
+}
+
+/// Checks velocities that are said to be the derivatives of those of the base model by each of [`PARAMETER_NAMES`] (each N),
+/// under the name [`MODEL`].
+///
+/// # Errors
+/// [`Error`] if the positions cannot be tessellated.
+pub fn check_claimed_parameters(
+    positions: &[Vector<f64>],
+    domain: Domain,
+    parameters: &Parameters<f64>,
+    derivatives: &[Vec<Vector<f64>>; PARAMETER_NAMES.len()],
+) -> Result<GradientReport, Error> {
+    let sample = Sample::new(positions, domain)?;
+    let base = Subject::new(MODEL, Model::chiral_voronoi(parameters), &sample, CELL_LIMIT);
+    let rows = differences::parameters_against(&base, parameters, derivatives);
+    Ok(GradientReport { cells: positions.len(), displaced: sample.displaced.len(), rows })
 }
 
 /// The labels, earlier velocities, map and edge that are made up for effects that need them.
@@ -234,7 +270,14 @@ impl<'a> Subject<'a> {
     fn descent(&self) -> Option<Subject<'a>> {
         let model = self.model.passive();
         let descends = self.model.responses.is_empty() && !model.terms.is_empty();
-        descends.then(|| Self::new(self.name, model, self.sample, self.displaced.len()))
+        let is_all = model.terms.len() == self.model.terms.len();
+        descends.then(|| {
+            let mut descent = Self::new(self.name, model, self.sample, self.displaced.len());
+            if is_all {
+                descent.velocities.clone_from(&self.velocities);
+            }
+            descent
+        })
     }
 
     fn momentum(&self) -> Comparison {

@@ -18,13 +18,11 @@ mod covariance;
 mod dynamic_structure;
 mod evidence;
 mod relaxation;
-#[cfg(test)]
-mod tests;
 
 pub use course::WaveField;
 pub use dynamic_structure::{DynamicStructure, StructurePart};
 pub use evidence::together;
-pub use relaxation::Relaxation;
+pub use relaxation::{Relaxation, relaxation_of_waves};
 
 use crate::wave_shells::WaveShells;
 use crate::{Error, Plan, Recording};

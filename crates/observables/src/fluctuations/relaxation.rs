@@ -4,7 +4,7 @@ use super::course::Course;
 use super::covariance::{Covariance, Covariances, LAGS};
 use super::evidence::significance;
 use crate::RateMatrix;
-use nalgebra::{SMatrix, SVector};
+use nalgebra::{Complex, SMatrix, SVector};
 use statrs::distribution::{ContinuousCDF, StudentsT};
 use std::f64::consts::{FRAC_PI_2, PI};
 
@@ -70,6 +70,21 @@ const DISCRIMINANT: usize = 12;
 const DECAY: usize = 13;
 const NOISE: usize = 15;
 const MEMORY: usize = 16;
+
+/// The relaxation of waves that relax alike, each seen as a whole, from the course of each: amplitudes along q and a quarter turn ahead in each frame, one `interval` (time)
+/// after the other. τ_0 is `first_lag` frames. `None` if nothing can be told.
+pub fn relaxation_of_waves(
+    waves: &[Vec<[Complex<f64>; 2]>],
+    first_lag: usize,
+    interval: f64,
+) -> Option<Relaxation> {
+    let course = |field: &Vec<[Complex<f64>; 2]>| {
+        [Course { field: field.clone(), density: vec![Complex::ZERO; field.len()] }]
+    };
+    let courses: Vec<[Course; 1]> = waves.iter().map(course).collect();
+    let courses: Vec<&[Course]> = courses.iter().map(<[Course; 1]>::as_slice).collect();
+    relaxation(&courses, (first_lag, None), interval, 1.0)
+}
 
 /// The relaxation of the waves of a shell, of which the courses are given wave by wave; `dependence` is what standard errors are multiplied by.
 pub(super) fn relaxation(

@@ -8,8 +8,6 @@
 mod around;
 mod defects;
 mod director;
-#[cfg(test)]
-mod tests;
 
 use crate::curve::Sums;
 use crate::pairs;
@@ -57,6 +55,29 @@ pub fn nematic(
         defects::of_frame(recording, *number, &field, own_width)
     };
     let defects: Vec<Defect> = plan.stills.par_iter().map(of_frame).collect::<Vec<_>>().concat();
+    Ok(around_defects(recording, plan, width, defects, stresses_of))
+}
+
+/// The defects of a frame, given by its number, of other shapes of its cells than their own: tensors (N), the first row `Q_xx, Q_xy` of each. The director is smoothed over a
+/// Gaussian of standard deviation `width`, in the unit of the positions.
+pub fn defects_of_shapes(
+    recording: &Recording,
+    frame: usize,
+    shapes: Vec<[f64; 2]>,
+    width: f64,
+) -> Vec<Defect> {
+    let field = DirectorField::of_shapes(&recording.frames()[frame], shapes, width);
+    defects::of_frame(recording, frame, &field, width)
+}
+
+/// As [`nematic`], of defects that are known, told by a director smoothed over `width` mean spacings.
+pub fn around_defects(
+    recording: &Recording,
+    plan: &Plan,
+    width: f64,
+    defects: Vec<Defect>,
+    stresses_of: Option<&(dyn Fn(&Frame) -> Stresses + Sync)>,
+) -> Nematic {
     let frames = recording.frames();
     let velocity = |frame: usize, cell: usize| frames[frame].velocities[cell];
     let sides = [0.5, -0.5].map(|charge| (defects.iter().any(|own| own.charge == charge), charge));
@@ -75,12 +96,12 @@ pub fn nematic(
     });
     let mut curves = shapes(recording, plan);
     curves.push(pairs::shape_correlation(recording, plan));
-    curves.push(density(recording, plan, &defects, own_width));
+    curves.push(density(recording, plan, &defects, width * plan.spacing));
     if recording.has_velocities() && !defects.is_empty() {
         curves.extend(around::motion(recording, plan, &defects));
     }
     curves.retain(|curve| curve.value.iter().any(|value| value.is_finite()));
-    Ok(Nematic { curves, defects, flow, stress })
+    Nematic { curves, defects, flow, stress }
 }
 
 /// The largest width over which a director can be smoothed, in mean spacings: a quarter of the side of a periodic box.

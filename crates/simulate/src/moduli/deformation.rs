@@ -4,7 +4,7 @@ use voronudge_geometry::{PeriodicBox, Vector};
 
 /// A strain without rotation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Strain {
+pub enum Strain {
     /// `∇·u`
     Dilation,
     /// `e_1 = ∂_x u_x − ∂_y u_y`
@@ -18,7 +18,7 @@ impl Strain {
     pub const ALL: [Self; 3] = [Self::Dilation, Self::PureShear1, Self::PureShear2];
 
     /// The stretch `U = exp(E)`, `E` the symmetric gradient of displacement of an amount; shears keep the area.
-    fn stretch(self, amount: f64) -> [[f64; 2]; 2] {
+    pub fn stretch(self, amount: f64) -> [[f64; 2]; 2] {
         let half = 0.5 * amount;
         match self {
             Self::Dilation => [[half.exp(), 0.0], [0.0, half.exp()]],
@@ -32,13 +32,13 @@ impl Strain {
 ///
 /// For the second shear `F` is a simple shear of the box, as of Lees–Edwards boundaries, to first order.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Deformation {
+pub struct Deformation {
     gradient: [[f64; 2]; 2],
-    /// Cosine and sine of `R`.
     turn: [f64; 2],
 }
 
 impl Deformation {
+    /// That of an amount of a strain.
     pub fn new(strain: Strain, amount: f64) -> Self {
         let u = strain.stretch(amount);
         let length = u[0][0].hypot(u[1][0]);
@@ -54,7 +54,15 @@ impl Deformation {
         Vector::new(xx * r.x + xy * r.y, yy * r.y)
     }
 
+    /// Cosine and sine of `R`.
+    pub fn turn(&self) -> [f64; 2] {
+        self.turn
+    }
+
     /// The deformed box.
+    ///
+    /// # Errors
+    /// Those of [`PeriodicBox::sheared`].
     pub fn cell_box(&self, from: &PeriodicBox) -> Result<PeriodicBox, voronudge_geometry::Error> {
         let [[xx, xy], [_, yy]] = self.gradient;
         let [width, height] = from.lengths();
@@ -77,7 +85,7 @@ impl Deformation {
 
 /// The parts of a stress (row = component of the force), in the order of the rows of [`Response`](super::Response):
 /// `(σ_xx + σ_yy)/2`, `(σ_yx − σ_xy)/2`, `(σ_xx − σ_yy)/2`, `(σ_xy + σ_yx)/2`.
-pub(super) fn parts(s: [[f64; 2]; 2]) -> [f64; 4] {
+pub fn parts(s: [[f64; 2]; 2]) -> [f64; 4] {
     [
         0.5 * (s[0][0] + s[1][1]),
         0.5 * (s[1][0] - s[0][1]),
@@ -87,42 +95,6 @@ pub(super) fn parts(s: [[f64; 2]; 2]) -> [f64; 4] {
 }
 
 /// The stress of its parts.
-pub(super) fn whole(p: [f64; 4]) -> [[f64; 2]; 2] {
+pub fn whole(p: [f64; 4]) -> [[f64; 2]; 2] {
     [[p[0] + p[2], p[3] - p[1]], [p[3] + p[1], p[0] - p[2]]]
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn the_box_has_the_strain_up_to_its_turn() {
-        for strain in Strain::ALL {
-            let (amount, stretch) = (0.3, strain.stretch(0.3));
-            let deformation = Deformation::new(strain, amount);
-            let [c, n] = deformation.turn;
-            for r in [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)] {
-                let placed = deformation.place(r);
-                let turned = Vector::new(c * placed.x - n * placed.y, n * placed.x + c * placed.y);
-                let expected = Vector::new(
-                    stretch[0][0] * r.x + stretch[0][1] * r.y,
-                    stretch[1][0] * r.x + stretch[1][1] * r.y,
-                );
-                assert!((turned - expected).norm() < 1e-15, "{strain:?}");
-            }
-            let cell_box = PeriodicBox::sheared([3.0, 2.0], 0.4).unwrap();
-            let deformed = deformation.cell_box(&cell_box).unwrap();
-            let corner = deformation.place(cell_box.translation([1, 1]));
-            assert!((corner - deformed.translation([1, 1])).norm() < 1e-15);
-        }
-    }
-
-    #[test]
-    fn a_stress_is_the_sum_of_its_parts() {
-        let stress = [[1.0, 2.0], [3.0, 5.0]];
-        assert_eq!(whole(parts(stress)), stress);
-        // Pressure and torque do not know of turns.
-        let turned = parts(Deformation::new(Strain::PureShear2, 0.5).turn_back(stress));
-        assert!((turned[0] - 3.0).abs() < 1e-15 && (turned[1] - 0.5).abs() < 1e-15);
-    }
 }

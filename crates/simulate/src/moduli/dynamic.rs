@@ -109,6 +109,15 @@ impl Settled {
             }
         }
     }
+
+    /// Derivatives of stresses by strains that oscillate with an angular frequency (1/time), in phase and out of phase, of a tissue at rest: all
+    /// of what [`Settled::dynamic`] takes means of. `strain` is put on it for derivatives by the strain.
+    ///
+    /// # Errors
+    /// [`Error::Response`]; the errors of [`Simulation::step`].
+    pub fn linear_response(&self, frequency: f64, strain: f64) -> Result<[Response; 2], Error> {
+        Linear::new(self.simulation(), strain)?.response(frequency)
+    }
 }
 
 /// The linear response of a tissue at rest.
@@ -236,110 +245,4 @@ fn oscillating(
     let [in_phase, out_of_phase, odd_in_phase, odd_out_of_phase] = &found;
     let moduli = [None, None, modulus([in_phase, out_of_phase]), modulus([odd_in_phase, odd_out_of_phase])];
     Ok(Dynamic { frequency, moduli })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::moduli::{Relaxation, Settings};
-    use crate::{RandomPlacement, generator, honeycomb};
-    use std::ops::ControlFlow;
-    use voronudge_geometry::{Domain, PeriodicBox};
-    use voronudge_model::{Model, Parameters};
-
-    fn solid(seed: u64) -> Settled {
-        let cell_box = PeriodicBox::new([4.0, 4.0]).unwrap();
-        let positions = RandomPlacement::new(16, cell_box).draw(&mut generator(seed)).unwrap();
-        let parameters = Parameters { preferred_perimeter: 3.0, chirality: 0.5, ..Parameters::default() };
-        let model = Model::chiral_voronoi(&parameters);
-        let simulation = Simulation::new(positions, Domain::Periodic(cell_box), model).unwrap();
-        let settled = Settled::new(&simulation, &Relaxation::default(), &go_on).unwrap();
-        assert_eq!(settled.motion(), Motion::AtRest);
-        settled
-    }
-
-    fn go_on() -> ControlFlow<()> {
-        ControlFlow::Continue(())
-    }
-
-    fn protocol(frequencies: Vec<f64>) -> DynamicProtocol {
-        DynamicProtocol { frequencies, strain: 1e-5, amplitude: 1e-4, time: 1.0, time_step: 0.005 }
-    }
-
-    fn values(dynamic: &Dynamic) -> [Complex64; 4] {
-        dynamic.moduli.map(|own| own.unwrap()).map(|own| Complex64::new(own.storage, own.loss))
-    }
-
-    fn apart(a: [Complex64; 4], b: [f64; 4]) -> f64 {
-        a.iter().zip(b).map(|(a, b)| (a - b).norm()).fold(0.0, f64::max)
-    }
-
-    /// Slow strains find the moduli at rest, fast ones those without relaxation.
-    #[test]
-    fn both_limits_are_the_elastic_moduli() {
-        let solid = solid(1);
-        let elastic = solid.elastic(&Settings::default(), &go_on).unwrap();
-        let found = solid.dynamic(&protocol(vec![1e-6, 1e7]), &go_on).unwrap();
-        let [slow, fast] = [0, 1].map(|k| values(&found[k]));
-        assert!(apart(slow, elastic.moduli.to_array()) < 1e-5, "{slow:?} {elastic:?}");
-        assert!(apart(fast, elastic.affine.to_array()) < 1e-5, "{fast:?} {elastic:?}");
-        assert!(apart(fast, elastic.moduli.to_array()) > 0.01, "{elastic:?}");
-    }
-
-    /// `2/π ∫ G″ dω/ω` is what the modulus grows by from slow strains to fast ones (Kramers and Kronig).
-    #[test]
-    fn losses_add_up_to_the_growth_of_the_storage_moduli() {
-        let solid = solid(2);
-        let steps = 400;
-        let step = (1e12f64.ln()) / f64::from(steps);
-        let frequencies: Vec<f64> = (0..=steps).map(|k| 1e-6 * (f64::from(k) * step).exp()).collect();
-        let found = solid.dynamic(&protocol(frequencies), &go_on).unwrap();
-        let (first, last) = (values(&found[0]), values(&found[found.len() - 1]));
-        for k in 0..4 {
-            let losses: f64 = found.iter().map(|own| values(own)[k].im * step).sum();
-            let growth = last[k].re - first[k].re;
-            let sum = losses * 2.0 / std::f64::consts::PI;
-            assert!((sum - growth).abs() < 1e-3 * growth.abs().max(0.01), "{k}: {sum} {growth}");
-        }
-    }
-
-    /// A tissue at rest that is sheared in time answers as its linear response says.
-    #[test]
-    fn a_shear_in_time_finds_the_linear_response() {
-        let solid = solid(3);
-        let protocol = DynamicProtocol { time: 60.0, ..protocol(vec![3.0]) };
-        let linear = Linear::new(solid.simulation(), 1e-5).unwrap();
-        let [storage, loss] = linear.response(3.0).unwrap();
-        let in_time = oscillating(solid.simulation(), 3.0, &protocol, Observer(&go_on)).unwrap();
-        // Of the shear along x alone; this tissue is small, and not isotropic.
-        for (k, part) in [(2, 3), (3, 2)] {
-            let (storage, loss) = (storage[part][2], loss[part][2]);
-            let found = in_time.moduli[k].unwrap();
-            let apart = (storage - found.storage).hypot(loss - found.loss);
-            assert!(apart < 2e-3 && loss.abs() > 0.01, "{storage} {loss} {found:?}");
-        }
-    }
-
-    #[test]
-    fn a_honeycomb_loses_nothing() {
-        let (positions, cell_box) = honeycomb(16).unwrap();
-        let parameters = Parameters { preferred_perimeter: 3.0, chirality: 0.3, ..Parameters::default() };
-        let model = Model::chiral_voronoi(&parameters);
-        let simulation = Simulation::new(positions, Domain::Periodic(cell_box), model).unwrap();
-        let settled = Settled::new(&simulation, &Relaxation::default(), &go_on).unwrap();
-        for own in settled.dynamic(&protocol(vec![0.1, 1.0, 10.0]), &go_on).unwrap() {
-            let [bulk, odd_bulk, shear, odd_shear] = values(&own);
-            assert!((odd_shear + 3f64.sqrt() * 0.3).norm() < 1e-8 && odd_bulk.norm() < 1e-8, "{own:?}");
-            assert!(bulk.im.abs() < 1e-8 && shear.im.abs() < 1e-8 && bulk.re > shear.re, "{own:?}");
-        }
-    }
-
-    #[test]
-    fn amounts_that_cannot_be_are_refused() {
-        let solid = solid(1);
-        let refused = solid.dynamic(&protocol(vec![1.0, 0.0]), &go_on);
-        assert_eq!(refused.unwrap_err(), Error::Rate { name: "angular frequency", value: 0.0 });
-        let still = DynamicProtocol { amplitude: 0.0, ..protocol(vec![1.0]) };
-        assert!(solid.dynamic(&still, &go_on).is_err());
-    }
 }

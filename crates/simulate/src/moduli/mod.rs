@@ -34,6 +34,7 @@ mod step;
 mod uniform;
 mod viscosity;
 
+pub use deformation::{Deformation, Strain, parts, whole};
 pub use dynamic::{Dynamic, DynamicModulus, DynamicProtocol, FEWEST_PERIODS, FEWEST_STEPS};
 pub use relaxation::Relaxation;
 pub use settled::Settled;
@@ -43,7 +44,6 @@ pub use viscosity::{Viscosity, ViscosityProtocol, viscous};
 
 use crate::{Error, Simulation};
 use average::mean_stress;
-use deformation::{Deformation, Strain, parts, whole};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 use voronudge_geometry::Domain;

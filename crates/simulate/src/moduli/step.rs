@@ -54,34 +54,3 @@ pub fn after_a_step(
     };
     Ok(Some((0..times.len()).map(at).collect()))
 }
-
-#[cfg(test)]
-mod tests {
-    use crate::moduli::{Settings, after_a_step, elastic};
-    use crate::{RandomPlacement, Simulation, generator};
-    use std::ops::ControlFlow;
-    use voronudge_geometry::{Domain, PeriodicBox};
-    use voronudge_model::{Model, Parameters};
-
-    /// The first value is that of cells that follow the strain, the last that of cells at rest.
-    #[test]
-    fn moduli_go_from_those_without_relaxation_to_those_at_rest() {
-        let cell_box = PeriodicBox::new([4.0, 4.0]).unwrap();
-        let positions = RandomPlacement::new(16, cell_box).draw(&mut generator(1)).unwrap();
-        let parameters = Parameters { preferred_perimeter: 3.0, chirality: 0.3, ..Parameters::default() };
-        let model = Model::chiral_voronoi(&parameters);
-        let simulation = Simulation::new(positions, Domain::Periodic(cell_box), model).unwrap();
-        let settings = Settings::default();
-        let found = elastic(&simulation, &settings).unwrap();
-        let go_on = || ControlFlow::Continue(());
-        let times = [0.0, 0.1, 60.0];
-        let series = after_a_step(&simulation, &settings.relaxation, 5e-6, &times, &go_on).unwrap().unwrap();
-        let near = |k: usize, expected: [f64; 4]| {
-            let pairs = series[k].to_array().into_iter().zip(expected);
-            pairs.map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
-        };
-        assert!(near(0, found.affine.to_array()) < 1e-6, "{series:?} {found:?}");
-        assert!(near(2, found.moduli.to_array()) < 1e-3, "{series:?} {found:?}");
-        assert!(near(0, found.moduli.to_array()) > 0.01, "{series:?} {found:?}");
-    }
-}

@@ -6,7 +6,7 @@ mod lineage;
 mod places;
 mod rates;
 
-pub use cycle::{CellCycle, DivisionAxis, Progress};
+pub use cycle::{CellCycle, DivisionAxis, Progress, distance_of_halves};
 pub use lineage::{Life, Origin};
 pub use rates::{EdgeRate, Injection, Proliferation, Turnover};
 

@@ -1,5 +1,7 @@
 //! Measurements on solids and liquids.
 
+use num_dual::Dual64;
+use rand::Rng;
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Model, Parameters};
@@ -78,4 +80,69 @@ fn impossible_measurements_are_refused() {
     assert_eq!(refusal(Domain::Open, sound), Error::OpenDomain);
     assert_eq!(refusal(domain, LyapunovSchedule { steps: 0, ..sound }), Error::NoFrames);
     assert!(matches!(refusal(domain, LyapunovSchedule { time_step: 0.0, ..sound }), Error::TimeStep { .. }));
+}
+
+fn tangent_of(r: &Vector<Dual64>) -> Vector<f64> {
+    Vector::new(r.x.eps, r.y.eps)
+}
+
+fn without_translation(tangent: &[Vector<f64>]) -> Vec<Vector<f64>> {
+    let mean = tangent.iter().sum::<Vector<f64>>() / tangent.len() as f64;
+    tangent.iter().map(|u| u - mean).collect()
+}
+
+fn length(tangent: &[Vector<f64>]) -> f64 {
+    tangent.iter().map(Vector::norm_squared).sum::<f64>().sqrt()
+}
+
+fn unit_tangent(drawn: &[Vector<f64>]) -> Vec<Vector<f64>> {
+    let own = without_translation(drawn);
+    let length = length(&own);
+    own.iter().map(|u| u / length).collect()
+}
+
+/// The tangent vector against the difference of two trajectories that begin close to each other, across no T1; the exponent is its growth, however
+/// often it is made a unit vector on the way.
+#[test]
+fn the_tangent_vector_is_the_difference_of_neighbouring_trajectories() {
+    let cell_box = PeriodicBox::new([6.0, 6.0]).unwrap();
+    let domain = Domain::Periodic(cell_box);
+    let start = RandomPlacement::new(36, cell_box).draw(&mut generator(3)).unwrap();
+    let parameters = Parameters { preferred_perimeter: 3.6, chirality: 0.7, ..Parameters::default() };
+    let model = Model::chiral_voronoi(&parameters);
+    // Of the seed, without translations, of length one.
+    let mut rng = generator(5);
+    let drawn: Vec<Vector<f64>> =
+        start.iter().map(|_| Vector::new(rng.random_range(-1.0..1.0), rng.random_range(-1.0..1.0))).collect();
+    let unit = unit_tangent(&drawn);
+    let dual =
+        |(r, u): (&Vector<f64>, &Vector<f64>)| Vector::new(Dual64::new(r.x, u.x), Dual64::new(r.y, u.y));
+    let seeded = start.iter().zip(&unit).map(dual).collect();
+    let mut tangent = Simulation::new(seeded, domain, model.lift::<Dual64>()).unwrap();
+    let size = 1e-6;
+    let beside = |sign: f64| {
+        let at =
+            |r: &Vector<Dual64>| Vector::new(r.x.re + sign * size * r.x.eps, r.y.re + sign * size * r.y.eps);
+        Simulation::new(tangent.positions().iter().map(at).collect(), domain, model.clone()).unwrap()
+    };
+    let (mut plus, mut minus) = (beside(1.0), beside(-1.0));
+    for _ in 0..20 {
+        tangent.step(0.005).unwrap();
+        plus.step(0.005).unwrap();
+        minus.step(0.005).unwrap();
+        assert_eq!(plus.tessellation().edges(), minus.tessellation().edges());
+    }
+    let pairs = plus.positions().iter().zip(minus.positions());
+    for ((plus, minus), exact) in pairs.zip(tangent.positions()) {
+        let difference = (plus - minus) / (2.0 * size);
+        assert!((difference - tangent_of(exact)).norm() < 1e-7, "{difference}");
+    }
+    let grown: Vec<Vector<f64>> = tangent.positions().iter().map(tangent_of).collect();
+    let rate = (length(&without_translation(&grown)) / length(&unit)).ln() / 0.1;
+    for renormalisation in [4, 20] {
+        let schedule = LyapunovSchedule { time_step: 0.005, transient: 0, steps: 20, renormalisation };
+        let go_on = |_| ControlFlow::Continue(());
+        let found = largest_lyapunov_exponent(&start, domain, &model, &schedule, 5, go_on).unwrap();
+        assert!((found.value - rate).abs() < 1e-9, "{found:?} {rate}");
+    }
 }

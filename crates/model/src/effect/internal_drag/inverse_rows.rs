@@ -126,36 +126,3 @@ impl Around {
         }
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    /// Of a strip of cells, each with those two places away at most as neighbours, against all that is done to a row.
-    #[test]
-    fn rows_times_the_matrix_are_unit_vectors() {
-        let cells = 200_usize;
-        let of = |cell: usize| -> Vec<u32> {
-            (cell.saturating_sub(2)..(cell + 3).min(cells)).filter(|&j| j != cell).map(|j| j as u32).collect()
-        };
-        let graph = Graph { neighbours: (0..cells).map(of).collect(), most: 4 };
-        for drag in [-0.05, 0.0, 0.1, 2.0] {
-            let rows = inverse_rows(&graph, drag);
-            for (cell, row) in rows.iter().enumerate() {
-                let mut product = vec![0.0; cells];
-                for &(j, weight) in row {
-                    let j = j as usize;
-                    product[j] += weight * (1.0 + drag * graph.neighbours[j].len() as f64);
-                    graph.neighbours[j].iter().for_each(|&next| product[next as usize] -= drag * weight);
-                }
-                for (j, found) in product.iter().enumerate() {
-                    let expected = f64::from(u8::from(j == cell));
-                    assert!((found - expected).abs() < 1e-5, "ξ {drag}: {cell} {j} {found}");
-                }
-            }
-            // Friction spreads a force over several cells, not over all.
-            assert!(rows.iter().all(|row| row.len() < 150), "{drag}");
-        }
-        assert!(inverse_rows(&graph, -0.2).iter().all(|row| row[0].1.is_nan()));
-    }
-}

@@ -2,11 +2,11 @@
 
 use super::{CYCLE, TURNOVER, assert_the_living_are_told, assert_threads_do_not_matter};
 use std::collections::BTreeMap;
-use voronudge_geometry::{Domain, PeriodicBox, Vector, areas};
+use voronudge_geometry::{CellPolygon, Domain, PeriodicBox, Vector, areas};
 use voronudge_model::{Model, Parameters};
 use voronudge_simulate::{
-    CellCycle, DivisionAxis, EdgeRate, Error, Injection, LivingTissue, Origin, Proliferation,
-    RandomPlacement, Simulation, Turnover, Walls, generator,
+    CellCycle, DivisionAxis, EdgeRate, Error, Injection, LivingTissue, Origin, Progress, Proliferation,
+    RandomPlacement, Simulation, Turnover, Walls, distance_of_halves, generator,
 };
 
 const LENGTHS: [f64; 2] = [8.0, 6.0];
@@ -274,4 +274,50 @@ fn unusable_cycles_are_refused() {
         let refused = LivingTissue::new(simulation(LENGTHS, places(LENGTHS), 0.0), turnover);
         assert!(matches!(refused, Err(Error::Turnover { .. })), "{cycle:?}");
     }
+}
+
+/// A square of side 1 halves into two whose centroids are ½ apart; cut along the diagonal, √2/3.
+#[test]
+fn halves_of_a_square_are_where_they_are() {
+    let mut polygon = CellPolygon::default();
+    let ring = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
+    polygon.fill_ring(ring.iter().map(|[x, y]| Vector::new(*x, *y)));
+    assert!((distance_of_halves(&polygon, Vector::new(1.0, 0.0)) - 0.5).abs() < 1e-12);
+    let diagonal = Vector::new(1.0, 1.0) / 2f64.sqrt();
+    assert!((distance_of_halves(&polygon, diagonal) - 2f64.sqrt() / 3.0).abs() < 1e-12);
+}
+
+/// Lengths have the mean and the variation that were asked for, and `2⟨exp(−Γ)⟩ = 1`; means of 40 000, five standard errors.
+#[test]
+fn lengths_of_cycles_are_gamma_distributed_and_keep_the_rate() {
+    let count = 40_000;
+    let error = |deviation: f64| 5.0 * deviation / f64::from(count).sqrt();
+    for variation in [0.0, 0.3, 0.7, 1.0] {
+        let (cycle, mut rng) = (CellCycle { variation, ..CellCycle::default() }, generator(5));
+        let lengths: Vec<f64> = (0..count).map(|_| cycle.newborn(&mut rng).length).collect();
+        let mean = |of: &dyn Fn(f64) -> f64| {
+            lengths.iter().map(|length| of(*length)).sum::<f64>() / f64::from(count)
+        };
+        let expected = cycle.mean_length();
+        assert!((mean(&|x| x) - expected).abs() < error(variation * expected) + 1e-12, "{variation}");
+        let spread = (mean(&|x| x * x) - mean(&|x| x).powi(2)).max(0.0).sqrt() / expected;
+        assert!((spread - variation).abs() < 0.03, "{spread} {variation}");
+        assert!((2.0 * mean(&|x| (-x).exp()) - 1.0).abs() < error(variation) + 1e-12, "{variation}");
+    }
+}
+
+/// Of a population that grows, the youngest are twice as many as those that divide, and their phases fall off as `exp(−φ)` while all are there:
+/// of cycles
+/// of one length the mean phase is `1 − ln 2`, and the mean size that of the model.
+#[test]
+fn ages_at_the_beginning_are_those_of_a_population_that_grows() {
+    let cycle = CellCycle { variation: 0.0, ..CellCycle::default() };
+    let (mut rng, count) = (generator(7), 40_000);
+    let cells: Vec<Progress> = (0..count).map(|_| cycle.anywhere(&mut rng)).collect();
+    let mean = |of: &dyn Fn(&Progress) -> f64| cells.iter().map(of).sum::<f64>() / f64::from(count);
+    // ∫φ exp(−φ) / ∫exp(−φ) up to ln 2.
+    assert!((mean(&|own| own.phase) - (1.0 - 2f64.ln())).abs() < 0.005);
+    assert!((mean(&|own| cycle.size(*own)) - 1.0).abs() < 0.005);
+    let young = mean(&|own| f64::from(u8::from(own.phase < 0.5 * own.length)));
+    assert!((young - (2.0 - 2f64.sqrt())).abs() < 0.015, "{young}");
 }

@@ -1,10 +1,11 @@
 //! Measurements against what is known of the cells.
 
-use crate::curve::Curve;
-use crate::{Images, Plan, Quantity, Recording, TransitionCounter, mean_square_velocity, observe};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Region, Seen, Tessellation, Vector, honeycomb};
+use voronudge_observables::{
+    Curve, Images, Plan, Quantity, Recording, TransitionCounter, mean_square_velocity, observe,
+};
 
 type Places = Vec<Vec<Option<Vector<f64>>>>;
 

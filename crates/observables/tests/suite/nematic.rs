@@ -1,13 +1,13 @@
 //! Defects of fields that are known, and of shapes that know nothing of each other.
 
-use super::around::{around, motion};
-use super::director::DirectorField;
-use super::{Defect, defects, nematic};
-use crate::{Frame, Images, Plan, Quantity, Recording};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use std::f64::consts::{FRAC_PI_3, PI, TAU};
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
+use voronudge_observables::{
+    Curve, Defect, Frame, Images, Nematic, Plan, Quantity, Recording, SQUARES, around_defects,
+    defects_of_shapes, nematic,
+};
 
 const SIDE: usize = 24;
 
@@ -27,7 +27,11 @@ fn tissue(seed: u64) -> Recording {
 fn found(recording: &Recording, shape: impl FnMut(&Vector<f64>) -> [f64; 2], width: f64) -> Vec<Defect> {
     let frame = &recording.frames()[0];
     let shapes = frame.positions.iter().map(shape).collect();
-    defects::of_frame(recording, 0, &DirectorField::of_shapes(frame, shapes, width), width)
+    defects_of_shapes(recording, 0, shapes, width)
+}
+
+fn of(all: &Nematic, quantity: Quantity) -> &Curve {
+    all.curves.iter().find(|curve| curve.of == quantity).unwrap()
 }
 
 fn net(defects: &[Defect]) -> f64 {
@@ -117,11 +121,13 @@ fn what_cells_do_around_defects_is_seen_from_these() {
     };
     let all: Vec<_> = recording.frames()[0].positions.iter().map(velocity).collect();
     recording = recording.with_velocities(&[all]).unwrap();
-    let flow = around((&recording, &plan), (&defects, 0.5), |_, cell| recording.frames()[0].velocities[cell]);
+    let measured = around_defects(&recording, &plan, 1.5, defects.to_vec(), None);
+    let flow = measured.flow[0].as_ref().unwrap();
+    assert!(measured.flow[1].is_none());
     assert_eq!(flow.defects, 2);
     for (point, own) in flow.values.iter().enumerate().filter(|(point, _)| flow.counts[*point] > 0) {
-        let place = |k: usize| k as f64 - (super::SQUARES / 2) as f64;
-        let [x, y] = [place(point % super::SQUARES), place(point / super::SQUARES)];
+        let place = |k: usize| k as f64 - (SQUARES / 2) as f64;
+        let [x, y] = [place(point % SQUARES), place(point / SQUARES)];
         if x.abs().max(y.abs()) < 4.0 {
             assert!(
                 (own[0] - 0.3 + 0.2 * y).abs() < 0.11 && (own[1] - 0.1 - 0.2 * x).abs() < 0.11,
@@ -129,18 +135,21 @@ fn what_cells_do_around_defects_is_seen_from_these() {
             );
         }
     }
-    let [along, across, swirl, _] = motion(&recording, &plan, &defects);
+    let [along, across, swirl] =
+        [Quantity::DefectVelocityAlong, Quantity::DefectVelocityAcross, Quantity::SwirlAroundPlus]
+            .map(|quantity| of(&measured, quantity));
     assert!((along.value[0] - 0.3).abs() < 0.1 && (across.value[0] - 0.1).abs() < 0.1);
     for (distance, value) in swirl.at.iter().zip(&swirl.value).skip(1) {
         assert!((value - 0.2 * distance).abs() < 0.08, "{distance}: {value}");
     }
-    let tension = |_: usize, _: usize| {
+    let tension = |frame: &Frame| {
         // One along the direction of the first comet.
         let (sine, cosine) = directions[0].sin_cos();
-        Some([[cosine * cosine, cosine * sine], [cosine * sine, sine * sine]])
+        vec![[[cosine * cosine, cosine * sine], [cosine * sine, sine * sine]]; frame.positions.len()]
     };
-    let stress = around((&recording, &plan), (&defects[..1], 0.5), tension);
-    let centre = &stress.values[super::SQUARES * super::SQUARES / 2];
+    let measured = around_defects(&recording, &plan, 1.5, defects[..1].to_vec(), Some(&tension));
+    let stress = measured.stress[0].as_ref().unwrap();
+    let centre = &stress.values[SQUARES * SQUARES / 2];
     assert!(centre.iter().zip([1.0, 0.0, 0.0, 0.0]).all(|(own, expected)| (own - expected).abs() < 1e-12));
 }
 
@@ -194,7 +203,8 @@ fn an_open_field_has_as_many_defects_to_a_unit_area() {
             [angle.cos(), angle.sin()]
         };
         let defects = found(&recording, shape, width);
-        ratios += super::density(&recording, &plan, &defects, width).value[0] * 4.0 * PI * width * width;
+        let measured = around_defects(&recording, &plan, width / plan.spacing(), defects, None);
+        ratios += of(&measured, Quantity::DefectDensity).value[0] * 4.0 * PI * width * width;
     }
     let ratio = ratios / sets as f64;
     assert!((ratio - 1.0).abs() < 0.08, "{ratio}");

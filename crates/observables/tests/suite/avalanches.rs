@@ -1,8 +1,11 @@
 //! Avalanches that are constructed, and transitions at random.
 
-use super::*;
-use crate::Images;
-use voronudge_geometry::{Domain, FieldOfView, PeriodicBox};
+use rand::{Rng, SeedableRng};
+use rand_pcg::Pcg64;
+use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
+use voronudge_observables::{
+    Avalanche, Avalanches, Curve, Exchange, Images, Plan, Quantity, Recording, avalanches, drops,
+};
 
 const SIDE: usize = 24;
 

@@ -1,14 +1,13 @@
 //! Waves whose D(q) is known.
 
-use super::course::Course;
-use super::dynamic_structure::DynamicStructure;
-use super::relaxation::{Relaxation, relaxation};
-use super::{FluctuationRequest, StructurePart, WaveField, fluctuations, together};
-use crate::{Images, Plan, RateMatrix, Recording};
 use nalgebra::Complex;
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector, honeycomb, quarter_turn};
+use voronudge_observables::{
+    DynamicStructure, FluctuationRequest, Images, Plan, RateMatrix, Recording, Relaxation, StructurePart,
+    WaveField, fluctuations, relaxation_of_waves, together,
+};
 
 const INTERVAL: f64 = 0.2;
 
@@ -16,8 +15,11 @@ fn normal(rng: &mut Pcg64) -> f64 {
     (0..12).map(|_| rng.random::<f64>()).sum::<f64>() - 6.0
 }
 
+/// Amplitudes along q and a quarter turn ahead, frame by frame.
+type Course = Vec<[Complex<f64>; 2]>;
+
 /// A course of `∂_t u = −D u` + noise with the covariance 1, exact at the frames, with errors of a variance in each component.
-fn wave(rates: RateMatrix, frames: usize, errors: f64, rng: &mut Pcg64) -> Vec<[Complex<f64>; 2]> {
+fn wave(rates: RateMatrix, frames: usize, errors: f64, rng: &mut Pcg64) -> Course {
     let step = rates.propagator(INTERVAL);
     let [[a, b], [c, d]] = step.0;
     // The Cholesky factor of 1 − M Mᵀ.
@@ -36,18 +38,13 @@ fn wave(rates: RateMatrix, frames: usize, errors: f64, rng: &mut Pcg64) -> Vec<[
         .collect()
 }
 
-fn courses(rates: RateMatrix, waves: usize, frames: usize, errors: f64, seed: u64) -> Vec<Vec<Course>> {
+fn courses(rates: RateMatrix, waves: usize, frames: usize, errors: f64, seed: u64) -> Vec<Course> {
     let mut rng = Pcg64::seed_from_u64(seed);
-    let course = |field: Vec<[Complex<f64>; 2]>| {
-        let density = vec![Complex::ZERO; field.len()];
-        vec![Course { field, density }]
-    };
-    (0..waves).map(|_| course(wave(rates, frames, errors, &mut rng))).collect()
+    (0..waves).map(|_| wave(rates, frames, errors, &mut rng)).collect()
 }
 
-fn analysed(courses: &[Vec<Course>], first_lag: usize) -> Relaxation {
-    let waves: Vec<&[Course]> = courses.iter().map(Vec::as_slice).collect();
-    relaxation(&waves, (first_lag, None), INTERVAL, 1.0).unwrap()
+fn analysed(courses: &[Course], first_lag: usize) -> Relaxation {
+    relaxation_of_waves(courses, first_lag, INTERVAL).unwrap()
 }
 
 /// Mean and standard deviation.
@@ -120,11 +117,8 @@ fn chance_is_told_from_chirality_and_memory() {
     let all = together(found.iter().map(|own| own.achiral)).unwrap();
     assert!(all > 1e-3, "{all}");
     let mut mixed = courses(rates, 5, 2000, 0.0, 1);
-    for (own, other) in mixed.iter_mut().flatten().zip(courses(rates * 8.0, 5, 2000, 0.0, 2).iter().flatten())
-    {
-        for (a, b) in own.field.iter_mut().zip(&other.field) {
-            *a = [a[0] + b[0], a[1] + b[1]];
-        }
+    for (a, b) in mixed.iter_mut().flatten().zip(courses(rates * 8.0, 5, 2000, 0.0, 2).iter().flatten()) {
+        *a = [a[0] + b[0], a[1] + b[1]];
     }
     let found = analysed(&mixed, 1);
     assert!(found.linear < 1e-3, "{found:?}");

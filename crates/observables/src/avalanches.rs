@@ -1,8 +1,5 @@
 //! Avalanches of T1 transitions: those that touch within a time, in space or in the whole field.
 
-#[cfg(test)]
-mod tests;
-
 use crate::curve::{PARTS, Sums};
 use crate::{Curve, Exchange, Plan, Quantity, Recording};
 use rand::seq::SliceRandom;

@@ -1,7 +1,10 @@
-use super::*;
-use crate::honeycomb;
+//! Centres of cells as extrema of a field.
+
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
+use voronudge_geometry::{
+    Edge, Error, Extremum, ExtremumKind, ExtremumSearch, PeriodicBox, Vector, extrema, honeycomb,
+};
 
 const SEARCH: ExtremumSearch = ExtremumSearch {
     kind: ExtremumKind::Maximum,
@@ -37,7 +40,7 @@ fn bumps() -> (Vec<f64>, [usize; 2], Vec<Vector<f64>>) {
 
 /// Distance from each centre to the extremum found nearest to it, the largest.
 fn largest_distance(found: &[Extremum], centres: &[Vector<f64>], size: [usize; 2]) -> f64 {
-    let field = Heights { heights: Vec::new(), size, edge: Edge::Periodic };
+    let field = PeriodicBox::new(size.map(|side| side as f64)).unwrap();
     let distance = |c: &Vector<f64>| {
         found.iter().map(|e| field.shortest(e.position - c).norm()).fold(f64::INFINITY, f64::min)
     };
@@ -46,7 +49,7 @@ fn largest_distance(found: &[Extremum], centres: &[Vector<f64>], size: [usize; 2
 
 /// The nearest true maximum: where the gradient of the sum of bumps vanishes, which is not where the centres are if they overlap.
 fn true_maximum(centres: &[Vector<f64>], start: Vector<f64>, size: [usize; 2]) -> Vector<f64> {
-    let field = Heights { heights: Vec::new(), size, edge: Edge::Periodic };
+    let field = PeriodicBox::new(size.map(|side| side as f64)).unwrap();
     let mut r = start;
     // Mean shift climbs a sum of Gaussians.
     for _ in 0..200 {

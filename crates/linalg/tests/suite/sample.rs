@@ -1,10 +1,28 @@
 //! Matrices for tests: the stencil of a tissue, with pseudo-random blocks.
 
-use crate::{BlockSparse, SymmetricMatrix};
+use voronudge_linalg::{BlockSparse, SymmetricMatrix};
+
+/// The arrays of a matrix of blocks.
+pub struct Stencil {
+    pub start: Vec<usize>,
+    pub column: Vec<u32>,
+    pub block: Vec<[f64; 4]>,
+}
+
+impl Stencil {
+    pub fn matrix(self) -> BlockSparse {
+        BlockSparse::new(self.start, self.column, self.block).unwrap()
+    }
+}
 
 /// A periodic triangular lattice of `side × side` sites coupled over two rings, which decays: a random symmetric part,
 /// dominated by its diagonal, and an antisymmetric part of a strength.
-pub(crate) fn lattice(side: usize, antisymmetric: f64) -> BlockSparse {
+pub fn lattice(side: usize, antisymmetric: f64) -> BlockSparse {
+    stencil(side, antisymmetric).matrix()
+}
+
+/// Its arrays.
+pub fn stencil(side: usize, antisymmetric: f64) -> Stencil {
     let site = |x: i64, y: i64| {
         let wrap = |k: i64| k.rem_euclid(side as i64) as usize;
         wrap(y) * side + wrap(x)
@@ -32,16 +50,16 @@ pub(crate) fn lattice(side: usize, antisymmetric: f64) -> BlockSparse {
         block.extend(row.values());
         start.push(column.len());
     }
-    BlockSparse::new(start, column, block).unwrap()
+    Stencil { start, column, block }
 }
 
 /// The places of the sites.
-pub(crate) fn places(side: usize) -> Vec<[f64; 2]> {
+pub fn places(side: usize) -> Vec<[f64; 2]> {
     (0..side * side).map(|i| [(i % side) as f64 + 0.5 * (i / side) as f64, (i / side) as f64]).collect()
 }
 
 /// A positive definite matrix of two unknowns for each node of a square lattice, coupled to all within two steps of the king.
-pub(crate) fn symmetric(side: usize) -> SymmetricMatrix {
+pub fn symmetric(side: usize) -> SymmetricMatrix {
     let (mut start, mut row, mut value) = (vec![0], Vec::new(), Vec::new());
     for unknown in 0..2 * side * side {
         let (x, y) = (unknown / 2 % side, unknown / 2 / side);

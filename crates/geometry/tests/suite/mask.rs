@@ -1,8 +1,9 @@
-use super::*;
-use crate::Outline;
+//! Cells of label images.
+
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::PI;
+use voronudge_geometry::{Error, Mask, Outline, Vector, cross};
 
 const SIDE: usize = 90;
 
@@ -23,7 +24,7 @@ fn hexagon(centre: Vector<f64>, side: f64, turn: f64) -> Vec<Vector<f64>> {
 fn inside(corners: &[Vector<f64>], r: Vector<f64>) -> bool {
     (0..corners.len()).all(|k| {
         let (a, b) = (corners[k], corners[(k + 1) % corners.len()]);
-        crate::cross(b - a, r - a) >= 0.0
+        cross(b - a, r - a) >= 0.0
     })
 }
 
@@ -69,7 +70,7 @@ fn a_straight_side_is_at_most_two_percent_off() {
         // A strip, long enough that its ends count little: its sides are all there is to tell.
         drawn(move |r| {
             i64::from(
-                crate::cross(along, r - Vector::new(45.0, 45.0)).abs() < 8.0
+                cross(along, r - Vector::new(45.0, 45.0)).abs() < 8.0
                     && (r - Vector::new(45.0, 45.0)).norm() < 42.0,
             )
         })
@@ -169,5 +170,37 @@ fn pieces_are_those_of_a_flood() {
             cells.iter().map(|cell| (cell.label, cell.pieces)).collect::<Vec<_>>(),
             pieces.into_iter().collect::<Vec<_>>()
         );
+    }
+}
+
+/// Two half-planes parted by a straight line, with and without a line of background between them.
+#[test]
+fn a_straight_line_between_two_labels_is_found() {
+    let size = 60_usize;
+    for angle in [0.3, 0.8, 1.2, 2.5] {
+        let normal = Vector::new(f64::cos(angle), f64::sin(angle));
+        for (width, gap) in [(0.0, 0), (1.4, 2)] {
+            let labels: Vec<i64> = (0..size * size)
+                .map(|k| Vector::new((k % size) as f64 - 29.5, (k / size) as f64 - 29.5))
+                .map(|r| match normal.dot(&r) + 0.3 {
+                    _ if r.norm() > 20.0 => 0,
+                    across if across.abs() < 0.5 * width => 0,
+                    across if across < 0.0 => 5,
+                    _ => 9,
+                })
+                .collect();
+            let mask = Mask::new(&labels, [size, size]).unwrap();
+            let index = |label| [5, 9].iter().position(|known| *known == label);
+            let found = mask.interfaces(gap, index);
+            assert_eq!((found.len(), found[0].cells), (1, [0, 1]));
+            let line = found[0];
+            let off = normal.dot(&(line.middle - Vector::new(30.0, 30.0))) + 0.3;
+            assert!(off.abs() < 0.12, "{angle} {width}: off by {off}");
+            assert!((line.length / 40.0 - 1.0).abs() < 0.1, "{angle} {width}: {}", line.length);
+            let extent = line.extent.norm() / (40.0 / 12f64.sqrt());
+            assert!((extent - 1.0).abs() < 0.08, "{angle} {width}: {extent}");
+            assert!(line.extent.normalize().dot(&normal).abs() < 0.02);
+            assert!(mask.interfaces(gap, |_| None).is_empty());
+        }
     }
 }

@@ -1,0 +1,56 @@
+//! Factors by fronts against those of another order.
+
+use crate::sample;
+use voronudge_linalg::{Cholesky, DissectedPattern, Error, SymmetricMatrix};
+
+/// Entries of the factor's inverse, all of them, against solutions for unit vectors; solutions and determinant against another order. The
+/// places of some nodes are not known.
+#[test]
+fn factor_and_inverse_are_those_of_another_order() {
+    for side in [1, 3, 14, 40] {
+        let matrix = sample::symmetric(side);
+        let n = matrix.order();
+        let places: Vec<Option<[f64; 3]>> = (0..side * side)
+            .map(|k| (k != 7).then_some([(k % side) as f64, (k / side) as f64, 0.0]))
+            .collect();
+        let pattern = DissectedPattern::new(&matrix, &places).unwrap();
+        let factor = pattern.factor(&matrix).unwrap();
+        let other = Cholesky::new(&matrix).unwrap();
+        let expected = other.log_determinant();
+        assert!((factor.log_determinant() - expected).abs() < 1e-12 * expected.abs().max(1.0));
+        let given: Vec<f64> = (0..3 * n).map(|i| (i as f64).sin()).collect();
+        let [mut x, mut y] = [given.clone(), given];
+        factor.solve(&mut x);
+        other.solve(&mut y);
+        assert!(x.iter().zip(&y).all(|(x, y)| (x - y).abs() < 1e-13));
+        let mut drawn: Vec<f64> = (0..n).map(|i| (2.0 * i as f64).cos()).collect();
+        let independent: f64 = drawn.iter().map(|z| z * z).sum();
+        factor.draw(&mut drawn);
+        let twice = |i: usize, j: usize| if i == j { 1.0 } else { 2.0 };
+        let form: f64 = matrix.entries().map(|(i, j, a)| twice(i, j) * a * drawn[i] * drawn[j]).sum();
+        assert!((form - independent).abs() < 1e-11 * independent);
+        let inverse = factor.selected_inverse().unwrap();
+        let mut known = 0;
+        for j in (0..n).step_by(37) {
+            let mut column = vec![0.0; n];
+            column[j] = 1.0;
+            other.solve(&mut column);
+            for (i, exact) in column.iter().enumerate() {
+                let Some(entry) = inverse.entry(i, j) else { continue };
+                known += 1;
+                assert_eq!(inverse.entry(j, i), Some(entry));
+                assert!((entry - exact).abs() < 1e-13, "{i} {j}: {entry} {exact}");
+            }
+        }
+        assert!(known >= n.min(25) * n / 37, "{known}");
+        assert!(matrix.entries().all(|(i, j, _)| inverse.entry(i, j).is_some()));
+    }
+}
+
+#[test]
+fn an_indefinite_matrix_is_refused() {
+    let matrix = SymmetricMatrix::new(vec![0, 2, 3], vec![0, 1, 1], vec![1.0, 2.0, 1.0]).unwrap();
+    let pattern = DissectedPattern::new(&matrix, &[Some([0.0; 3])]).unwrap();
+    assert_eq!(pattern.factor(&matrix).err(), Some(Error::NotPositiveDefinite));
+    assert!(DissectedPattern::new(&matrix, &[None; 3]).is_err());
+}
