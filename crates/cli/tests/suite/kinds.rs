@@ -130,6 +130,21 @@ fn eigenvalues_of_a_honeycomb_of_unlike_cells_have_the_sum_of_like_ones() {
     assert!((&unlike - &like).iter().any(|d| d.abs() > 1e-3));
 }
 
+/// Cells that differ come to rest between walls where they are stable with their own parameters.
+#[test]
+fn unlike_cells_at_rest_between_walls_are_stable() {
+    let (run, out) = (Folder::new(), Folder::new());
+    let line = "simulate --cells 48 --box 8 6 --P_0 3.2 --alpha 0 --cell-spread P_0=0.05 --walls x --time 60 --frames 1 --seed 4";
+    succeed(line, &[("--out", run.path())]);
+    let own = format!("P_0={}", run.file("cell_P_0.npy").display());
+    let line = format!("spectrum --P_0 3.2 --alpha 0 --cell-parameter {own}");
+    succeed(&line, &[("", run.path()), ("--out", out.path())]);
+    let frame = &report(out.path())["frames"][0];
+    // Free to slide along the walls.
+    let counts = ["zero", "growing", "oscillating"].map(|name| frame[name].as_u64().unwrap());
+    assert_eq!(counts, [1, 0, 0]);
+}
+
 /// What unlike cells do to the moduli of a honeycomb is of second order in their spread: of first order the mean alone counts.
 #[test]
 fn moduli_of_a_honeycomb_know_of_a_small_spread_to_second_order() {

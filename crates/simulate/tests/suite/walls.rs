@@ -1,8 +1,9 @@
 //! Cells between torque-free walls.
 
 use std::ops::ControlFlow;
+use std::sync::Arc;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
-use voronudge_model::{Model, Parameters, jacobian_with_images};
+use voronudge_model::{CellFactors, CellParameter, Environment, Model, Parameters, jacobian_with_images};
 use voronudge_simulate::moduli::{Motion, Relaxation, Settled};
 use voronudge_simulate::{
     Driving, Error, RandomPlacement, Shear, Simulation, Walls, generator, honeycomb, measure,
@@ -112,6 +113,61 @@ fn a_honeycomb_along_a_channel_moves_in_rows() {
         } else {
             // The prestress has σ_yx = −α K_P P_MF²/2, of which a wall at the right returns nothing.
             assert!(edge * alpha > 0.1, "{alpha}: {edge}");
+        }
+    }
+}
+
+/// Between walls cells that differ move as beside mirror images that have the parameters of their cells, and turn the other way.
+#[test]
+fn cells_that_differ_move_as_beside_their_mirror_images() {
+    let (positions, lengths) = random(50, 5);
+    let p = parameters(3.7, 0.8);
+    let own = |parameter: usize, cell: usize| 1.0 + 0.3 * (2.0 * cell as f64 + parameter as f64).sin();
+    let model = |count: usize, of_image: f64| {
+        let all = CellParameter::ALL.into_iter().enumerate();
+        let factors = all.fold(CellFactors::default(), |factors, (k, parameter)| {
+            let turns = if parameter == CellParameter::Chirality { of_image } else { 1.0 };
+            let of_cell = |cell: usize| own(k, cell % 50) * if cell < 50 { 1.0 } else { turns };
+            factors.with(parameter, (0..count).map(of_cell).collect()).unwrap()
+        });
+        let environment = Environment::default().with_cell_factors(factors).unwrap();
+        Model::chiral_voronoi(&p).within(&Arc::new(environment))
+    };
+    let domain = |lengths: [f64; 2]| Domain::Periodic(PeriodicBox::new(lengths).unwrap());
+    let channel = Simulation::new(positions.clone(), domain(lengths), model(50, 1.0)).unwrap();
+    let mut channel = channel.with_walls(Walls::X).unwrap();
+    let images = positions.iter().map(|r| Vector::new(2.0 * lengths[0] - r.x, r.y));
+    let both = positions.iter().copied().chain(images).collect();
+    let doubled = domain([2.0 * lengths[0], lengths[1]]);
+    let mut doubled = Simulation::new(both, doubled, model(100, -1.0)).unwrap();
+    for _ in 0..20 {
+        for (cell, v) in channel.velocities().iter().enumerate() {
+            assert!((doubled.velocities()[cell] - v).norm() < 1e-9, "{cell} {v}");
+        }
+        channel.step(0.01).unwrap();
+        doubled.step(0.01).unwrap();
+    }
+    // Its Jacobian is that of such images, too.
+    let jacobian = jacobian_with_images(
+        channel.tessellation(),
+        channel.positions_with_images(),
+        channel.model(),
+        Walls::X.mirrors(),
+        50,
+    );
+    let at = |cell: usize, shift: f64| {
+        let mut moved = channel.positions().to_vec();
+        moved[cell].y += shift;
+        let moved = Simulation::new(moved, domain(lengths), model(50, 1.0)).unwrap();
+        moved.with_walls(Walls::X).unwrap().velocities().to_vec()
+    };
+    for cell in [3, 17, 31, 48] {
+        let [after, before] = [1e-5, -1e-5].map(|shift| at(cell, shift));
+        for row in 0..50 {
+            let own = jacobian.row(row).filter(|(column, _)| *column == cell);
+            let by_y: Vector<f64> = own.map(|(_, block)| Vector::new(block[1], block[3])).sum();
+            let slope = (after[row] - before[row]) / 2e-5;
+            assert!((slope - by_y).norm() < 1e-5, "{row} {cell}: {slope} {by_y}");
         }
     }
 }

@@ -113,11 +113,6 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let own = arguments.cells.read(cells, labels, &mut parameters)?;
     let own = own.and(spreads.draw(cells, arguments.common.seed, &mut parameters)?)?;
     let of_cells = own.values(cells, labels);
-    if !own.is_empty() && arguments.surroundings.walls().is_some() {
-        return Err(
-            Failure::new("cells that differ do not go with --walls").with_hint("leave one of them out")
-        );
-    }
     let labels = start.labels.clone().or_else(|| spreads.labels(cells, arguments.common.seed));
     let driving =
         arguments.driving.driving(&mut effects, arguments.surroundings.shear()?, arguments.common.seed)?;

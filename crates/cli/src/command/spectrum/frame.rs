@@ -48,18 +48,8 @@ impl Solved {
         if !(0..tissue.cells).any(moves) {
             return Err(voronudge_spectrum::Error::NoCells.into());
         }
-        let mut surroundings = environment(tessellation, positions, &view)?;
-        match tissue.walls {
-            None => {
-                surroundings =
-                    own.of_cells(surroundings, &snapshot.cells, data.labels_of(&snapshot, frame))?;
-            }
-            Some(_) if own.is_empty() => {}
-            Some(_) => {
-                return Err(Failure::new("cells that differ do not go with walls")
-                    .with_hint("leave out --cell-parameter and --label-parameter"));
-            }
-        }
+        let surroundings = environment(tessellation, positions, &view)?;
+        let surroundings = own.of_cells(surroundings, &snapshot.cells, data.labels_of(&snapshot, frame))?;
         let length = surroundings.cell_size();
         let model = effects.add_to(Model::chiral_voronoi(parameters), surroundings, tessellation.domain())?;
         tissue.check(&model)?;
