@@ -108,7 +108,8 @@ fn the_error_of_a_modulus_is_what_one_standard_error_of_the_parameters_makes() {
 #[test]
 fn several_fits_are_told_against_time() {
     let (data, out) = (Folder::new(), Folder::new());
-    let files = [fit(3.0, 0.5, 0), fit(3.2, 0.3, 4)];
+    let mut files = [fit(3.0, 0.5, 0), fit(3.2, 0.3, 4)];
+    files[1]["by_label"] = json!([{"label": 7}]);
     let files: Vec<String> =
         files.iter().enumerate().map(|(k, fit)| write(&data, &format!("{k}.json"), fit)).collect();
     let line = format!("rheology {} --times 10 20.5 --cells 16 --replicas 2 --quiet", files.join(" "));
@@ -116,6 +117,8 @@ fn several_fits_are_told_against_time() {
     let found = report(out.path());
     assert_described(&found);
     assert_eq!(found["against"], "time");
+    let warnings = found["warnings"].as_array().unwrap();
+    assert!(warnings.len() == 1 && warnings[0].as_str().unwrap().contains("label 7"), "{warnings:?}");
     let shear = [0, 1].map(|k| number(&found, &format!("/fits/{k}/moduli/2/value")));
     assert!(shear[1] < shear[0] && shear[1] > 0.0, "{shear:?}");
     let page = fs::read_to_string(out.path().join("report.html")).unwrap();

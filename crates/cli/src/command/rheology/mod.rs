@@ -76,6 +76,12 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             .with_hint("give one number for each report"));
     }
     let fits = arguments.reports.iter().map(|path| Posterior::read(path)).collect::<Result<Vec<_>, _>>()?;
+    for (fit, label) in fits.iter().filter_map(|fit| Some((fit, fit.label?))) {
+        run.warn(format!(
+            "{}: moduli are those of a tissue of cells of label {label} alone; for both kinds together see moduli --label-parameter",
+            fit.path.display()
+        ));
+    }
     let units = fits[0].units.clone();
     if let Some(other) = fits.iter().find(|fit| fit.units != units) {
         return Err(Failure::new(format!(

@@ -20,6 +20,8 @@ pub(super) struct Posterior {
     pub length: f64,
     /// The mean of the frames fitted.
     pub frame: f64,
+    /// The label whose parameters these are, if cells of each label have their own.
+    pub label: Option<i64>,
     /// (K_A ℓ₀², K_P P_0/ℓ₀, K_P, K_P α), rates in units of the data.
     coefficients: [f64; 4],
     /// By how much one standard error along each principal axis moves them.
@@ -89,6 +91,7 @@ impl Posterior {
             units: Units { length: text_at("/units/length")?, time: text_at("/units/time")? },
             length,
             frame: frames.iter().sum::<f64>() / frames.len().max(1) as f64,
+            label: json.pointer("/by_label/0/label").and_then(Value::as_i64),
             coefficients,
             axes,
         })
