@@ -214,7 +214,8 @@ fn hidden_cells_have_the_label_of_their_kind() {
     let (mut right, mut found) = (0, 0);
     for seed in 21..=23 {
         let alike = Tissue::new(CELLS, seed).unwrap();
-        let tissue = alike.moving(velocities(&alike.tessellation, &alike.positions, &model));
+        let moving = velocities(&alike.tessellation, &alike.positions, &model);
+        let tissue = alike.moving(moving.into_iter().map(|v| v / alike.rms).collect());
         let request = tissue.request(NOISE.known()).with_kinds(kinds.clone());
         let whole = tissue.measured(NOISE, seed).unwrap();
         let is_hidden = |cell: &usize| cell % 20 == 7 || cell % 20 == 16;

@@ -1,40 +1,41 @@
-//! The examples run.
+//! The examples run, as `cargo test` and `cargo build --examples` build them.
 
-#[path = "../examples/custom_effect.rs"]
-mod custom_effect;
-#[path = "../examples/differentiate.rs"]
-mod differentiate;
-#[path = "../examples/discover.rs"]
-mod discover;
-#[path = "../examples/infer.rs"]
-mod infer;
-#[path = "../examples/simulate.rs"]
-mod simulate;
+use std::env::{consts::EXE_SUFFIX, current_exe};
+use std::process::Command;
 
-/// What an example ends with.
-type Outcome = Result<(), Box<dyn std::error::Error>>;
-
-#[test]
-fn simulate_runs() -> Outcome {
-    simulate::main()
+#[track_caller]
+fn assert_runs(name: &str) {
+    // This test is in `deps`.
+    let built = current_exe().unwrap().ancestors().nth(2).unwrap().join("examples");
+    let program = built.join(format!("{name}{EXE_SUFFIX}"));
+    let output = Command::new(&program).output();
+    let output =
+        output.unwrap_or_else(|error| panic!("{}: {error}; cargo build --examples", program.display()));
+    assert!(output.status.success(), "{output:?}");
+    assert!(!output.stdout.is_empty());
 }
 
 #[test]
-fn differentiate_runs() -> Outcome {
-    differentiate::main()
+fn simulate_runs() {
+    assert_runs("simulate");
 }
 
 #[test]
-fn infer_runs() -> Outcome {
-    infer::main()
+fn differentiate_runs() {
+    assert_runs("differentiate");
 }
 
 #[test]
-fn discover_runs() -> Outcome {
-    discover::main()
+fn infer_runs() {
+    assert_runs("infer");
 }
 
 #[test]
-fn custom_effect_runs() -> Outcome {
-    custom_effect::main()
+fn discover_runs() {
+    assert_runs("discover");
+}
+
+#[test]
+fn custom_effect_runs() {
+    assert_runs("custom_effect");
 }

@@ -92,6 +92,15 @@ pub fn run_channel(
     schedule: &ChannelSchedule,
     mut observe: impl FnMut(&LivingTissue, usize, usize) -> ControlFlow<()>,
 ) -> Result<ChannelRun, Error> {
+    run_observed(tissue, schedule, &mut observe)
+}
+
+/// The same, compiled here for all callers.
+fn run_observed(
+    tissue: &mut LivingTissue,
+    schedule: &ChannelSchedule,
+    observe: &mut dyn FnMut(&LivingTissue, usize, usize) -> ControlFlow<()>,
+) -> Result<ChannelRun, Error> {
     let ([relaxation, per_sample], time_step) = schedule.steps()?;
     let total = relaxation + per_sample * schedule.samples;
     let recorder = ChannelRecorder::new(tissue.channel(), schedule.bins)?;

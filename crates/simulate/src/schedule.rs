@@ -184,8 +184,18 @@ pub fn run(
 pub fn resume(
     simulation: &mut Simulation,
     schedule: &Schedule,
-    mut state: RunState,
+    state: RunState,
     mut observe: impl FnMut(Event<'_>) -> ControlFlow<()>,
+) -> Result<Summary, Error> {
+    go_on(simulation, schedule, state, &mut observe)
+}
+
+/// The same, compiled here for all callers.
+fn go_on(
+    simulation: &mut Simulation,
+    schedule: &Schedule,
+    mut state: RunState,
+    observe: &mut dyn FnMut(Event<'_>) -> ControlFlow<()>,
 ) -> Result<Summary, Error> {
     let steps_per_frame = schedule.steps_per_frame()?;
     let time_step = schedule.frame_interval() / steps_per_frame as f64;

@@ -179,6 +179,16 @@ pub fn sensitivities(
     directions: &[Direction],
     mut observe: impl FnMut(usize, usize) -> ControlFlow<()>,
 ) -> Result<Option<Vec<Sensitivity>>, Error> {
+    observed(simulation, schedule, directions, &mut observe)
+}
+
+/// The same, compiled here for all callers.
+fn observed(
+    simulation: &Simulation,
+    schedule: &Schedule,
+    directions: &[Direction],
+    observe: &mut dyn FnMut(usize, usize) -> ControlFlow<()>,
+) -> Result<Option<Vec<Sensitivity>>, Error> {
     let steps_per_frame = schedule.steps_per_frame()?;
     let time_step = schedule.frame_interval() / steps_per_frame as f64;
     let total = steps_per_frame * schedule.frames;

@@ -82,28 +82,7 @@ pub fn largest_lyapunov_exponent(
     seed: u64,
     mut observe: impl FnMut(usize) -> ControlFlow<()>,
 ) -> Result<LyapunovExponent, Error> {
-    let LyapunovSchedule { time_step, transient, steps, renormalisation } = *schedule;
-    if !(time_step.is_finite() && time_step > 0.0) {
-        return Err(Error::TimeStep { time_step });
-    }
-    let mut tangent = Tangent::new(positions, domain, model, seed)?;
-    let (mut rates, mut since) = (BlockAverage::default(), 0);
-    for step in 1..=transient + steps {
-        tangent.simulation.step(time_step)?;
-        since += 1;
-        if since >= renormalisation || step == transient {
-            let rate = tangent.renormalise()?.ln() / (f64::from(since as u32) * time_step);
-            if step > transient {
-                rates.add(rate);
-            }
-            since = 0;
-        }
-        if observe(step).is_break() {
-            break;
-        }
-    }
-    let value = rates.mean().ok_or(Error::NoFrames)?;
-    Ok(LyapunovExponent { value, standard_error: rates.standard_error() })
+    Tangent::new(positions, domain, model, seed)?.exponent(schedule, &mut observe)
 }
 
 /// A trajectory and a tangent vector: a simulation of dual numbers.
@@ -119,6 +98,35 @@ impl Tangent {
         let mut tangent = Self { simulation: Simulation::new(positions, domain, model.lift())? };
         tangent.renormalise()?;
         Ok(tangent)
+    }
+
+    /// Follows both; `observe` is told of each step.
+    fn exponent(
+        mut self,
+        schedule: &LyapunovSchedule,
+        observe: &mut dyn FnMut(usize) -> ControlFlow<()>,
+    ) -> Result<LyapunovExponent, Error> {
+        let LyapunovSchedule { time_step, transient, steps, renormalisation } = *schedule;
+        if !(time_step.is_finite() && time_step > 0.0) {
+            return Err(Error::TimeStep { time_step });
+        }
+        let (mut rates, mut since) = (BlockAverage::default(), 0);
+        for step in 1..=transient + steps {
+            self.simulation.step(time_step)?;
+            since += 1;
+            if since >= renormalisation || step == transient {
+                let rate = self.renormalise()?.ln() / (f64::from(since as u32) * time_step);
+                if step > transient {
+                    rates.add(rate);
+                }
+                since = 0;
+            }
+            if observe(step).is_break() {
+                break;
+            }
+        }
+        let value = rates.mean().ok_or(Error::NoFrames)?;
+        Ok(LyapunovExponent { value, standard_error: rates.standard_error() })
     }
 
     /// Takes translations out of the tangent vector, makes its length one and returns the length it had.
