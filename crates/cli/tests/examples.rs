@@ -1,41 +1,45 @@
 //! The examples run, as `cargo test` and `cargo build --examples` build them.
 
 use std::env::{consts::EXE_SUFFIX, current_exe};
+use std::error::Error;
 use std::process::Command;
 
-#[track_caller]
-fn assert_runs(name: &str) {
-    // This test is in `deps`.
-    let built = current_exe().unwrap().ancestors().nth(2).unwrap().join("examples");
-    let program = built.join(format!("{name}{EXE_SUFFIX}"));
+/// How a test ends.
+type Outcome = Result<(), Box<dyn Error>>;
+
+fn run(name: &str) -> Outcome {
+    // This test is in `deps`, beside `examples`.
+    let test = current_exe()?;
+    let folder = test.ancestors().nth(2).ok_or("a program in no folder")?.join("examples");
+    let program = folder.join(format!("{name}{EXE_SUFFIX}"));
     let output = Command::new(&program).output();
-    let output =
-        output.unwrap_or_else(|error| panic!("{}: {error}; cargo build --examples", program.display()));
+    let output = output.map_err(|error| format!("{}: {error}; cargo build --examples", program.display()))?;
     assert!(output.status.success(), "{output:?}");
     assert!(!output.stdout.is_empty());
+    Ok(())
 }
 
 #[test]
-fn simulate_runs() {
-    assert_runs("simulate");
+fn simulate_runs() -> Outcome {
+    run("simulate")
 }
 
 #[test]
-fn differentiate_runs() {
-    assert_runs("differentiate");
+fn differentiate_runs() -> Outcome {
+    run("differentiate")
 }
 
 #[test]
-fn infer_runs() {
-    assert_runs("infer");
+fn infer_runs() -> Outcome {
+    run("infer")
 }
 
 #[test]
-fn discover_runs() {
-    assert_runs("discover");
+fn discover_runs() -> Outcome {
+    run("discover")
 }
 
 #[test]
-fn custom_effect_runs() {
-    assert_runs("custom_effect");
+fn custom_effect_runs() -> Outcome {
+    run("custom_effect")
 }
