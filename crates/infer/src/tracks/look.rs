@@ -208,7 +208,7 @@ mod tests {
                 let alignment = if activity == Activity::Alignment { 0.3 } else { 0.0 };
                 let memory = Memory { times: 1.5 * memory.times + 0.05, alignment, ..memory };
                 let spaced = seen.about(memory);
-                let look = seen.look(&spaced, Way::Draws(2000)).unwrap();
+                let look = seen.look(&spaced, Way::Draws(4000)).unwrap();
                 let near = seen.at_points(&spaced, &POINTS.map(|point| Point::from(point) * CLOSE)).unwrap();
                 let exact = |of: fn(&Likelihood) -> f64| {
                     Surface::new(&near.iter().map(of).collect::<Vec<_>>()).seen_from(CLOSE)
@@ -218,7 +218,7 @@ mod tests {
                 let off = (look.log_variance - variance.slope).amax();
                 assert!(off < 1e-3 * variance.slope.amax().max(1.0), "{known:?} {variance:?} {look:?}");
                 // Slopes scatter by the root of a bend over that of the draws.
-                let scatter = |k: usize| (2.0 * criterion.bend[(k, k)].abs() / 2000.0).sqrt();
+                let scatter = |k: usize| (2.0 * criterion.bend[(k, k)].abs() / 4000.0).sqrt();
                 for k in 0..4 {
                     let off = look.criterion.slope[k] - criterion.slope[k];
                     assert!(off.abs() < 4.0 * scatter(k) + 1e-3, "{k}: {off} {criterion:?} {look:?}");
