@@ -212,36 +212,34 @@ fn hidden_cells_have_the_label_of_their_kind() {
     let model = Model::chiral_voronoi(&TRUTH).with(chirality.into(), own).within(&environment);
     let kinds = Kinds { reference: 0, others: vec![1], parameters: vec![LabelledParameter::Chirality] };
     let (mut right, mut found) = (0, 0);
-    for seed in 21..=23 {
-        let alike = Tissue::new(CELLS, seed).unwrap();
-        let moving = velocities(&alike.tessellation, &alike.positions, &model);
-        let tissue = alike.moving(moving.into_iter().map(|v| v / alike.rms).collect());
-        let request = tissue.request(NOISE.known()).with_kinds(kinds.clone());
-        let whole = tissue.measured(NOISE, seed).unwrap();
-        let is_hidden = |cell: &usize| cell % 20 == 7 || cell % 20 == 16;
-        let kept: Vec<usize> = (0..CELLS).filter(|cell| !is_hidden(cell)).collect();
-        let at = kept.iter().map(|cell| whole.positions[*cell]).collect();
-        let of_cells: Vec<_> = kept.iter().map(|cell| whole.velocities.values()[*cell]).collect();
-        let domain = whole.tessellation.domain();
-        let observation = Observation::new(0, at, of_cells, domain, FieldOfView::default()).unwrap();
-        let observation = observation.with_labels(kept.iter().map(|cell| labels[*cell]).collect()).unwrap();
-        let go_on = &mut |_: voronudge_infer::Progress<'_>| ControlFlow::Continue(());
-        let completion = complete(&[observation], &request, None, go_on).unwrap();
-        let near = |r: Vector<f64>| {
-            let distance = |cell: &usize| domain.shortest(tissue.positions[*cell] - r).norm();
-            (0..CELLS).filter(is_hidden).find(|cell| distance(cell) < 0.5)
-        };
-        for change in &completion.frames[0].changes {
-            if let Some(cell) = near(change.added[0]) {
-                found += 1;
-                right += usize::from(change.labels == [labels[cell]]);
-            }
+    let alike = Tissue::new(CELLS, 21).unwrap();
+    let moving = velocities(&alike.tessellation, &alike.positions, &model);
+    let tissue = alike.moving(moving.into_iter().map(|v| v / alike.rms).collect());
+    let request = tissue.request(NOISE.known()).with_kinds(kinds);
+    let whole = tissue.measured(NOISE, 21).unwrap();
+    let is_hidden = |cell: &usize| cell % 20 == 7 || cell % 20 == 16;
+    let kept: Vec<usize> = (0..CELLS).filter(|cell| !is_hidden(cell)).collect();
+    let at = kept.iter().map(|cell| whole.positions[*cell]).collect();
+    let of_cells: Vec<_> = kept.iter().map(|cell| whole.velocities.values()[*cell]).collect();
+    let domain = whole.tessellation.domain();
+    let observation = Observation::new(0, at, of_cells, domain, FieldOfView::default()).unwrap();
+    let observation = observation.with_labels(kept.iter().map(|cell| labels[*cell]).collect()).unwrap();
+    let go_on = &mut |_: voronudge_infer::Progress<'_>| ControlFlow::Continue(());
+    let completion = complete(&[observation], &request, None, go_on).unwrap();
+    let near = |r: Vector<f64>| {
+        let distance = |cell: &usize| domain.shortest(tissue.positions[*cell] - r).norm();
+        (0..CELLS).filter(is_hidden).find(|cell| distance(cell) < 0.5)
+    };
+    for change in &completion.frames[0].changes {
+        if let Some(cell) = near(change.added[0]) {
+            found += 1;
+            right += usize::from(change.labels == [labels[cell]]);
         }
-        let fit = infer(&[completion.frames[0].observation.clone()], &request, go_on).unwrap();
-        let truth = tissue.truth(Quantity::ChiralCoefficient);
-        let own = fit.kinds.iter().map(|kind| kind.parameters.chiral_coefficient.value / truth);
-        let errors: Vec<f64> = own.zip([1.0, 0.1]).map(|(value, share)| value - share).collect();
-        assert!(errors.iter().all(|error| error.abs() < 0.05), "{errors:?}");
     }
-    assert!(found >= 36 && right + 3 >= found, "{found} found of 42, {right} with their label");
+    let fit = infer(&[completion.frames[0].observation.clone()], &request, go_on).unwrap();
+    let truth = tissue.truth(Quantity::ChiralCoefficient);
+    let own = fit.kinds.iter().map(|kind| kind.parameters.chiral_coefficient.value / truth);
+    let errors: Vec<f64> = own.zip([1.0, 0.1]).map(|(value, share)| value - share).collect();
+    assert!(errors.iter().all(|error| error.abs() < 0.05), "{errors:?}");
+    assert!(found >= 12 && right + 1 >= found, "{found} found of 14, {right} with their label");
 }

@@ -130,5 +130,5 @@ fn a_diagram_survives_faults() {
 fn a_fit_survives_faults() {
     let data = Some(fixture("chiral-liquid-clean"));
     let line = "infer --quiet --fix K_A=0.1 --max-steps 2 --position-noise 0.5% --velocity-noise";
-    assert_survives(&format!("{line} 5%"), &format!("{line} 9%"), "--resume", data, 101);
+    assert_survives(&format!("{line} 5%"), &format!("{line} 9%"), "--resume", data, 151);
 }
