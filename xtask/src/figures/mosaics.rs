@@ -20,7 +20,7 @@ pub(super) const FIGURES: &[Figure] = &[Figure {
 fn spread(size: Size) -> Result<Made, Box<dyn Error>> {
     let (cells, rest, count, spreads): (_, _, _, &[f64]) = size.pick(
         (36, "--time 1 --dt 0.004", 2, &[0.0, 1.0]),
-        (100, "--time 200 --dt 0.002", 8, &[0.0, 0.2, 0.5, 1.0, 2.0]),
+        (100, "--time 200 --dt 0.001", 8, &[0.0, 0.2, 0.5, 1.0, 2.0]),
     );
     let alpha = 2.0;
     let (mut series, mut found) = (Vec::new(), Vec::new());

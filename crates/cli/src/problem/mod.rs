@@ -231,9 +231,7 @@ impl Problem {
                 *observation = observation.clone().with_labels(labels)?;
             }
         }
-        if let Some(tracks) = &mut self.tracks {
-            tracks.label(data, &self.frames);
-        }
+        self.label_tracks(data);
         self.request = self.request.clone().with_kinds(kinds);
         Ok(())
     }

@@ -52,9 +52,14 @@ impl Problem {
         self.observations = (self.observations.drain(..).zip(all))
             .map(|(observation, environment)| observation.within(Arc::new(environment)))
             .collect();
+        self.label_tracks(data);
+        Ok(())
+    }
+
+    /// Gives tracks the labels of their cells, if there are tracks and labels.
+    pub fn label_tracks(&mut self, data: &DataSet) {
         if let Some(tracks) = &mut self.tracks {
             tracks.label(data, &self.frames);
         }
-        Ok(())
     }
 }

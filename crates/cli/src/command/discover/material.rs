@@ -100,6 +100,7 @@ impl Asked<'_> {
         (data, map): Data<'_>,
         mut prepared: Problem,
     ) -> Result<Problem, Failure> {
+        prepared.label_tracks(data);
         if let Some(past) = &raw.past {
             let snapshots = &self.arguments.snapshots;
             surroundings::surround(&mut prepared, (snapshots, data), map, past.history.as_ref())?;
