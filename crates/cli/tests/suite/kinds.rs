@@ -64,6 +64,21 @@ fn types_are_told_by_their_labels() {
     }
 }
 
+/// Of labelled tracks it is found that the kinds differ, and by how much.
+#[test]
+#[ignore = "slow"]
+fn a_search_in_tracks_knows_their_labels() {
+    let (data, out) = (two_types("--time 2 --frames 40"), Folder::new());
+    std::fs::remove_file(data.file("velocities.npy")).unwrap();
+    let line = "discover --frames 36..40 --fix K_A=0.1 --complete false --effects label_parameter,alpha_area --seed 1";
+    succeed(line, &[("", data.path()), ("--out", out.path())]);
+    let found = report(out.path());
+    assert_eq!(found["verdict"], "attributed");
+    assert_eq!(found["selected"][0]["effect"], "label_parameter");
+    // α is 0.6 and 1.4.
+    assert!((number(&found, "/selected/0/coefficients/2/value").abs() / 0.8 - 1.0).abs() < 0.02);
+}
+
 /// Values by label are those by cell.
 #[test]
 fn labels_and_arrays_say_the_same() {
