@@ -176,7 +176,7 @@ impl Observation {
     /// Gives the cells labels (N), in place of any that they had.
     ///
     /// # Errors
-    /// [`Error::Environment`] if they are for other cells.
+    /// [`Error::Surroundings`] if they are for other cells.
     pub fn with_labels(self, labels: Vec<Option<i64>>) -> Result<Self, Error> {
         let labelled = Environment::clone(&self.environment).with_labels(labels)?;
         Ok(self.within(Arc::new(labelled)))
