@@ -169,7 +169,7 @@ struct Search<'a> {
     least_excess: f64,
 }
 
-/// The labels of cells that have parameters of their own, and −2 log of their shares of the cells; nothing where cells are alike.
+/// The labels of cells that have parameters of their own, and −2 log of their shares of the cells; none at all, which is certain, where cells are alike.
 fn labels(frames: &[Observation], request: &Request) -> Vec<(Option<i64>, f64)> {
     let Some(kinds) = &request.kinds else { return vec![(None, 0.0)] };
     let of_cells = || frames.iter().flat_map(|frame| frame.environment().labels()).flatten();

@@ -61,7 +61,7 @@ pub(super) struct Evidence<'a> {
     pub rates: &'a Rates,
     /// Variance of a component of the velocities themselves.
     pub spread: f64,
-    /// Labels that a cell may have whose label is not known, and −2 log of their share; nothing if cells have no labels.
+    /// Labels that a cell may have whose label is not known, and −2 log of their share; none at all, which is certain, where cells are alike.
     pub labels: &'a [(Option<i64>, f64)],
 }
 

@@ -78,7 +78,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let fits = arguments.reports.iter().map(|path| Posterior::read(path)).collect::<Result<Vec<_>, _>>()?;
     for (fit, label) in fits.iter().filter_map(|fit| Some((fit, fit.label?))) {
         run.warn(format!(
-            "{}: moduli are those of a tissue of cells of label {label} alone; for both kinds together see moduli --label-parameter",
+            "{}: moduli are those of a tissue of cells of label {label} alone; for all kinds together see moduli --label-parameter",
             fit.path.display()
         ));
     }
