@@ -2,11 +2,15 @@
 
 use crate::Error;
 use rayon::prelude::*;
+use std::ops::Range;
 use voronudge_linalg::SymmetricMatrix;
 use voronudge_model::BlockMatrix;
 
 /// Block columns per task.
 const CHUNK: usize = 256;
+
+/// No number.
+const NONE: u32 = u32::MAX;
 
 /// Some of the rows of a matrix.
 pub(crate) struct Chosen<'a> {
@@ -63,28 +67,37 @@ pub(crate) fn grams<const N: usize>(
     columns: usize,
 ) -> Result<[SymmetricMatrix; N], Error> {
     let mut linked = vec![Vec::new(); columns];
-    links.for_each(|(later, earlier)| linked[earlier].push(later));
+    links.for_each(|(later, earlier)| linked[earlier].push(later as u32));
     let sorted = chosen.map(|chosen| chosen.sorted());
     let transposed = sorted.each_ref().map(|matrix| (matrix, Transposed::new(matrix, columns)));
     let parts: Vec<Part<N>> = (0..columns.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
             let (mut lengths, mut rows, mut values) = (Vec::new(), Vec::new(), [const { Vec::new() }; N]);
-            let mut place = vec![usize::MAX; columns];
-            let mut entries: Vec<(usize, [[f64; 4]; N])> = Vec::new();
-            for column in chunk * CHUNK..((chunk + 1) * CHUNK).min(columns) {
-                entries.push((column, [[0.0; 4]; N]));
-                place[column] = 0;
-                for &other in &linked[column] {
-                    place[other] = entries.len();
-                    entries.push((other, [[0.0; 4]; N]));
+            let mut place = vec![NONE; columns];
+            let mut others: Vec<u32> = Vec::new();
+            let mut sums = [const { Vec::<[f64; 4]>::new() }; N];
+            for (column, links) in linked.iter().enumerate().skip(chunk * CHUNK).take(CHUNK) {
+                let mut meet = |other: u32| {
+                    if std::mem::replace(&mut place[other as usize], 0) == NONE {
+                        others.push(other);
+                    }
+                };
+                meet(column as u32);
+                links.iter().for_each(|other| meet(*other));
+                for (matrix, transposed) in &transposed {
+                    for onwards in transposed.onwards(column, matrix) {
+                        matrix.column[onwards].iter().for_each(|other| meet(*other));
+                    }
                 }
-                for (which, (matrix, transposed)) in transposed.iter().enumerate() {
-                    for &(row, at) in transposed.column(column) {
-                        let own = &matrix.block[at];
-                        let onwards = at..matrix.row_start[row + 1];
+                others.sort_unstable();
+                others.iter().zip(0..).for_each(|(other, own)| place[*other as usize] = own);
+                for ((matrix, transposed), sums) in transposed.iter().zip(&mut sums) {
+                    sums.clear();
+                    sums.resize(others.len(), [0.0; 4]);
+                    for onwards in transposed.onwards(column, matrix) {
+                        let own = matrix.block[onwards.start];
                         for (other, b) in matrix.column[onwards.clone()].iter().zip(&matrix.block[onwards]) {
-                            let other = *other as usize;
                             // bᵀ · own
                             let product = [
                                 b[0] * own[0] + b[2] * own[2],
@@ -92,31 +105,21 @@ pub(crate) fn grams<const N: usize>(
                                 b[1] * own[0] + b[3] * own[2],
                                 b[1] * own[1] + b[3] * own[3],
                             ];
-                            if place[other] == usize::MAX {
-                                place[other] = entries.len();
-                                entries.push((other, [[0.0; 4]; N]));
-                            }
-                            let sum = &mut entries[place[other]].1[which];
+                            let sum = &mut sums[place[*other as usize] as usize];
                             sum.iter_mut().zip(product).for_each(|(s, x)| *s += x);
                         }
                     }
                 }
-                entries.iter().for_each(|(other, _)| place[*other] = usize::MAX);
-                entries.sort_unstable_by_key(|entry| entry.0);
                 for axis in 0..2 {
                     let first = rows.len();
-                    for (other, blocks) in &entries {
-                        for component in 0..2 {
-                            if 2 * other + component >= 2 * column + axis {
-                                rows.push(2 * other + component);
-                                let pairs = values.iter_mut().zip(blocks);
-                                pairs.for_each(|(values, block)| values.push(block[2 * component + axis]));
-                            }
-                        }
-                    }
+                    let below = others.iter().map(|other| [2 * *other as usize, 2 * *other as usize + 1]);
+                    lower(&mut rows, below, axis);
                     lengths.push(rows.len() - first);
+                    for (values, sums) in values.iter_mut().zip(&sums) {
+                        lower(values, sums.iter().map(|block| [block[axis], block[2 + axis]]), axis);
+                    }
                 }
-                entries.clear();
+                others.drain(..).for_each(|other| place[other as usize] = NONE);
             }
             (lengths, rows, values)
         })
@@ -138,6 +141,17 @@ pub(crate) fn grams<const N: usize>(
         *matrix = Some(pattern.with_values(values)?);
     }
     Ok(matrices.map(|matrix| matrix.unwrap_or_else(|| pattern.clone())))
+}
+
+/// Adds a column of what it has of one block after the other, which begin with that on the diagonal: of the second column, this has but one below.
+fn lower<T: Copy>(column: &mut Vec<T>, mut blocks: impl ExactSizeIterator<Item = [T; 2]>, axis: usize) {
+    column.reserve(2 * blocks.len());
+    if axis == 1
+        && let Some([_, own]) = blocks.next()
+    {
+        column.push(own);
+    }
+    blocks.for_each(|block| column.extend_from_slice(&block));
 }
 
 /// Where each block column has entries: row and index of the block.
@@ -168,7 +182,9 @@ impl Transposed {
         Self { start, entry }
     }
 
-    fn column(&self, column: usize) -> &[(usize, usize)] {
-        &self.entry[self.start[column]..self.start[column + 1]]
+    /// The parts of rows from a column on.
+    fn onwards(&self, column: usize, matrix: &BlockMatrix) -> impl Iterator<Item = Range<usize>> {
+        let entries = &self.entry[self.start[column]..self.start[column + 1]];
+        entries.iter().map(|(row, at)| *at..matrix.row_start[row + 1])
     }
 }

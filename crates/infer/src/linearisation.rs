@@ -23,7 +23,7 @@ use crate::rows::{Group, Rows};
 use crate::stiffness::Stiffness;
 use crate::whitened::Whitened;
 use nalgebra::{DMatrix, DVector};
-use voronudge_linalg::{DissectedCholesky, DissectedPattern, SymmetricMatrix};
+use voronudge_linalg::{DissectedCholesky, DissectedPattern, Dissections, SymmetricMatrix};
 
 /// The linearised problem of one frame.
 #[derive(Debug)]
@@ -65,6 +65,8 @@ pub(crate) struct Local<'a> {
     pub free: usize,
     /// Where the coordinates belong, two after the other; those of `None` are coupled to all others.
     pub places: Vec<Option<[f64; 3]>>,
+    /// Orders of elimination that are known.
+    pub dissections: &'a Dissections,
     /// Places that are measured but held, and not among the unknowns.
     pub left_out: usize,
 }
@@ -98,7 +100,8 @@ impl Eliminated {
 
 impl Linearisation {
     pub fn new<'a>(local: &Local<'a>) -> Result<Self, Error> {
-        let Local { velocities, positions, known, nudges, stiffness, free, places, left_out } = local;
+        let Local { velocities, positions, known, nudges, stiffness, free, places, dissections, left_out } =
+            local;
         let chosen = |group: &Rows<'a>| Chosen {
             matrix: group.jacobian,
             rows: group.rows.iter().map(|row| row.0).collect(),
@@ -113,7 +116,7 @@ impl Linearisation {
             return Err(Error::Degenerate);
         };
         let known = known.iter().zip(normals).map(|((rows, _), own)| group(rows, own)).collect();
-        let pattern = DissectedPattern::new(&of_velocities, places)?;
+        let pattern = dissections.of(&of_velocities, places)?;
         Ok(Self {
             velocities: group(velocities, of_velocities),
             positions: group(positions, of_positions),

@@ -217,8 +217,8 @@ impl<'a> Objective<'a> {
         let frame = &self.frames[index];
         let nudges = nudges.chunks_exact(2).map(|e| Vector::new(e[0], e[1]));
         let positions: Vec<Vector<f64>> = frame.positions.iter().zip(nudges).map(|(r, e)| r + e).collect();
-        let tessellation = Tessellation::new(&positions, frame.tessellation.domain())
-            .map_err(|source| Error::Geometry { frame: index, source })?;
+        let tessellation =
+            frame.moved_to(&positions).map_err(|source| Error::Geometry { frame: index, source })?;
         let sampling = frame.sampling(&tessellation, &positions);
         Ok(Nudged::placed(self.structure, environment, positions, tessellation, sampling))
     }

@@ -1,5 +1,6 @@
 //! One snapshot: where the cells are and how fast they move.
 
+mod cut;
 mod measured;
 mod scaled;
 
@@ -9,7 +10,10 @@ use crate::flow::{Flow, Sampling};
 use crate::measurement::Unknown;
 use nalgebra::DMatrix;
 use std::sync::Arc;
-use voronudge_geometry::{Domain, FieldOfView, Region, Tessellation, Vector, Visibility};
+use voronudge_geometry::{
+    Domain, Error as GeometryError, FieldOfView, MovingTessellation, Region, Tessellation, Vector, Visibility,
+};
+use voronudge_linalg::Dissections;
 use voronudge_model::{BlockMatrix, Environment};
 
 /// Cells of one frame with their tessellation as measured. Cells are those present in the frame, in any order.
@@ -50,6 +54,8 @@ pub struct Observation {
     environment: Arc<Environment>,
     /// Which cell of the tissue each is; empty if that is not known.
     identities: Vec<Option<usize>>,
+    /// Orders of elimination that are known.
+    dissections: Dissections,
 }
 
 /// How velocities were measured.
@@ -137,6 +143,7 @@ impl Observation {
             background: None,
             environment: Arc::default(),
             identities: Vec::new(),
+            dissections: Dissections::default(),
         })
     }
 
@@ -311,45 +318,21 @@ impl Observation {
         targets
     }
 
-    /// Some cells of this one, by their index, that are displaced by nudges of all cells, with positions of their own, the velocities that are to be explained, and those
-    /// that are held.
-    pub(crate) fn cut(
-        &self,
-        cells: &[usize],
-        nudges: &[f64],
-        positions: Vec<Vector<f64>>,
-        targets: Vec<Option<Vector<f64>>>,
-        held: Vec<bool>,
-    ) -> Result<Self, Error> {
-        let whole = Self::new(0, positions, targets, Domain::Open, FieldOfView::everywhere())?;
-        let own = |of_cells: &[f64]| match of_cells.is_empty() {
-            true => Vec::new(),
-            false => cells.iter().map(|cell| of_cells[*cell]).collect(),
-        };
-        Ok(Self {
-            used: vec![true; cells.len()],
-            stiffness: own(&self.stiffness),
-            share: self.share,
-            aims: match self.aims.is_empty() && self.share == 0.0 {
-                true => Vec::new(),
-                // Cells that are held are where the nudges have put them.
-                false => cells
-                    .iter()
-                    .zip(&held)
-                    .map(|(&cell, held)| match held {
-                        true => self.aim(cell) - Vector::new(nudges[2 * cell], nudges[2 * cell + 1]),
-                        false => self.aim(cell),
-                    })
-                    .collect(),
-            },
-            polygons: match self.polygons.is_empty() {
-                true => Vec::new(),
-                false => cells.iter().map(|cell| self.polygons[*cell]).collect(),
-            },
-            held,
-            weights: own(&self.weights),
-            ..whole
-        })
+    /// The tessellation of these cells at other positions (N).
+    pub(crate) fn moved_to(&self, positions: &[Vector<f64>]) -> Result<Tessellation, GeometryError> {
+        Ok(self.moving_to(positions)?.into_tessellation())
+    }
+
+    /// The same of cells that will move on.
+    pub(crate) fn moving_to(&self, positions: &[Vector<f64>]) -> Result<MovingTessellation, GeometryError> {
+        let mut moving = MovingTessellation::of(self.tessellation.clone(), &self.positions);
+        moving.renew(positions)?;
+        Ok(moving)
+    }
+
+    /// Orders of elimination of matrices about these cells.
+    pub(crate) fn dissections(&self) -> &Dissections {
+        &self.dissections
     }
 
     /// Whether a cell has no nudge.

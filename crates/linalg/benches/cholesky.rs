@@ -13,7 +13,7 @@ fn main() {
 }
 
 /// Cells along a side and frames.
-const MOVIES: [[usize; 2]; 4] = [[18, 1], [18, 6], [32, 1], [32, 4]];
+const MOVIES: [[usize; 2]; 5] = [[10, 1], [18, 1], [18, 6], [32, 1], [32, 4]];
 
 type Places = Vec<Option<[f64; 3]>>;
 

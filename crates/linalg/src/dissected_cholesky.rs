@@ -11,6 +11,7 @@
 
 use crate::fronts::Fronts;
 use crate::room::Room;
+use crate::symmetric_matrix::Places;
 use crate::{Error, SelectedInverse, SymmetricMatrix};
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::cholesky::llt::factor::{cholesky_in_place, cholesky_in_place_scratch};
@@ -47,6 +48,8 @@ fn shared_if_dear(work: usize) -> Par {
 #[derive(Debug, Clone)]
 pub struct DissectedPattern {
     fronts: Arc<Fronts>,
+    /// Where the matrix has entries.
+    entries: Arc<Places>,
 }
 
 impl DissectedPattern {
@@ -54,13 +57,27 @@ impl DissectedPattern {
     /// in space and time; those of a place that is `None` are coupled to all. The order is that of nested dissection by planes.
     ///
     /// # Errors
-    /// [`Error::Malformed`] if unknowns cannot be shared out evenly.
+    /// [`Error::Malformed`] if unknowns cannot be shared out evenly, or the unknowns of two places are not coupled all to all.
     pub fn new(matrix: &SymmetricMatrix, places: &[Option<[f64; 3]>]) -> Result<Self, Error> {
         let order = matrix.order();
         if places.is_empty() || !order.is_multiple_of(places.len()) {
             return Err(Error::Malformed("places and unknowns do not fit together"));
         }
-        Ok(Self { fronts: Arc::new(Fronts::new(matrix, places, order / places.len())) })
+        let group = order / places.len();
+        if !matrix.is_of_blocks(group) {
+            return Err(Error::Malformed("the unknowns of two places are not coupled all to all"));
+        }
+        Ok(Self { fronts: Arc::new(Fronts::new(matrix, places, group)), entries: matrix.shared_places() })
+    }
+
+    /// Whether a matrix has this pattern.
+    pub fn is_of(&self, matrix: &SymmetricMatrix) -> bool {
+        matrix.is_at(&self.entries)
+    }
+
+    /// Entries of the matrix.
+    pub(crate) fn matrix_entries(&self) -> usize {
+        self.entries.count()
     }
 
     /// Whether factors are so large that several at once would take much memory.
@@ -71,11 +88,16 @@ impl DissectedPattern {
     /// Factorises a matrix of this pattern.
     ///
     /// # Errors
-    /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`].
+    /// [`Error::NotPositiveDefinite`], [`Error::OutOfMemory`]; [`Error::Malformed`] if it has another pattern.
     pub fn factor(&self, matrix: &SymmetricMatrix) -> Result<DissectedCholesky, Error> {
+        if !self.is_of(matrix) {
+            return Err(Error::Malformed(
+                "a matrix has another pattern than the order of elimination is for",
+            ));
+        }
         let mut values =
             Room::new(self.fronts.entries()).ok_or(Error::OutOfMemory { order: matrix.order() })?;
-        let job = Job { fronts: &self.fronts, matrix: matrix.values() };
+        let job = Job { fronts: &self.fronts, matrix };
         job.all(self.fronts.roots(), &mut values)?;
         Ok(DissectedCholesky { fronts: Arc::clone(&self.fronts), values })
     }
@@ -92,8 +114,7 @@ pub struct DissectedCholesky {
 /// A factorisation at work.
 struct Job<'a> {
     fronts: &'a Fronts,
-    /// Entries of the matrix.
-    matrix: &'a [f64],
+    matrix: &'a SymmetricMatrix,
 }
 
 /// What a front leaves to the next: a square matrix by columns, of which the lower triangle counts.
@@ -127,10 +148,7 @@ impl Job<'_> {
         let (children, coupled) = (self.fronts.children(index), all - own);
         let (below, columns) = values.split_at_mut(values.len() - own * all);
         let updates = self.all(children, below)?;
-        columns.fill(0.0);
-        for (from, to) in self.fronts.entering(index) {
-            columns[*to as usize] += self.matrix[*from as usize];
-        }
+        self.fronts.fill(index, self.matrix, columns);
         let out_of_memory = Error::OutOfMemory { order: self.fronts.order() };
         let mut left = Room::new(coupled * coupled).ok_or(out_of_memory)?;
         if !children.is_empty() {

@@ -7,7 +7,7 @@
 use crate::graph::Graph;
 use crate::separator::{Halves, NONE, separate};
 
-/// Nodes that are not cut any further.
+/// Nodes that are not cut any further, at least; nor are as many as one is coupled to in the mean.
 const LEAF: usize = 24;
 
 /// Nodes from which on both sides of a cut are dissected at the same time.
@@ -73,7 +73,11 @@ impl Dissection {
         let nodes = graph.nodes();
         let (near, last): (Vec<u32>, Vec<u32>) =
             (0..nodes as u32).partition(|&node| places[node as usize].is_some());
-        let cut = Cut { graph, places: places.iter().map(|place| place.unwrap_or_default()).collect() };
+        let cut = Cut {
+            graph,
+            places: places.iter().map(|place| place.unwrap_or_default()).collect(),
+            leaf: LEAF.max(graph.degree()),
+        };
         let mut part = Part::default();
         let children = cut.divide(near, &mut part, &mut vec![NONE; nodes]);
         let roots = if last.is_empty() { children } else { vec![part.front(last, children)] };
@@ -100,6 +104,8 @@ impl Dissection {
 struct Cut<'a> {
     graph: &'a Graph,
     places: Vec<[f64; 3]>,
+    /// Nodes that are not cut any further.
+    leaf: usize,
 }
 
 /// Part of a dissection in the making.
@@ -138,7 +144,7 @@ impl Cut<'_> {
         if nodes.is_empty() {
             return Vec::new();
         }
-        if nodes.len() <= LEAF {
+        if nodes.len() <= self.leaf {
             return vec![part.front(nodes, Vec::new())];
         }
         let cuts = [0, 1, 2].into_iter().flat_map(|axis| self.cuts(&nodes, axis));

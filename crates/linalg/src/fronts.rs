@@ -15,9 +15,9 @@ pub(crate) struct Fronts {
     group: usize,
     /// First entry of each front in a factor, and the end.
     start: Vec<usize>,
-    /// Entries of the matrix and where they go in the columns of their front, by fronts.
-    entries: Vec<(u32, u32)>,
-    entry_start: Vec<usize>,
+    /// Where the matrix' blocks of two nodes go, by fronts.
+    blocks: Vec<Block>,
+    block_start: Vec<usize>,
     /// Where the nodes to which each front couples are in the next front.
     lift: Vec<Vec<u32>>,
     /// The first front below each, or itself.
@@ -26,6 +26,20 @@ pub(crate) struct Fronts {
     front_of: Vec<u32>,
     /// Multiplications in each and all below, about.
     work: Vec<usize>,
+}
+
+/// Where what the lower triangle of a matrix has of two nodes goes.
+#[derive(Debug, Clone, Copy, Default)]
+struct Block {
+    /// First of its columns in the matrix, and how far before the end of each of them its rows begin.
+    column: u32,
+    back: u32,
+    /// First of its entries in the columns of the front.
+    at: u32,
+    /// Whether the node of the rows is eliminated first.
+    turned: bool,
+    /// Whether it is one node's.
+    same: bool,
 }
 
 /// Where two nodes meet: in which front, in the columns of the one that is eliminated first and the rows of the other.
@@ -52,8 +66,8 @@ impl Fronts {
             lift: vec![Vec::new(); count],
             first_below: Vec::with_capacity(count),
             work: Vec::with_capacity(count),
-            entries: Vec::new(),
-            entry_start: Vec::new(),
+            blocks: Vec::new(),
+            block_start: Vec::new(),
             dissection,
             group,
         };
@@ -80,34 +94,31 @@ impl Fronts {
         }
     }
 
-    /// Where the entries of a matrix go.
+    /// Where the entries of a matrix go, which come in whole blocks.
     fn enter(&mut self, matrix: &SymmetricMatrix) {
         let (column_start, row) = matrix.places();
-        let mut entry_start = vec![0; self.count() + 1];
-        let mut all = Vec::with_capacity(row.len());
-        for column in 0..matrix.order() {
-            // Rows of a group follow each other in a front as well.
-            let mut last = (usize::MAX, None);
-            for (k, row) in row.iter().enumerate().take(column_start[column + 1]).skip(column_start[column]) {
-                if last.0 != row / self.group {
-                    last = (row / self.group, self.seat(column / self.group, row / self.group));
-                }
-                // A factor has an entry for each of the matrix.
-                let Some(seat) = last.1 else { continue };
-                let (index, at) = self.entry(seat, column % self.group, row % self.group);
-                entry_start[index + 1] += 1;
-                all.push((k, index, at));
+        let mut block_start = vec![0; self.count() + 1];
+        let mut all = Vec::with_capacity(row.len() / (self.group * self.group) + self.dissection.order.len());
+        for (node, column) in (0..matrix.order()).step_by(self.group).enumerate() {
+            let range = column_start[column]..column_start[column + 1];
+            for k in range.clone().step_by(self.group) {
+                let Some(seat) = self.seat(node, row[k] / self.group) else { continue };
+                let at = seat.across * self.sizes(seat.index).1 + seat.down;
+                let (back, at) = ((range.end - k) as u32, at as u32);
+                let block = Block { column: column as u32, back, at, turned: seat.turned, same: seat.same };
+                block_start[seat.index + 1] += 1;
+                all.push((seat.index, block));
             }
         }
-        for index in 1..entry_start.len() {
-            entry_start[index] += entry_start[index - 1];
+        for index in 1..block_start.len() {
+            block_start[index] += block_start[index - 1];
         }
-        let (mut next, mut entries) = (entry_start.clone(), vec![(0, 0); all.len()]);
-        for (k, index, at) in all {
-            entries[next[index]] = (k as u32, (at - self.start[index]) as u32);
+        let (mut next, mut blocks) = (block_start.clone(), vec![Block::default(); all.len()]);
+        for (index, block) in all {
+            blocks[next[index]] = block;
             next[index] += 1;
         }
-        (self.entries, self.entry_start) = (entries, entry_start);
+        (self.blocks, self.block_start) = (blocks, block_start);
     }
 
     /// Where two nodes meet in a factor, if they do.
@@ -192,9 +203,24 @@ impl Fronts {
         MatRef::from_column_major_slice(&values[self.start[index]..self.start[index + 1]], all, own)
     }
 
-    /// Which entries of a matrix go where in the columns of a front.
-    pub fn entering(&self, index: usize) -> &[(u32, u32)] {
-        &self.entries[self.entry_start[index]..self.entry_start[index + 1]]
+    /// Puts the entries of a matrix into the columns of a front.
+    pub fn fill(&self, index: usize, matrix: &SymmetricMatrix, columns: &mut [f64]) {
+        let (column_start, _) = matrix.places();
+        let (values, height) = (matrix.values(), self.sizes(index).1);
+        columns.fill(0.0);
+        for block in &self.blocks[self.block_start[index]..self.block_start[index + 1]] {
+            let at = block.at as usize;
+            for j in 0..self.group {
+                let end = column_start[block.column as usize + j + 1];
+                // A node's own block is a triangle.
+                let first = if block.same { j } else { 0 };
+                let from = end + first - block.back as usize;
+                for (value, i) in values[from..].iter().zip(first..self.group) {
+                    let (across, down) = if block.turned { (i, j) } else { (j, i) };
+                    columns[at + across * height + down] = *value;
+                }
+            }
+        }
     }
 
     /// Positions of its own unknowns.

@@ -24,22 +24,15 @@ impl Graph {
     /// Groups of so many unknowns each, coupled where the lower triangle of a symmetric matrix, in compressed columns, has an entry.
     pub fn of_lower_triangle(column_start: &[usize], row: &[usize], group: usize) -> Self {
         let groups = (column_start.len() - 1) / group;
-        // One column of each group tells: entries below come in whole blocks, those of the block on the diagonal couple the group to itself.
-        let below = |node: usize| {
-            let rows = &row[column_start[node * group]..column_start[node * group + 1]];
-            rows.iter().map(move |row| row / group).filter(move |other| *other > node)
-        };
+        // One column of each group tells: entries come in whole blocks, the first couples the group to itself.
         let mut start = vec![0; groups + 1];
-        let mut last = vec![usize::MAX; groups];
-        let mut edges = Vec::new();
+        let mut edges = Vec::with_capacity(row.len() / (group * group));
         for node in 0..groups {
-            for other in below(node) {
-                if last[other] != node {
-                    last[other] = node;
-                    edges.push((node as u32, other as u32));
-                    start[node + 1] += 1;
-                    start[other + 1] += 1;
-                }
+            let rows = &row[column_start[node * group]..column_start[node * group + 1]];
+            for other in rows.iter().step_by(group).skip(1).map(|row| row / group) {
+                edges.push((node as u32, other as u32));
+                start[node + 1] += 1;
+                start[other + 1] += 1;
             }
         }
         for node in 0..groups {
@@ -58,6 +51,11 @@ impl Graph {
     /// Number of nodes.
     pub fn nodes(&self) -> usize {
         self.start.len() - 1
+    }
+
+    /// How many others a node is coupled to in the mean.
+    pub fn degree(&self) -> usize {
+        self.neighbour.len() / self.nodes().max(1)
     }
 
     /// What a node is coupled to.

@@ -14,9 +14,16 @@ pub struct SymmetricMatrix {
 
 /// Where entries are.
 #[derive(Debug, PartialEq)]
-struct Places {
+pub(crate) struct Places {
     column_start: Vec<usize>,
     row: Vec<usize>,
+}
+
+impl Places {
+    /// How many entries there are.
+    pub fn count(&self) -> usize {
+        self.row.len()
+    }
 }
 
 impl SymmetricMatrix {
@@ -55,7 +62,17 @@ impl SymmetricMatrix {
 
     /// Whether entries are at the same places as those of another matrix.
     pub fn has_pattern_of(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.places, &other.places) || self.places == other.places
+        self.is_at(&other.places)
+    }
+
+    /// Whether these are the places of the entries.
+    pub(crate) fn is_at(&self, places: &Arc<Places>) -> bool {
+        Arc::ptr_eq(&self.places, places) || self.places == *places
+    }
+
+    /// The places of the entries.
+    pub(crate) fn shared_places(&self) -> Arc<Places> {
+        Arc::clone(&self.places)
     }
 
     /// This matrix plus `factor` times another one of the same pattern.
@@ -114,6 +131,20 @@ impl SymmetricMatrix {
         let at = self.places.row[begin..end].binary_search(&row).map_err(|_| absent)?;
         self.value[begin + at] += value;
         Ok(())
+    }
+
+    /// Whether unknowns, in groups of one size that follow each other, are coupled by whole blocks.
+    pub(crate) fn is_of_blocks(&self, group: usize) -> bool {
+        let Places { column_start, row } = &*self.places;
+        let rows = |column: usize| &row[column_start[column]..column_start[column + 1]];
+        (0..self.order()).step_by(group).all(|column| {
+            let first = rows(column);
+            let is_whole =
+                |own: &[usize]| own[0].is_multiple_of(group) && own[own.len() - 1] == own[0] + group - 1;
+            first.len().is_multiple_of(group)
+                && first.chunks_exact(group).all(is_whole)
+                && (1..group).all(|j| rows(column + j) == &first[j..])
+        })
     }
 
     /// Column starts and rows.

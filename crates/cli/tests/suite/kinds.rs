@@ -75,6 +75,8 @@ fn a_search_in_tracks_knows_their_labels() {
     let found = report(out.path());
     assert_eq!(found["verdict"], "attributed");
     assert_eq!(found["selected"][0]["effect"], "label_parameter");
+    let name = found["selected"][0]["coefficients"][2]["name"].as_str().unwrap();
+    assert!(["chirality of label 0", "chirality of label 1"].contains(&name), "{name}");
     // α is 0.6 and 1.4.
     assert!((number(&found, "/selected/0/coefficients/2/value").abs() / 0.8 - 1.0).abs() < 0.02);
 }

@@ -16,8 +16,8 @@ const CANCELLED: f64 = 1e-9;
 /// named first: coordinates are taken relative to the lowest cell. Four sites on one circle get the diagonal that they
 /// would have if each cell were lifted off the paraboloid by an infinitesimal amount, the lowest cell downwards most:
 /// a fan from the lowest cell. If the images of one cell balance, the box is sheared, then stretched, by an infinitesimal
-/// amount.
-pub(super) fn is_delaunay(positions: &[Vector<f64>], domain: &Domain, sites: [Site; 4]) -> bool {
+/// amount. In an open field either diagonal would do: `None`.
+pub(super) fn is_delaunay(positions: &[Vector<f64>], domain: &Domain, sites: [Site; 4]) -> Option<bool> {
     let first = (0..4).min_by_key(|&k| sites[k]).unwrap_or(0);
     let ordered: [Site; 4] = std::array::from_fn(|k| sites[(first + k) % 4]);
     let (origin, [x, y]) = ordered[0];
@@ -27,11 +27,12 @@ pub(super) fn is_delaunay(positions: &[Vector<f64>], domain: &Domain, sites: [Si
     });
     let coordinates = at.map(|r| Coord { x: r.x, y: r.y });
     let inside = match incircle(coordinates[0], coordinates[1], coordinates[2], coordinates[3]) {
+        0.0 if matches!(domain, Domain::Open) => return None,
         0.0 => tie(ordered.map(|(cell, _)| cell), at),
         sign => sign,
     };
     // Going on by one site is an odd permutation of the rows of the determinant.
-    if first % 2 == 0 { inside <= 0.0 } else { inside >= 0.0 }
+    Some(if first % 2 == 0 { inside <= 0.0 } else { inside >= 0.0 })
 }
 
 /// The sign of the determinant of four sites on one circle after the infinitesimal displacements.

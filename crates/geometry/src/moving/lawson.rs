@@ -10,7 +10,7 @@ const UNTOUCHED: u32 = u32::MAX;
 /// Flips per cell after which a triangulation is given up: a disordered one needs about one.
 const FLIPS_PER_CELL: usize = 50;
 
-/// The flips did not come to an end: rounding, or triangles that were turned over.
+/// The flips did not come to an end: rounding, or triangles that were turned over, or cells on a circle in an open field.
 pub(super) struct Tangled;
 
 /// The rings that flips have changed, apart from the arrays of the tessellation. Memory is kept from call to call.
@@ -43,17 +43,21 @@ impl Lawson {
                 continue; // flipped away
             };
             let own = (edge.from, [0, 0]);
-            if is_delaunay(positions, &tessellation.domain(), [own, before, edge.to, after]) {
+            let decided = is_delaunay(positions, &tessellation.domain(), [own, before, edge.to, after]);
+            if decided == Some(true) {
                 continue;
             }
             flips += 1;
-            if flips > most || !self.flip(tessellation, [own, before, edge.to, after]) {
+            if decided.is_none() || flips > most || !self.flip(tessellation, [own, before, edge.to, after]) {
                 self.forget();
                 return Err(Tangled);
             }
         }
         for &cell in &self.touched {
             let ring = &mut self.rings[self.slot[cell as usize] as usize];
+            if !tessellation.is_closed(cell as usize) {
+                continue;
+            }
             let lowest = (0..ring.len()).min_by_key(|&m| ring[m]).unwrap_or(0);
             ring.rotate_left(lowest);
         }
@@ -65,7 +69,7 @@ impl Lawson {
         &self.touched
     }
 
-    /// The new ring of a cell, from its lowest neighbour on, if flips have changed it.
+    /// The new ring of a cell, from its lowest neighbour on or along the hull, if flips have changed it.
     #[inline]
     pub fn ring(&self, cell: usize) -> Option<&[Site]> {
         match self.slot[cell] {
@@ -81,10 +85,14 @@ impl Lawson {
         }
     }
 
-    /// The sites before and after an edge in the ring of its first cell.
+    /// The sites before and after an edge in the ring of its first cell; none of an edge of the hull.
     fn opposite(&self, tessellation: &Tessellation, edge: Edge) -> Option<[Site; 2]> {
+        let is_closed = tessellation.is_closed(edge.from as usize);
         let around = |sides: usize, site: &dyn Fn(usize) -> Site| {
             let m = (0..sides).find(|&m| site(m) == edge.to)?;
+            if !is_closed && (m == 0 || m + 1 == sides) {
+                return None;
+            }
             Some([site(if m == 0 { sides - 1 } else { m - 1 }), site(if m + 1 == sides { 0 } else { m + 1 })])
         };
         let cell = edge.from as usize;

@@ -1,6 +1,7 @@
 //! The tessellation of cells that move: repaired by flips, which cost a tenth to a quarter of a tessellation anew.
 
 mod diagonal;
+mod hull;
 mod lawson;
 mod scan;
 mod splice;
@@ -21,7 +22,7 @@ const PARTS: u32 = 4;
 /// four parts; if that does not help, the tessellation is built anew. Each way gives the same arrays as
 /// [`Tessellation::new`], so nothing depends on the path of the cells.
 ///
-/// An open field of view is built anew each time.
+/// An open field is built anew where its hull changes, or four cells lie on a circle.
 ///
 /// ```
 /// use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Renewal, Tessellation, Vector};
@@ -69,14 +70,23 @@ impl MovingTessellation {
     /// # Errors
     /// As [`Tessellation::new`].
     pub fn new(positions: &[Vector<f64>], domain: Domain) -> Result<Self, Error> {
-        let tessellation = Tessellation::new(positions, domain)?;
-        Ok(Self { tessellation, positions: positions.to_vec(), repair: Repair::default(), sound: true })
+        Ok(Self::of(Tessellation::new(positions, domain)?, positions))
+    }
+
+    /// Follows the cells from where a tessellation is of them (N).
+    pub fn of(tessellation: Tessellation, positions: &[Vector<f64>]) -> Self {
+        Self { tessellation, positions: positions.to_vec(), repair: Repair::default(), sound: true }
     }
 
     /// The tessellation of the positions given last.
     #[inline]
     pub fn tessellation(&self) -> &Tessellation {
         &self.tessellation
+    }
+
+    /// Gives the tessellation away.
+    pub fn into_tessellation(self) -> Tessellation {
+        self.tessellation
     }
 
     /// Follows the cells to new positions (N) in the same domain.

@@ -1,6 +1,7 @@
 //! One pass over all cells: is the tessellation still that of the positions?
 
 use super::diagonal::Site;
+use super::hull::turns_once;
 use super::split::CHUNK;
 use crate::builder::MOST_BOXES;
 use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector, cross, dot};
@@ -25,28 +26,31 @@ pub(super) enum Finding {
     /// Every triangle is counter-clockwise. These edges are not, or to rounding not surely, Delaunay edges; all others
     /// are. If there are none, the tessellation is that of the positions.
     Suspects(Vec<Edge>),
-    /// A triangle is turned over, or to rounding flat; or cells are too far from the box.
+    /// A triangle is turned over, or to rounding flat; or cells are too far from the box; or those of an open field have another hull.
     Inverted,
 }
 
-/// Looks at every triangle and every edge of a periodic tessellation.
+/// Looks at every triangle and every edge of a tessellation.
 ///
-/// Triangles that are all counter-clockwise cover the torus once, because their images are those of a tessellation of it;
-/// edges that are all locally Delaunay then make the Delaunay triangulation. The pass is thus a proof.
+/// Triangles that are all counter-clockwise cover the torus once, because their images are those of a tessellation of it, and so they do the
+/// inside of a hull that they have as they had; edges that are all locally Delaunay then make the Delaunay triangulation. The pass is thus a proof.
 pub(super) fn scan(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Finding {
-    let Domain::Periodic(cell_box) = tessellation.domain() else {
-        return Finding::Inverted;
-    };
     let extent = positions
         .par_chunks(CHUNK)
         .map(|chunk| chunk.iter().map(|r| r.x.abs().max(r.y.abs())).fold(0.0, f64::max))
         .reduce(|| 0.0, f64::max);
-    let [width, height] = cell_box.lengths();
-    // Images are counted in 16 bits.
-    if extent > MOST_BOXES * width.min(height) {
-        return Finding::Inverted;
-    }
-    let size = 2.0 * extent + width + height + cell_box.offset().abs();
+    let size = match tessellation.domain() {
+        Domain::Periodic(cell_box) => {
+            let [width, height] = cell_box.lengths();
+            // Images are counted in 16 bits.
+            if extent > MOST_BOXES * width.min(height) {
+                return Finding::Inverted;
+            }
+            2.0 * extent + width + height + cell_box.offset().abs()
+        }
+        Domain::Open if turns_once(tessellation, positions) => 2.0 * extent,
+        Domain::Open => return Finding::Inverted,
+    };
     let chunks = positions.len().div_ceil(CHUNK);
     let findings: Option<Vec<Vec<Edge>>> = (0..chunks)
         .into_par_iter()
@@ -136,6 +140,24 @@ impl<S: Ordered> Extremes<S> {
     }
 }
 
+impl Extremes<f64> {
+    /// Of the ring of a cell on the hull, which goes from the next cell of the hull to the one before: where the hull is no longer convex there, the cross
+    /// product of these two tells. Its edges are for [`scan_cell`].
+    fn of_open(ring: &[Vector<f64>]) -> Self {
+        let ends = [ring[0], ring[ring.len() - 1]];
+        let pairs = ring.windows(2).chain([&ends[..]]);
+        let squares = || ring.iter().map(|r| dot(*r, *r));
+        Self {
+            cross: pairs
+                .map(|pair| cross(pair[0], pair[1]))
+                .fold(f64::INFINITY, |least, own| own.least(least)),
+            determinant: 0.0,
+            farthest: squares().fold(0.0, f64::max),
+            total: squares().sum(),
+        }
+    }
+}
+
 impl Extremes<Lanes> {
     #[inline(always)]
     fn prove(&self, size: f64) -> [bool; Lanes::WIDTH] {
@@ -172,15 +194,18 @@ fn scan_cell(
     suspects: &mut Vec<Edge>,
 ) -> Option<()> {
     let ring: Vec<Vector<f64>> = tessellation.displacements(positions, cell).collect();
-    if ring.len() < 3 {
+    let is_closed = tessellation.is_closed(cell);
+    if ring.len() < if is_closed { 3 } else { 2 } {
         return None;
     }
-    let extremes = Extremes::of(&ring);
+    let extremes = if is_closed { Extremes::of(&ring) } else { Extremes::of_open(&ring) };
     if extremes.is_turned(size) {
         return None;
     }
     let lifted = |m: usize| (ring[m % ring.len()], dot(ring[m % ring.len()], ring[m % ring.len()]));
-    for (m, h) in tessellation.ring(cell).enumerate() {
+    // The edges of the hull are between no two triangles.
+    let inner = if is_closed { 0..ring.len() } else { 1..ring.len() - 1 };
+    for (m, h) in inner.clone().zip(tessellation.ring(cell).skip(inner.start)) {
         let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(lifted);
         let (first, second) = (cross(before.0, here.0), cross(here.0, after.0));
         if determinant(before, here, after, first, second) <= extremes.margin(size) {

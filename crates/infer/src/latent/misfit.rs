@@ -63,11 +63,20 @@ impl Residuals {
                 let information = by_free.transpose() * factored.solve(by_free);
                 return deviance.is_finite().then_some(Misfit { deviance, information, gradient });
             }
-            let mut inverse = DMatrix::identity(2 * count, 2 * count);
-            factored.l_dirty().solve_lower_triangular_mut(&mut inverse);
+            // A column of L⁻¹ begins at its diagonal.
+            let square = |from: usize| {
+                let behind = 2 * count - from;
+                let mut column = DVector::zeros(behind);
+                column[0] = 1.0;
+                factored
+                    .l_dirty()
+                    .view((from, from), (behind, behind))
+                    .solve_lower_triangular_mut(&mut column);
+                column.norm_squared()
+            };
             for (i, factor) in factors.iter_mut().enumerate() {
                 let pull = variance * weighted.rows(2 * i, 2).norm_squared();
-                let trace = variance * inverse.columns(2 * i, 2).norm_squared();
+                let trace = variance * (square(2 * i) + square(2 * i + 1));
                 // The majorised problem in each factor has this solution.
                 *factor *= ((pull + FREEDOM / (*factor * *factor)) / (trace + FREEDOM / *factor)).sqrt();
             }

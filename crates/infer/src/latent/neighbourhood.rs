@@ -9,7 +9,9 @@ use crate::objective::Nudged;
 use crate::{Error, Flow, Velocities};
 use nalgebra::{DMatrix, DVector, Matrix2};
 use std::sync::Arc;
-use voronudge_geometry::{CellPolygon, Domain, Grid, Tessellation, Vector, Visibility, areas, circumcentre};
+use voronudge_geometry::{
+    CellPolygon, Domain, Grid, MovingTessellation, Tessellation, Vector, Visibility, areas, circumcentre,
+};
 use voronudge_model::Environment;
 
 /// Distance from the centre within which velocities are compared, in ℓ₀: two rings around a cell that moves.
@@ -119,12 +121,27 @@ impl Neighbourhood {
         Ok(Arc::new(Environment::default().with_labels(labels)?))
     }
 
-    /// The velocities nearby with free cells.
-    fn residuals(&self, law: &Law<'_>, beside: Beside<'_>) -> Result<Residuals, Error> {
+    /// The velocities nearby with free cells, which the tessellation of an earlier place of theirs follows, if there is one.
+    fn residuals(
+        &self,
+        law: &Law<'_>,
+        beside: Beside<'_>,
+        earlier: &mut Option<MovingTessellation>,
+    ) -> Result<Residuals, Error> {
         let Beside { places: free, target, .. } = beside;
         let fixed = self.positions.len();
         let positions: Vec<Vector<f64>> = self.positions.iter().chain(free).copied().collect();
-        let tessellation = if free.is_empty() { self.tessellation.clone() } else { tessellate(&positions)? };
+        let tessellation = match earlier {
+            _ if free.is_empty() => self.tessellation.clone(),
+            None => {
+                let first = tessellate(&positions)?;
+                earlier.insert(MovingTessellation::of(first, &positions)).tessellation().clone()
+            }
+            Some(moving) => {
+                moving.renew(&positions).map_err(|source| Error::Geometry { frame: 0, source })?;
+                moving.tessellation().clone()
+            }
+        };
         let sampling = self.flow.as_ref().map(|flow| {
             Sampling::new(flow, &tessellation, &positions, &vec![Visibility::Counted; positions.len()])
         });
@@ -156,15 +173,22 @@ impl Neighbourhood {
     }
 
     /// How well the velocities nearby are explained with free cells, from the factors of places nearby.
-    fn misfit(&self, law: &Law<'_>, free: Beside<'_>, factors: &mut Vec<f64>) -> Result<Misfit, Error> {
-        let misfit = self.residuals(law, free)?.misfit(factors);
+    fn misfit(
+        &self,
+        law: &Law<'_>,
+        free: Beside<'_>,
+        earlier: &mut Option<MovingTessellation>,
+        factors: &mut Vec<f64>,
+    ) -> Result<Misfit, Error> {
+        let misfit = self.residuals(law, free, earlier)?.misfit(factors);
         misfit.ok_or_else(|| Error::Optimiser("velocities that are not finite".into()))
     }
 
     /// Deviance of the velocities nearby as things are.
     pub fn deviance(&self, law: &Law<'_>) -> Result<f64, Error> {
         let nothing = Beside { places: &[], target: None, labels: &[] };
-        Ok(self.misfit(law, nothing, &mut Vec::new()).map_or(f64::INFINITY, |misfit| misfit.deviance))
+        let misfit = self.misfit(law, nothing, &mut None, &mut Vec::new());
+        Ok(misfit.map_or(f64::INFINITY, |misfit| misfit.deviance))
     }
 
     /// Damped Gauss–Newton on the places of free cells, the coefficients held. Steps are counted by evaluations.
@@ -174,8 +198,8 @@ impl Neighbourhood {
             z.iter().zip(&guess.places).map(|(z, at)| (z - at).norm_squared()).sum::<f64>() * stiffness
         };
         let mut z = guess.start.clone();
-        let mut factors = Vec::new();
-        let Ok(mut misfit) = self.misfit(law, guess.at(&z), &mut factors) else {
+        let (mut factors, mut tessellation) = (Vec::new(), None);
+        let Ok(mut misfit) = self.misfit(law, guess.at(&z), &mut tessellation, &mut factors) else {
             return Ok(Placed {
                 deviance: f64::INFINITY,
                 strain: f64::INFINITY,
@@ -191,7 +215,7 @@ impl Neighbourhood {
             let trial: Vec<Vector<f64>> = z.iter().zip(&delta).map(|(z, d)| z + d).collect();
             done += 1;
             let mut of_trial = factors.clone();
-            let other = self.misfit(law, guess.at(&trial), &mut of_trial);
+            let other = self.misfit(law, guess.at(&trial), &mut tessellation, &mut of_trial);
             let next = other.as_ref().map_or(f64::INFINITY, |other| other.deviance + from_prior(&trial));
             match other {
                 Ok(other) if next < value => {

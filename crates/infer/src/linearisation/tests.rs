@@ -53,6 +53,7 @@ fn the_step_agrees_with_the_dense_normal_equations() {
         },
         free,
         places: (0..cells).map(|i| Some([(i % 5) as f64, (i / 5) as f64, 0.0])).collect(),
+        dissections: &Dissections::default(),
     };
     let springs = |spring: f64| {
         let of = |i: usize| if i / 2 == unseen { floor } else { spring * stiffness(i / 2) };

@@ -151,9 +151,10 @@ impl<'a> Objective<'a> {
                             free: p,
                             places: cells
                                 .iter()
-                                .map(|cell| nudged.positions[*cell])
+                                .map(|cell| frame.positions[*cell])
                                 .map(|r| Some([r[0], r[1], 0.0]))
                                 .collect(),
+                            dissections: frame.dissections(),
                             left_out: frame.positions.len() - cells.len(),
                         })
                     };

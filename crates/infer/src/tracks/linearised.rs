@@ -123,6 +123,7 @@ impl MovieObjective<'_> {
             left_out: 0,
             free: p,
             places: self.states.where_and_when(&self.movie.times),
+            dissections: &self.states.dissections,
         })?;
         let mut free = free.to_vec();
         let further = p - free.len();

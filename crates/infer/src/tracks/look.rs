@@ -80,6 +80,14 @@ impl Seen<'_> {
         }
     }
 
+    /// How the weights change with each of the unknowns, from those at all points.
+    fn directions(&self, points: &[(Weighting, f64)]) -> Vec<Weighting> {
+        let sides = self.unknown().into_iter().map(|k| PAIRS_OF_SIDES[k]);
+        let slope =
+            |[above, below]: [usize; 2]| Weighting::slope(&points[below].0, &points[above].0, 2.0 * CLOSE);
+        sides.map(slope).collect()
+    }
+
     /// By derivatives, from one factor.
     fn derivatives(&self, spaced: &Spaced, count: usize) -> Result<Look, Error> {
         let [frame] = &self.equations.frames[..] else { return Err(Error::Degenerate) };
@@ -91,11 +99,7 @@ impl Seen<'_> {
             let values: Vec<f64> = points.iter().map(|(own, determinant)| of(own, *determinant)).collect();
             Surface::new(&values).seen_from(CLOSE)
         };
-        let unknown = self.unknown();
-        let directions: Vec<Weighting> = (unknown.iter())
-            .map(|k| PAIRS_OF_SIDES[*k])
-            .map(|[above, below]| Weighting::slope(&points[below].0, &points[above].0, 2.0 * CLOSE))
-            .collect();
+        let (unknown, directions) = (self.unknown(), self.directions(&points));
         let (solved, measured) = (frame.solved(&points[0].0)?, frame.measured_components());
         let for_products = (FOR_PRODUCTS / frame.order().max(1)).max(FEWEST_FOR_PRODUCTS);
         let draws = solved.draws(count.max(for_products));
@@ -217,8 +221,13 @@ mod tests {
                 assert!((look.here.criterion - near[0].criterion).abs() < 1e-6 * near[0].criterion.abs());
                 let off = (look.log_variance - variance.slope).amax();
                 assert!(off < 1e-3 * variance.slope.amax().max(1.0), "{known:?} {variance:?} {look:?}");
-                // Slopes scatter by the root of a bend over that of the draws.
-                let scatter = |k: usize| (2.0 * criterion.bend[(k, k)].abs() / 4000.0).sqrt();
+                // The trace of A⁻¹∂A from n draws has a variance of 2 tr (A⁻¹∂A)² / n.
+                let around =
+                    POINTS.map(|point| seen.weighting(spaced.at(Point::from(point) * CLOSE)).unwrap());
+                let solved = equations.frames[0].solved(&around[0].0).unwrap();
+                let products = solved.products(&seen.directions(&around), &solved.draws(400));
+                let products = among(&seen.unknown(), &products);
+                let scatter = |k: usize| (2.0 * products[(k, k)] / 4000.0).sqrt();
                 for k in 0..4 {
                     let off = look.criterion.slope[k] - criterion.slope[k];
                     assert!(off.abs() < 4.0 * scatter(k) + 1e-3, "{k}: {off} {criterion:?} {look:?}");

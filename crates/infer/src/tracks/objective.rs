@@ -22,7 +22,7 @@ use crate::robust::{loss, posterior_weight};
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use rayon::prelude::*;
-use voronudge_geometry::{Tessellation, Vector};
+use voronudge_geometry::Vector;
 use voronudge_model::Structure;
 
 /// Standard deviation of what nothing holds about where it began, in units of ℓ₀: none to speak of.
@@ -139,9 +139,10 @@ impl<'a> MovieObjective<'a> {
         let states = self.states;
         let moving = |frame: usize| {
             let positions = self.positions(frame, displacements);
-            let tessellation = Tessellation::new(&positions, self.movie.domain)
-                .map_err(|source| Error::Geometry { frame, source })?;
-            let nudged = Nudged::new(&states.instants[frame].cells, self.structure, positions, tessellation);
+            let cells = &states.instants[frame].cells;
+            let tessellation =
+                cells.moved_to(&positions).map_err(|source| Error::Geometry { frame, source })?;
+            let nudged = Nudged::new(cells, self.structure, positions, tessellation);
             let evaluated = nudged.evaluate(coefficients.as_slice());
             Ok((nudged, evaluated))
         };

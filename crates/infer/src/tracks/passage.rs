@@ -60,7 +60,9 @@ impl<'a> Passage<'a> {
         let terms = single_terms(objective.structure, between.halfway.environment());
         let way = Way { objective, interval, beside, coefficients, terms };
         let begin: Vec<Vector<f64>> = between.ends.iter().map(|own| first[own[0] as usize]).collect();
-        let mut moving = MovingTessellation::new(&begin, objective.movie.domain)
+        let mut moving = between
+            .halfway
+            .moving_to(&begin)
             .map_err(|source| Error::Geometry { frame: interval, source })?;
         let (mut at, mut steps) = (begin.clone(), Vec::with_capacity(count));
         for _ in 0..count {

@@ -4,7 +4,7 @@ use super::motions::Motion;
 use super::objective::{MovieObjective, Placed};
 use crate::Error;
 use rayon::prelude::*;
-use voronudge_geometry::{Tessellation, Vector};
+use voronudge_geometry::Vector;
 
 impl MovieObjective<'_> {
     /// The mean velocity of each motion between the points at which the cell would be measured, without the translation.
@@ -45,9 +45,9 @@ impl MovieObjective<'_> {
         for (motion, moved) in motions.iter().zip(&moved).filter(|(_, moved)| is_known(moved)) {
             ends[motion.cells[1] as usize] = first.positions[motion.cells[0] as usize] + moved;
         }
-        let tessellation = Tessellation::new(&ends, self.movie.domain)
-            .map_err(|source| Error::Geometry { frame: interval + 1, source })?;
         let cells = |end: usize| &self.states.instants[interval + end].cells;
+        let tessellation =
+            cells(1).moved_to(&ends).map_err(|source| Error::Geometry { frame: interval + 1, source })?;
         let from = cells(0).seen_from(&first.tessellation, &first.positions);
         let to = cells(1).seen_from(&tessellation, &ends);
         let velocity = |(motion, moved): (&Motion, &Vector<f64>)| {

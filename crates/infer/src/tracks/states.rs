@@ -11,6 +11,7 @@ use super::own_motion::OwnMotion;
 use crate::{Drives, Error, Observation};
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
+use voronudge_linalg::Dissections;
 
 /// The cells that are there at a frame.
 #[derive(Debug, Clone)]
@@ -75,6 +76,8 @@ pub(crate) struct States {
     pub own_motion: Option<OwnMotion>,
     /// What the likelihood of the coefficients has beside the objective of cells that crawl.
     pub integrated: Option<Integrated>,
+    /// Orders of elimination that are known.
+    pub dissections: Dissections,
 }
 
 impl States {
@@ -156,6 +159,7 @@ impl States {
             polarities,
             own_motion: None,
             integrated: None,
+            dissections: Dissections::default(),
         })
     }
 

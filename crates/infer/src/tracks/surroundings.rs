@@ -30,14 +30,23 @@ impl Movie {
             .map_or_else(|_| self.environment.clone(), Arc::new)
     }
 
+    /// The same of all its cells.
+    fn environment_of_all(&self) -> Arc<Environment> {
+        self.environment_of(&(0..self.tracks.len() as u32).collect::<Vec<_>>())
+    }
+
+    /// The labels of its cells, ascending, but the most frequent one.
+    pub fn other_labels(&self) -> Vec<i64> {
+        self.environment_of_all().other_labels()
+    }
+
     /// The columns of an effect among its cells.
     ///
     /// # Errors
     /// The reason why the effect cannot act there.
     pub fn columns(&self, effect: &Effect) -> Result<Vec<Column>, &'static str> {
-        let tracks: Vec<u32> = (0..self.tracks.len() as u32).collect();
-        let earlier = vec![Some(Vector::zeros()); tracks.len()];
-        let earlier = Environment::clone(&self.environment_of(&tracks)).with_earlier(earlier);
+        let earlier = vec![Some(Vector::zeros()); self.tracks.len()];
+        let earlier = Environment::clone(&self.environment_of_all()).with_earlier(earlier);
         effect.columns(&earlier.unwrap_or_default(), self.domain)
     }
 }

@@ -20,8 +20,8 @@ const RINGS: usize = 2;
 /// A 2 × 2 block, `[xx, xy, yx, yy]`.
 pub(super) type Block = [f64; 4];
 
-/// A column that is not in a row.
-const NONE: u32 = u32::MAX;
+/// The place of a column that is not in a row.
+const OUT_OF_REACH: u32 = 0;
 
 /// Derivatives of the places of the cells of an interval: a row for each cell.
 #[derive(Clone)]
@@ -255,7 +255,8 @@ impl Advance<'_> {
         to.block.fill([0.0; 4]);
         to.dense.fill(0.0);
         let width = to.width;
-        let mut index = vec![NONE; 3 * self.led.len()];
+        // The row of a cell behind a place for what is out of its reach: of a product every other entry is.
+        let (mut index, mut row) = (vec![OUT_OF_REACH; 3 * self.led.len()], Vec::new());
         for cell in (0..self.led.len()).filter(|cell| self.led[*cell]) {
             to.dense[2 * width * cell] = 1.0 / self.span;
             to.dense[2 * width * cell + width + 1] = 1.0 / self.span;
@@ -263,22 +264,22 @@ impl Advance<'_> {
                 continue;
             }
             let own = to.start[cell]..to.start[cell + 1];
-            for (at, column) in own.clone().zip(&to.column[own.clone()]) {
-                index[*column as usize] = at as u32;
+            row.clear();
+            row.resize(1 + own.len(), [0.0; 4]);
+            for (at, column) in (1..).zip(&to.column[own.clone()]) {
+                index[*column as usize] = at;
             }
             if self.crawls {
-                let at = index[2 * self.led.len() + cell] as usize;
-                to.block[at] = IDENTITY.map(|one| one / self.span);
+                row[index[2 * self.led.len() + cell] as usize] = IDENTITY.map(|one| one / self.span);
             }
             for (other, block) in jacobian.row(cell) {
                 for (column, b) in from.row(other) {
-                    if index[column] != NONE {
-                        accumulate(&mut to.block[index[column] as usize], block, b);
-                    }
+                    accumulate(&mut row[index[column] as usize], block, b);
                 }
                 to.add_dense_of(cell, block, from, other);
             }
-            to.column[own].iter().for_each(|column| index[*column as usize] = NONE);
+            to.block[own.clone()].copy_from_slice(&row[1..]);
+            to.column[own].iter().for_each(|column| index[*column as usize] = OUT_OF_REACH);
             let dense = &mut to.dense[2 * width * cell..];
             for (k, along) in self.along.iter().enumerate() {
                 let x: Vector<f64> = combined(&at.1.by_coefficient, along, cell);

@@ -1,7 +1,7 @@
 //! Factors by fronts against those of another order.
 
 use crate::sample;
-use voronudge_linalg::{Cholesky, DissectedPattern, Error, SymmetricMatrix};
+use voronudge_linalg::{Cholesky, DissectedPattern, Dissections, Error, SymmetricMatrix};
 
 /// Entries of the factor's inverse, all of them, against solutions for unit vectors; solutions and determinant against another order. The
 /// places of some nodes are not known.
@@ -53,4 +53,37 @@ fn an_indefinite_matrix_is_refused() {
     let pattern = DissectedPattern::new(&matrix, &[Some([0.0; 3])]).unwrap();
     assert_eq!(pattern.factor(&matrix).err(), Some(Error::NotPositiveDefinite));
     assert!(DissectedPattern::new(&matrix, &[None; 3]).is_err());
+}
+
+/// Whatever was asked for before, factors are to the last bit those of an order that is found anew, for patterns and places in turn.
+#[test]
+fn what_is_remembered_is_what_is_found_anew() {
+    let cases: Vec<(SymmetricMatrix, Vec<Option<[f64; 3]>>)> = [(14, 1.0), (14, -1.0), (9, 1.0)]
+        .into_iter()
+        .map(|(side, along)| {
+            let place = |k: usize| Some([along * (k % side) as f64, (k / side) as f64 + along, 0.0]);
+            (sample::symmetric(side), (0..side * side).map(place).collect())
+        })
+        .collect();
+    let determinant = |pattern: Result<DissectedPattern, Error>, matrix: &SymmetricMatrix| {
+        pattern.unwrap().factor(matrix).unwrap().log_determinant().to_bits()
+    };
+    let known = Dissections::default();
+    for (matrix, places) in cases.iter().cycle().take(7) {
+        let anew = determinant(DissectedPattern::new(matrix, places), matrix);
+        assert_eq!(determinant(known.clone().of(matrix, places), matrix), anew);
+    }
+}
+
+#[test]
+fn a_pattern_is_for_its_matrices_alone() {
+    let diagonal = SymmetricMatrix::new((0..=4).collect(), (0..4).collect(), vec![1.0; 4]).unwrap();
+    let places = [Some([0.0; 3]); 4];
+    let pattern = DissectedPattern::new(&diagonal, &places).unwrap();
+    let coupled =
+        SymmetricMatrix::new(vec![0, 2, 3, 4, 5], vec![0, 1, 1, 2, 3], vec![1.0, 0.5, 1.0, 1.0, 1.0]);
+    let coupled = coupled.unwrap();
+    assert!(matches!(pattern.factor(&coupled), Err(Error::Malformed(_))));
+    // Of two places with two unknowns each, all are coupled to all.
+    assert!(matches!(DissectedPattern::new(&diagonal, &places[..2]), Err(Error::Malformed(_))));
 }

@@ -11,10 +11,10 @@ const WATCH: &str = "<head><script>window.faults = []; addEventListener(\"error\
 /// The names under which Chromium may be installed.
 const BROWSERS: [&str; 3] = ["chromium", "chromium-browser", "google-chrome"];
 
-/// Light and dark, and the widths of windows.
+/// Light and dark, and the widths of windows: dark pages differ in their colours alone.
 const SCHEMES: [(&str, &[u32]); 2] = [
     ("--blink-settings=preferredColorScheme=1", &[400, 800, 1400]),
-    ("--blink-settings=preferredColorScheme=0", &[400, 1400]),
+    ("--blink-settings=preferredColorScheme=0", &[1400]),
 ];
 
 /// Looks at pages, each of a name and its text; the areas of cells in their movies have this unit, a pattern.

@@ -64,9 +64,9 @@ fn coefficient_names(selected: &Selected, prepared: &Problem) -> Vec<String> {
             owned(&["sine along x", "cosine along x", "sine along y", "cosine along y"])
         }
         ("label_parameter", _) => {
-            let environments = prepared.observations.iter().map(|observation| observation.environment());
-            let labels = environments.map(|environment| environment.other_labels());
-            let labels = labels.max_by_key(Vec::len).unwrap_or_default();
+            let of_frames = prepared.observations.iter().map(|frame| frame.environment().other_labels());
+            let of_tracks = prepared.tracks.iter().map(|tracks| tracks.movie.other_labels());
+            let labels = of_tracks.chain(of_frames).max_by_key(Vec::len).unwrap_or_default();
             let parameters = ["adhesion", "contractility", "chirality"];
             let names =
                 labels.iter().flat_map(|label| parameters.map(|what| format!("{what} of label {label}")));
