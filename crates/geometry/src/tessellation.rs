@@ -10,7 +10,7 @@ use rayon::prelude::*;
 /// neighbour several times, in a small periodic box; half-edges keep such meetings apart by their image.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Tessellation {
-    domain: Domain,
+    pub(crate) domain: Domain,
     /// First half-edge of each cell, and the number of half-edges at the end.
     pub(crate) start: Vec<u32>,
     pub(crate) neighbour: Vec<u32>,

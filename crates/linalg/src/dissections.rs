@@ -6,7 +6,7 @@ use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
 /// Patterns that are remembered at most, and entries of their matrices.
 const PATTERNS: usize = 8;
-const ENTRIES: usize = 4_000_000;
+const ENTRIES: usize = 1_000_000;
 
 type Places = Vec<Option<[f64; 3]>>;
 

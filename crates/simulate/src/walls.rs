@@ -105,12 +105,21 @@ impl<S: Scalar> Mirrored<S> {
         cell_box: &PeriodicBox,
         positions: &mut [Vector<S>],
     ) -> Result<(Self, MovingTessellation), voronudge_geometry::Error> {
+        Self::made(walls, cell_box, positions, MovingTessellation::new)
+    }
+
+    /// The same, tessellated in some way.
+    pub fn made(
+        walls: Walls,
+        cell_box: &PeriodicBox,
+        positions: &mut [Vector<S>],
+        tessellate: impl FnOnce(&[Vector<f64>], Domain) -> Result<MovingTessellation, voronudge_geometry::Error>,
+    ) -> Result<(Self, MovingTessellation), voronudge_geometry::Error> {
         let lengths = cell_box.lengths();
         let mut mirrored = Self { walls, lengths, positions: Vec::new(), signs: Vec::new() };
         mirrored.place(positions);
         let domain = Domain::Periodic(walls.doubled(lengths)?);
-        let tessellation =
-            MovingTessellation::new(without_derivatives(&mirrored.positions, &mut Vec::new()), domain)?;
+        let tessellation = tessellate(without_derivatives(&mirrored.positions, &mut Vec::new()), domain)?;
         positions.copy_from_slice(&mirrored.positions[..positions.len()]);
         Ok((mirrored, tessellation))
     }

@@ -10,6 +10,7 @@ mod tile;
 use crate::moving::Repair;
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector};
 use rayon::prelude::*;
+pub(crate) use rings::find_twins;
 use rings::{Rings, assemble};
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use tile::Tiling;

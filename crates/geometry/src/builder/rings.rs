@@ -130,7 +130,7 @@ fn clear_to<T: Clone>(array: &mut Vec<T>, length: usize, value: T) {
 }
 
 /// Finds each half-edge's twin; fails where two images of one circle of cells were triangulated differently.
-fn find_twins(tessellation: &mut Tessellation) -> Result<(), Error> {
+pub(crate) fn find_twins(tessellation: &mut Tessellation) -> Result<(), Error> {
     let cells = tessellation.len();
     let mut twin = std::mem::take(&mut tessellation.twin);
     clear_to(&mut twin, tessellation.half_edges(), u32::MAX);

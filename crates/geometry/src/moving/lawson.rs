@@ -21,7 +21,7 @@ pub(super) struct Lawson {
     /// The cells touched, in the order of their rings.
     touched: Vec<u32>,
     rings: Vec<Vec<Site>>,
-    queue: Vec<Edge>,
+    pub(super) queue: Vec<Edge>,
 }
 
 impl Lawson {
@@ -32,10 +32,26 @@ impl Lawson {
         positions: &[Vector<f64>],
         suspects: &[Edge],
     ) -> Result<usize, Tangled> {
-        self.forget();
-        self.slot.resize(tessellation.len(), UNTOUCHED);
-        self.queue.clear();
+        self.begin(tessellation.len());
         self.queue.extend(suspects.iter().rev());
+        let flips = self.flip_all(tessellation, positions)?;
+        self.begin_at_lowest(tessellation);
+        Ok(flips)
+    }
+
+    /// Forgets all changes, of so many cells from now on.
+    pub fn begin(&mut self, cells: usize) {
+        self.forget();
+        self.slot.resize(cells, UNTOUCHED);
+        self.queue.clear();
+    }
+
+    /// Flips until no edge is left that may not be a Delaunay edge.
+    pub fn flip_all(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+    ) -> Result<usize, Tangled> {
         let most = FLIPS_PER_CELL * tessellation.len().max(20);
         let mut flips = 0;
         while let Some(edge) = self.queue.pop() {
@@ -53,6 +69,11 @@ impl Lawson {
                 return Err(Tangled);
             }
         }
+        Ok(flips)
+    }
+
+    /// Lets the rings that have changed begin as those of a tessellation do.
+    pub fn begin_at_lowest(&mut self, tessellation: &Tessellation) {
         for &cell in &self.touched {
             let ring = &mut self.rings[self.slot[cell as usize] as usize];
             if !tessellation.is_closed(cell as usize) {
@@ -61,7 +82,6 @@ impl Lawson {
             let lowest = (0..ring.len()).min_by_key(|&m| ring[m]).unwrap_or(0);
             ring.rotate_left(lowest);
         }
-        Ok(flips)
     }
 
     /// The cells whose rings have changed.
@@ -109,7 +129,7 @@ impl Lawson {
 
     /// Exchanges the diagonal between the first and the third of four counter-clockwise sites for the other. False if the
     /// rings are not those of a triangulation.
-    fn flip(&mut self, tessellation: &Tessellation, sites: [Site; 4]) -> bool {
+    pub(super) fn flip(&mut self, tessellation: &Tessellation, sites: [Site; 4]) -> bool {
         let seen = |from: usize, to: usize| {
             let ((_, origin), (cell, image)) = (sites[from], sites[to]);
             (cell, [image[0] - origin[0], image[1] - origin[1]])
@@ -134,7 +154,7 @@ impl Lawson {
         sound
     }
 
-    fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
+    pub(super) fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
         let slot = &mut self.slot[cell as usize];
         if *slot == UNTOUCHED {
             let next = self.touched.len();

@@ -1,11 +1,13 @@
 //! The tessellation of cells that move: repaired by flips, which cost a tenth to a quarter of a tessellation anew.
 
 mod diagonal;
+mod exchange;
 mod hull;
 mod lawson;
 mod scan;
 mod splice;
 mod split;
+mod vertices;
 
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector, builder};
 use lawson::Lawson;

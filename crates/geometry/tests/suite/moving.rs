@@ -175,6 +175,112 @@ fn unusable_positions_are_refused_and_can_be_followed_by_good_ones() -> Result<(
     Ok(())
 }
 
+/// Cells go and come as they do in tissues that proliferate: new ones take the numbers of those that are gone, what is left is closed up or added.
+fn exchange(positions: &mut Vec<Vector<f64>>, places: &[Vector<f64>], gone: usize, rng: &mut Pcg64Mcg) {
+    let mut gone: Vec<usize> = (0..gone).map(|_| rng.random_range(0..positions.len())).collect();
+    gone.sort_unstable();
+    gone.dedup();
+    for (order, place) in places.iter().enumerate() {
+        match gone.get(order) {
+            Some(cell) => positions[*cell] = *place,
+            None => positions.push(*place),
+        }
+    }
+    gone.iter().skip(places.len()).rev().for_each(|cell| drop(positions.remove(*cell)));
+}
+
+/// Wherever cells go and come, among many or few others, beside each other and across the boundary, all arrays are those of a tessellation anew.
+#[test]
+fn cells_that_come_and_go_leave_the_others() -> Result<(), Error> {
+    let (mut local, mut anew) = (0, 0);
+    for seed in 0..30 {
+        let side = 8 + seed as usize % 5;
+        let domain =
+            if seed % 3 == 0 { sheared([side as f64; 2], 0.3)? } else { periodic([side as f64; 2])? };
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let mut positions = liquid(side, 0.45, seed);
+        let mut moving = MovingTessellation::new(&positions, domain)?;
+        for round in 0..40 {
+            shake(&mut positions, 0.03, &mut rng);
+            moving.renew(&positions)?;
+            let (gone, born) = (rng.random_range(0..4), rng.random_range(0..4));
+            let middle = positions[rng.random_range(0..positions.len())];
+            let reach = if round % 2 == 0 { 0.5 } else { side as f64 };
+            let mut near =
+                || middle + Vector::new(rng.random_range(-reach..reach), rng.random_range(-reach..reach));
+            let places: Vec<_> = (0..born).map(|_| near()).collect();
+            exchange(&mut positions, &places, gone, &mut rng);
+            let (next, renewal) = moving.exchanged(&positions, domain)?;
+            assert!(
+                *next.tessellation() == Tessellation::new(&positions, domain)?,
+                "seed {seed}, round {round}: {gone} gone, {born} born"
+            );
+            match renewal {
+                Renewal::Flipped(_) => local += 1,
+                Renewal::Rebuilt => anew += 1,
+            }
+            moving = next;
+        }
+    }
+    assert!(local > 1000, "{local} exchanged, {anew} anew");
+    Ok(())
+}
+
+/// Mirror images, of which two and two lie on a circle, with the numbers behind those of the cells.
+#[test]
+fn cells_between_mirrors_come_and_go() -> Result<(), Error> {
+    let mirrored = |cells: &[Vector<f64>]| -> Vec<Vector<f64>> {
+        cells.iter().copied().chain(cells.iter().map(|r| Vector::new(-r.x, r.y))).collect()
+    };
+    let domain = periodic([20.0, 10.0])?;
+    let (mut local, mut anew) = (0, 0);
+    for seed in 0..10 {
+        let mut rng = Pcg64Mcg::seed_from_u64(seed);
+        let mut cells: Vec<_> = liquid(10, 0.4, seed).iter().map(|r| r + Vector::new(0.5, 0.5)).collect();
+        let mut moving = MovingTessellation::new(&mirrored(&cells), domain)?;
+        for round in 0..20 {
+            let (gone, born) = (rng.random_range(0..3), rng.random_range(0..3));
+            let mut near = || Vector::new(rng.random_range(0.05..2.0), rng.random_range(0.0..10.0));
+            let places: Vec<_> = (0..born).map(|_| near()).collect();
+            exchange(&mut cells, &places, gone, &mut rng);
+            let positions = mirrored(&cells);
+            let (next, renewal) = moving.exchanged(&positions, domain)?;
+            assert!(
+                *next.tessellation() == Tessellation::new(&positions, domain)?,
+                "seed {seed}, round {round}: {gone} gone, {born} born"
+            );
+            match renewal {
+                Renewal::Flipped(_) => local += 1,
+                Renewal::Rebuilt => anew += 1,
+            }
+            moving = next;
+        }
+    }
+    assert!(local > 150, "{local} exchanged, {anew} anew");
+    Ok(())
+}
+
+/// What cannot be exchanged is told as it is of a tessellation anew, and other orders are built anew.
+#[test]
+fn exchanges_of_all_kinds_are_answered() -> Result<(), Error> {
+    let (positions, domain) = (liquid(9, 0.4, 1), periodic([9.0; 2])?);
+    let moving = MovingTessellation::new(&positions, domain)?;
+    for wrong in [Vector::new(f64::NAN, 0.0), positions[5]] {
+        let mut broken = positions.clone();
+        broken.push(wrong);
+        assert!(moving.exchanged(&broken, domain).is_err());
+    }
+    let mut turned = positions.clone();
+    turned.swap(3, 60);
+    let wider = periodic([9.5, 9.0])?;
+    for (cells, domain) in [(&turned[..], domain), (&positions[..40], domain), (&positions, wider)] {
+        let (next, renewal) = moving.exchanged(cells, domain)?;
+        assert_eq!(renewal, Renewal::Rebuilt);
+        assert_eq!(*next.tessellation(), Tessellation::new(cells, domain)?);
+    }
+    Ok(())
+}
+
 /// Small displacements of the cells within leave the hull of an open field; larger ones of all cells change it now and then.
 #[test]
 fn an_open_field_is_followed_too() {

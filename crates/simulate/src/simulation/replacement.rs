@@ -5,7 +5,7 @@ use crate::Error;
 use crate::scaled::without_derivatives;
 use crate::walls::Mirrored;
 use std::sync::Arc;
-use voronudge_geometry::{MovingTessellation, PeriodicBox, Scalar, Vector};
+use voronudge_geometry::{PeriodicBox, Scalar, Vector};
 use voronudge_model::{CellFactors, Environment, EnvironmentError};
 
 impl<S: Scalar> Simulation<S> {
@@ -47,14 +47,16 @@ impl<S: Scalar> Simulation<S> {
         }
         let time = self.now.time;
         let renewed = match self.walls() {
-            Some(walls) => Mirrored::of(walls, &self.cell_box, &mut positions)
-                .map(|(mirrored, tessellation)| (Some(mirrored), tessellation)),
+            Some(walls) => Mirrored::made(walls, &self.cell_box, &mut positions, |places, domain| {
+                self.tessellation.exchanged(places, domain).map(|(next, _)| next)
+            })
+            .map(|(mirrored, tessellation)| (Some(mirrored), tessellation)),
             None => self
                 .domain_at(time)
                 .and_then(|domain| {
-                    MovingTessellation::new(without_derivatives(&positions, &mut self.places), domain)
+                    self.tessellation.exchanged(without_derivatives(&positions, &mut self.places), domain)
                 })
-                .map(|tessellation| (None, tessellation)),
+                .map(|(tessellation, _)| (None, tessellation)),
         };
         (self.mirrored, self.tessellation) =
             renewed.map_err(|source| Error::Tessellation { time, source })?;
