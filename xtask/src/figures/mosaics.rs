@@ -1,13 +1,9 @@
 //! Tissues of cells that differ.
 
+use super::phases::Field;
 use super::{Drawn, EVEN, Figure, Made, Panel, Series, Size, command};
-use crate::study::{Replicas, mean};
-use ndarray::Array1;
-use rand_distr::{Distribution, StandardNormal};
 use std::error::Error;
-use voronudge_io::OutputDirectory;
 use voronudge_report::figure::ErrorPoint;
-use voronudge_simulate::generator;
 
 pub(super) const FIGURES: &[Figure] = &[Figure {
     name: "hexatic-spread",
@@ -18,62 +14,55 @@ pub(super) const FIGURES: &[Figure] = &[Figure {
 
 /// Ψ₆ of tissues at the paper's hexatic points, with chiralities drawn about the same mean.
 fn spread(size: Size) -> Result<Made, Box<dyn Error>> {
-    let (cells, rest, count, spreads): (_, _, _, &[f64]) = size.pick(
-        (36, "--time 1 --dt 0.004", 2, &[0.0, 1.0]),
-        (100, "--time 200 --dt 0.001", 8, &[0.0, 0.2, 0.5, 1.0, 2.0]),
+    let (rest, shares): (_, &[f64]) = size.pick(
+        ("--cells 36 --time 1 --replicas 2", &[0.0, 0.5]),
+        ("--cells 100 --time 200 --dt 0.001 --replicas 8 --seed 1", &[0.0, 0.1, 0.25, 0.5]),
     );
-    let alpha = 2.0;
-    let (mut series, mut found) = (Vec::new(), Vec::new());
-    let folder = tempfile::tempdir()?;
-    for preferred in [3.3, 3.7] {
-        let mut orders = Vec::new();
-        let mut speeds = Vec::new();
-        for &spread in spreads {
-            let (mut own, mut squares) = (Vec::new(), Vec::new());
-            for seed in (Replicas { seed: 1, count }).seeds() {
-                let mut random = generator(seed);
-                let mut draw = || -> f64 { StandardNormal.sample(&mut random) };
-                let values = Array1::from_shape_simple_fn(cells, || alpha + spread * draw());
-                let mut out = OutputDirectory::create(folder.path())?;
-                out.write_array("alpha.npy", values.view())?;
-                out.commit()?;
-                let file = folder.path().join("alpha.npy");
-                let output = command::run(&format!(
-                    "simulate --cells {cells} --P_0 {preferred} --cell-parameter alpha={} {rest} --seed {seed}",
-                    file.display()
-                ))?;
-                let report = output.report()?;
-                let number = |name: &str| report[name].as_f64().unwrap_or(f64::NAN);
-                own.push(number("hexatic_order"));
-                squares.push(number("mean_square_velocity"));
-            }
-            orders.push((spread, mean(&own)));
-            speeds.push(squares.iter().filter(|square| **square > 1e-12).count());
-        }
-        let words = orders.iter().zip(&speeds).map(|((spread, (value, error)), moving)| {
-            format!("{value:.2} ± {error:.2} ({moving} of {count} flow) at {spread}")
-        });
-        found.push(format!(
-            "P₀ = {preferred}: Ψ₆ is, for standard deviations of α, {}.",
-            words.collect::<Vec<_>>().join(", ")
-        ));
-        let point = |(spread, (value, error)): (f64, (f64, f64))| ErrorPoint {
-            at: [spread, value],
-            error: [None, Some(error)],
+    let line = format!(
+        "phase-diagram --P_0 3.3 3.7 2 --alpha 2 2 1 {rest} --quantities hexatic_order,mean_square_velocity"
+    );
+    let mut found: Vec<(f64, Vec<String>, Vec<ErrorPoint>)> = Vec::new();
+    for &share in shares {
+        // A spread of nothing is none.
+        let output = command::run(&match share {
+            0.0 => line.clone(),
+            _ => format!("{line} --cell-spread alpha={share}"),
+        })?;
+        let of = |name: &str| -> Result<Vec<[f64; 2]>, Box<dyn Error>> {
+            Ok(Field::read(&output, name)?.rows().flat_map(|(_, row)| row).collect())
         };
-        series.push(Series {
-            name: format!("P_0 = {preferred}"),
-            drawn: Drawn::JoinedMarks,
-            points: orders.into_iter().map(point).collect(),
-        });
+        let (orders, errors) = (of("hexatic_order")?, of("hexatic_order_error")?);
+        let speeds = of("mean_square_velocity")?;
+        for (k, (([perimeter, order], [_, error]), [_, square])) in
+            orders.into_iter().zip(errors).zip(speeds).enumerate()
+        {
+            if found.len() == k {
+                found.push((perimeter, Vec::new(), Vec::new()));
+            }
+            found[k].1.push(format!("{order:.2} ± {error:.2} (⟨v²⟩ = {square:.2}) at {share}"));
+            found[k].2.push(ErrorPoint { at: [share, order], error: [None, Some(error)] });
+        }
     }
-    let labels = ["standard deviation of α (mean 2)", "Ψ₆"];
+    let series: Vec<Series> = found
+        .iter()
+        .map(|(perimeter, _, points)| Series {
+            name: format!("P_0 = {perimeter}"),
+            drawn: Drawn::JoinedMarks,
+            points: points.clone(),
+        })
+        .collect();
+    let labels = ["standard deviation of α, as a share of the mean", "Ψ₆"];
     Ok(Made {
-        settings: format!(
-            "`voronudge simulate --cells {cells} --P_0 … --cell-parameter alpha=FILE {rest}`, α of each cell drawn from a normal distribution of mean {alpha}, {count} \
-             tissues each, means and standard errors"
-        ),
-        found,
+        settings: format!("`voronudge {line}`, and with `--cell-spread alpha=…`; means and standard errors"),
+        found: found
+            .iter()
+            .map(|(perimeter, words, _)| {
+                format!(
+                    "P₀ = {perimeter}: Ψ₆ is, for standard deviations of α as shares of the mean, {}.",
+                    words.join(", ")
+                )
+            })
+            .collect(),
         panels: vec![Panel {
             name: "",
             caption: "Hexatic order against the spread of chirality".into(),
