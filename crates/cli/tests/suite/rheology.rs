@@ -110,6 +110,8 @@ fn several_fits_are_told_against_time() {
     let (data, out) = (Folder::new(), Folder::new());
     let mut files = [fit(3.0, 0.5, 0), fit(3.2, 0.3, 4)];
     files[1]["by_label"] = json!([{"label": 7}]);
+    files[0]["verdict"] =
+        json!({"kind": "measurement_misfit", "sentence": "Do not quote these numbers yet."});
     let files: Vec<String> =
         files.iter().enumerate().map(|(k, fit)| write(&data, &format!("{k}.json"), fit)).collect();
     let line = format!("rheology {} --times 10 20.5 --cells 16 --replicas 2 --quiet", files.join(" "));
@@ -118,7 +120,10 @@ fn several_fits_are_told_against_time() {
     assert_described(&found);
     assert_eq!(found["against"], "time");
     let warnings = found["warnings"].as_array().unwrap();
-    assert!(warnings.len() == 1 && warnings[0].as_str().unwrap().contains("label 7"), "{warnings:?}");
+    for (warning, words) in warnings.iter().zip(["label 7", "0.json: the fit says of itself: Do not quote"]) {
+        assert!(warning.as_str().unwrap().contains(words), "{warnings:?}");
+    }
+    assert_eq!(warnings.len(), 2);
     let shear = [0, 1].map(|k| number(&found, &format!("/fits/{k}/moduli/2/value")));
     assert!(shear[1] < shear[0] && shear[1] > 0.0, "{shear:?}");
     let page = fs::read_to_string(out.path().join("report.html")).unwrap();
@@ -145,6 +150,11 @@ fn what_is_no_fit_is_refused() {
     let mut vague = fit(3.0, 0.5, 0);
     vague["identifiability"][1]["eigenvalue"] = json!(1e-3);
     refuse(&format!("rheology {}", write(&data, "vague.json", &vague)), &["K_P", "vague.json"]);
+    let mut nothing = fit(3.0, 0.5, 0);
+    nothing["verdict"] =
+        json!({"kind": "explains_nothing", "sentence": "The model explains almost nothing."});
+    let nothing = write(&data, "nothing.json", &nothing);
+    refuse(&format!("rheology {good} {nothing}"), &["explains almost nothing", "nothing.json"]);
     let mut nan = fit(3.0, 0.5, 0);
     nan["parameters"]["K_P"]["value"] = Value::Null;
     refuse(&format!("rheology {}", write(&data, "nan.json", &nan)), &["K_P", "nan.json"]);

@@ -186,7 +186,9 @@ fn exchange(positions: &mut Vec<Vector<f64>>, places: &[Vector<f64>], gone: usiz
             None => positions.push(*place),
         }
     }
-    gone.iter().skip(places.len()).rev().for_each(|cell| drop(positions.remove(*cell)));
+    for cell in gone.into_iter().skip(places.len()).rev() {
+        positions.remove(cell);
+    }
 }
 
 /// Wherever cells go and come, among many or few others, beside each other and across the boundary, all arrays are those of a tessellation anew.

@@ -82,6 +82,9 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             fit.path.display()
         ));
     }
+    for (fit, sentence) in fits.iter().filter_map(|fit| Some((fit, fit.misfit.as_ref()?))) {
+        run.warn(format!("{}: the fit says of itself: {sentence}", fit.path.display()));
+    }
     let units = fits[0].units.clone();
     if let Some(other) = fits.iter().find(|fit| fit.units != units) {
         return Err(Failure::new(format!(

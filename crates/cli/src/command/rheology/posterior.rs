@@ -22,6 +22,8 @@ pub(super) struct Posterior {
     pub frame: f64,
     /// The label whose parameters these are, if cells of each label have their own.
     pub label: Option<i64>,
+    /// What the fit says of how the cells were measured, if that may have made its parameters.
+    pub misfit: Option<String>,
     /// (K_A ℓ₀², K_P P_0/ℓ₀, K_P, K_P α), rates in units of the data.
     coefficients: [f64; 4],
     /// By how much one standard error along each principal axis moves them.
@@ -49,6 +51,16 @@ impl Posterior {
             serde_json::from_str(&text).map_err(|error| fault(&format!("not JSON: {error}")))?;
         if json["command"] != "infer" {
             return Err(fault("this is no report of infer"));
+        }
+        let said = |kind: &str| {
+            let sentence = json.pointer("/verdict/sentence").and_then(Value::as_str).unwrap_or_default();
+            (json.pointer("/verdict/kind").and_then(Value::as_str) == Some(kind)).then(|| sentence.to_owned())
+        };
+        if let Some(sentence) = said("explains_nothing") {
+            return Err(fault(&format!(
+                "moduli of a fit that explains nothing would be those of no tissue. {sentence}"
+            ))
+            .with_hint("see what the page of the fit says is in its way; leave this report out of several"));
         }
         let number = |pointer: &str| {
             let found = json.pointer(pointer).and_then(Value::as_f64).filter(|x| x.is_finite());
@@ -85,16 +97,24 @@ impl Posterior {
         axes.retain(|axis| size(axis) > NEGLIGIBLE * all);
         let frames = json.pointer("/cells/frames").and_then(Value::as_array).cloned().unwrap_or_default();
         let frames: Vec<f64> = frames.iter().filter_map(Value::as_f64).collect();
-        Ok(Self {
+        let own = Self {
             path: path.to_owned(),
             input,
+            misfit: said("measurement_misfit"),
             units: Units { length: text_at("/units/length")?, time: text_at("/units/time")? },
             length,
             frame: frames.iter().sum::<f64>() / frames.len().max(1) as f64,
             label: json.pointer("/by_label/0/label").and_then(Value::as_i64),
             coefficients,
             axes,
-        })
+        };
+        // Whether all of its tissues can be is known before the first of them is simulated.
+        own.estimate()?;
+        for axis in 0..own.axes() {
+            own.moved(axis, 1.0)?;
+            own.moved(axis, -1.0)?;
+        }
+        Ok(own)
     }
 
     /// How many axes are worth moving along.
