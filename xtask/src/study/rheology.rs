@@ -77,7 +77,7 @@ impl Setting {
 pub fn run(sets: u64, first: u64, only: &[String], out: &Path) -> Outcome {
     let fits = Program::new(None, "--fix K_A=0.1")?;
     println!(
-        "| tissue | seen | covered: B | A | μ | Kᵒ | median error in half widths of the interval: B | A | μ | Kᵒ |\n|---|---|---|---|---|---|---|---|---|---|"
+        "| tissue | seen | fits that explain nothing | covered by the others: B | A | μ | Kᵒ | median error in half widths of the interval: B | A | μ | Kᵒ |\n|---|---|---|---|---|---|---|---|---|---|---|"
     );
     for (number, setting) in SETTINGS.iter().enumerate() {
         let name = format!("{}, {}", setting.name, setting.view.name());
@@ -91,25 +91,29 @@ pub fn run(sets: u64, first: u64, only: &[String], out: &Path) -> Outcome {
             let seed = first + set;
             row(setting, programs, seed, &truth, &out.join(format!("{number}-{seed}")))
         })?;
-        print(setting, &rows);
+        let told: Vec<[(bool, f64); 4]> = rows.iter().copied().flatten().collect();
+        print(setting, rows.len() - told.len(), &told);
     }
     Ok(())
 }
 
-/// Of each modulus whether its interval contains the truth, and how far from it the value is, in half widths of the interval.
+/// Of each modulus whether its interval contains the truth, and how far from it the value is, in half widths of the interval; of a fit that explains
+/// nothing there are none.
 fn row(
     setting: &Setting,
     [fits, strains]: [&Program; 2],
     seed: u64,
     truth: &[f64; 4],
     folder: &Path,
-) -> Result<[(bool, f64); 4], Box<dyn Error>> {
+) -> Result<Option<[(bool, f64); 4]>, Box<dyn Error>> {
     let kinds = [(CellParameter::PreferredPerimeter, 0.0), (CellParameter::Chirality, 0.0)];
     let (data, fit) = (folder.join("data"), folder.join("infer"));
     Scene { parameters: setting.parameters(), kinds, time: setting.time, view: setting.view, seed }
         .write(&data)?;
     let run = fits.run(&["infer"], &data, &fit)?;
-    run.report.ok_or(run.message)?;
+    if run.report.ok_or(run.message)?["verdict"]["kind"] == "explains_nothing" {
+        return Ok(None);
+    }
     let seed = seed.to_string();
     let run = strains.run(&["rheology", "--seed", &seed], &fit, &folder.join("rheology"))?;
     let report = run.report.ok_or(run.message)?;
@@ -122,12 +126,13 @@ fn row(
         found[k] =
             ((low..=high).contains(&truth[k]), 2.0 * (number(&own["value"]) - truth[k]).abs() / (high - low));
     }
-    Ok(found)
+    Ok(Some(found))
 }
 
-fn print(setting: &Setting, rows: &[[(bool, f64); 4]]) {
+fn print(setting: &Setting, refused: usize, rows: &[[(bool, f64); 4]]) {
     let covered = |k: usize| format!("{} of {}", rows.iter().filter(|row| row[k].0).count(), rows.len());
     let error = |k: usize| format!("{:.2}", quartiles(rows.iter().map(|row| row[k].1).collect())[1]);
     let cells: Vec<String> = (0..4).map(covered).chain((0..4).map(error)).collect();
-    println!("| {} | {} | {} |", setting.name, setting.view.name(), cells.join(" | "));
+    let all = refused + rows.len();
+    println!("| {} | {} | {refused} of {all} | {} |", setting.name, setting.view.name(), cells.join(" | "));
 }
