@@ -91,11 +91,14 @@ pub fn run(sets: u64, first: u64, only: &[String], out: &Path) -> Outcome {
             let seed = first + set;
             row(setting, programs, seed, &truth, &out.join(format!("{number}-{seed}")))
         })?;
-        let told: Vec<[(bool, f64); 4]> = rows.iter().copied().flatten().collect();
+        let told: Vec<Row> = rows.iter().copied().flatten().collect();
         print(setting, rows.len() - told.len(), &told);
     }
     Ok(())
 }
+
+/// What is found of each modulus.
+type Row = [(bool, f64); 4];
 
 /// Of each modulus whether its interval contains the truth, and how far from it the value is, in half widths of the interval; of a fit that explains
 /// nothing there are none.
@@ -105,7 +108,7 @@ fn row(
     seed: u64,
     truth: &[f64; 4],
     folder: &Path,
-) -> Result<Option<[(bool, f64); 4]>, Box<dyn Error>> {
+) -> Result<Option<Row>, Box<dyn Error>> {
     let kinds = [(CellParameter::PreferredPerimeter, 0.0), (CellParameter::Chirality, 0.0)];
     let (data, fit) = (folder.join("data"), folder.join("infer"));
     Scene { parameters: setting.parameters(), kinds, time: setting.time, view: setting.view, seed }
@@ -129,7 +132,7 @@ fn row(
     Ok(Some(found))
 }
 
-fn print(setting: &Setting, refused: usize, rows: &[[(bool, f64); 4]]) {
+fn print(setting: &Setting, refused: usize, rows: &[Row]) {
     let covered = |k: usize| format!("{} of {}", rows.iter().filter(|row| row[k].0).count(), rows.len());
     let error = |k: usize| format!("{:.2}", quartiles(rows.iter().map(|row| row[k].1).collect())[1]);
     let cells: Vec<String> = (0..4).map(covered).chain((0..4).map(error)).collect();
