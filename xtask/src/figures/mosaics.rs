@@ -39,7 +39,7 @@ fn spread(size: Size) -> Result<Made, Box<dyn Error>> {
             if found.len() == k {
                 found.push((perimeter, Vec::new(), Vec::new()));
             }
-            found[k].1.push(format!("{order:.2} ± {error:.2} (⟨v²⟩ = {square:.2}) at {share}"));
+            found[k].1.push(format!("{order:.3} ± {error:.3} (⟨v²⟩ = {square:.2}) at {share}"));
             found[k].2.push(ErrorPoint { at: [share, order], error: [None, Some(error)] });
         }
     }
