@@ -45,6 +45,7 @@ impl MovingTessellation {
         for (cell, _) in after.iter().enumerate().filter(|(_, after)| **after == GONE) {
             around.extend(lawson.take_out(&self.tessellation, &self.positions, cell as u32)?);
         }
+        lawson.begin_at_lowest(&self.tessellation);
         let mut next = renumbered(&self.tessellation, &lawson, &after, positions.len())?;
         lawson.begin(next.len());
         // Ties are decided by the numbers that cells have now.
@@ -84,7 +85,7 @@ fn followed(before: &[Vector<f64>], now: &[Vector<f64>]) -> Option<Vec<u32>> {
     (is_ordered && OF_SO_MANY * exchanged <= now.len()).then_some(after)
 }
 
-/// A triangulation under other numbers. Cells that are new have no ring yet.
+/// A triangulation under other numbers in the same order, so that the lowest neighbour stays the lowest. Cells that are new have no ring yet.
 fn renumbered(before: &Tessellation, changes: &Lawson, after: &[u32], cells: usize) -> Option<Tessellation> {
     let mut next = Tessellation {
         domain: before.domain(),
@@ -103,8 +104,6 @@ fn renumbered(before: &Tessellation, changes: &Lawson, after: &[u32], cells: usi
         if ring.iter().any(|(other, _)| *other == GONE) {
             return None;
         }
-        let lowest = (0..ring.len()).min_by_key(|m| ring[*m])?;
-        ring.rotate_left(lowest);
         next.neighbour.extend(ring.iter().map(|site| site.0));
         next.image.extend(ring.iter().map(|site| site.1));
     }

@@ -191,6 +191,19 @@ fn exchange(positions: &mut Vec<Vector<f64>>, places: &[Vector<f64>], gone: usiz
     }
 }
 
+/// Goes on with other cells, and compares.
+fn exchanged(
+    moving: &mut MovingTessellation,
+    positions: &[Vector<f64>],
+    domain: Domain,
+    words: &str,
+) -> Result<Renewal, Error> {
+    let (next, renewal) = moving.exchanged(positions, domain)?;
+    assert!(*next.tessellation() == Tessellation::new(positions, domain)?, "{words}");
+    *moving = next;
+    Ok(renewal)
+}
+
 /// Wherever cells go and come, among many or few others, beside each other and across the boundary, all arrays are those of a tessellation anew.
 #[test]
 fn cells_that_come_and_go_leave_the_others() -> Result<(), Error> {
@@ -212,16 +225,11 @@ fn cells_that_come_and_go_leave_the_others() -> Result<(), Error> {
                 || middle + Vector::new(rng.random_range(-reach..reach), rng.random_range(-reach..reach));
             let places: Vec<_> = (0..born).map(|_| near()).collect();
             exchange(&mut positions, &places, gone, &mut rng);
-            let (next, renewal) = moving.exchanged(&positions, domain)?;
-            assert!(
-                *next.tessellation() == Tessellation::new(&positions, domain)?,
-                "seed {seed}, round {round}: {gone} gone, {born} born"
-            );
-            match renewal {
+            let words = format!("seed {seed}, round {round}: {gone} gone, {born} born");
+            match exchanged(&mut moving, &positions, domain, &words)? {
                 Renewal::Flipped(_) => local += 1,
                 Renewal::Rebuilt => anew += 1,
             }
-            moving = next;
         }
     }
     assert!(local > 1000, "{local} exchanged, {anew} anew");
@@ -246,16 +254,11 @@ fn cells_between_mirrors_come_and_go() -> Result<(), Error> {
             let places: Vec<_> = (0..born).map(|_| near()).collect();
             exchange(&mut cells, &places, gone, &mut rng);
             let positions = mirrored(&cells);
-            let (next, renewal) = moving.exchanged(&positions, domain)?;
-            assert!(
-                *next.tessellation() == Tessellation::new(&positions, domain)?,
-                "seed {seed}, round {round}: {gone} gone, {born} born"
-            );
-            match renewal {
+            let words = format!("seed {seed}, round {round}: {gone} gone, {born} born");
+            match exchanged(&mut moving, &positions, domain, &words)? {
                 Renewal::Flipped(_) => local += 1,
                 Renewal::Rebuilt => anew += 1,
             }
-            moving = next;
         }
     }
     assert!(local > 150, "{local} exchanged, {anew} anew");
