@@ -36,6 +36,7 @@ pub(crate) enum Command {
     PhaseDiffusion(command::phase_diffusion::Arguments),
     Rheology(Box<command::rheology::Arguments>),
     Waves(command::waves::Arguments),
+    Schema(command::schema::Arguments),
     Completions(command::completions::Arguments),
     Man(command::man::Arguments),
 }
@@ -137,6 +138,7 @@ fn call(command: Command) -> Result<Answer, Failure> {
         Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
         Command::Rheology(arguments) => command::rheology::run(*arguments),
         Command::Waves(arguments) => command::waves::run(arguments),
+        Command::Schema(arguments) => command::schema::run(&arguments),
         Command::Completions(arguments) => command::completions::run(&arguments),
         Command::Man(arguments) => command::man::run(&arguments),
     }

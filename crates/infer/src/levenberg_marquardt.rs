@@ -27,9 +27,7 @@ pub(crate) type FitState = IterState<Vec<f64>, (), (), (), (), f64>;
 /// Problems that can tell where a step fails.
 pub(crate) trait Obstacles {
     /// The places (pairs of nudges) without which a step would gain about what it promises, if these are few.
-    fn obstacles(&self, _at: &[f64], _trial: &[f64], _promised: f64) -> Option<Vec<usize>> {
-        None
-    }
+    fn obstacles(&self, at: &[f64], trial: &[f64], promised: f64) -> Option<Vec<usize>>;
 }
 
 /// Damped Gauss–Newton on parameters and nudges together. The damping follows the ratio of actual to predicted

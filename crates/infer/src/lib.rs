@@ -39,6 +39,7 @@ mod normal_equations;
 mod objective;
 mod observation;
 pub mod phase_diffusion;
+mod placing;
 mod position_rows;
 mod predictive;
 mod prospects;

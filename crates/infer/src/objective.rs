@@ -4,12 +4,11 @@ mod linearised;
 
 use crate::flow::Sampling;
 use crate::least_squares::{Columns, residuals};
-use crate::levenberg_marquardt::Obstacles;
 use crate::normal_equations::NormalEquations;
+use crate::placing::Placing;
 use crate::position_rows;
 use crate::spread::OwnParts;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
-use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 pub(crate) use linearised::Free;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
@@ -57,10 +56,12 @@ pub(crate) struct Evaluated {
     pub by_coefficient: Columns,
 }
 
+/// Cells at some time, with the velocities that the model gives them.
+pub(crate) type Moving<'a> = (Nudged<'a>, Evaluated);
+
 /// One frame at some positions with its residuals and their derivatives.
 pub(crate) struct Measurable<'a> {
     pub nudged: Nudged<'a>,
-    pub evaluated: Evaluated,
     /// Datum, residual, and its derivative by the free coefficients (2, p).
     pub rows: Vec<(usize, Vector<f64>, DMatrix<f64>)>,
     /// Derivative of what is measured by the positions.
@@ -223,35 +224,32 @@ impl<'a> Objective<'a> {
         Ok(Nudged::placed(self.structure, environment, positions, tessellation, sampling))
     }
 
-    /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
+    /// The parts of Φ at a point; the residual is infinite where there is no tessellation.
     pub fn parts(&self, parameters: &[f64]) -> Parts {
+        match self.placed_at(parameters) {
+            Ok(placed) => self.parts_of(&placed, parameters),
+            Err(_) => Parts { residual: f64::INFINITY, nudges: 0.0, priors: 0.0 },
+        }
+    }
+
+    /// The parts of Φ: the sum of squared residuals, the sum of squared nudges, the penalty of the priors.
+    fn parts_of(&self, placed: &[Moving<'_>], parameters: &[f64]) -> Parts {
         let (free, nudges) = self.split(parameters);
-        let coefficients = self.space.coefficients(free);
-        let parts: Vec<(f64, f64)> = self
-            .frames
-            .par_iter()
-            .zip(&nudges)
-            .enumerate()
-            .map(|(index, (frame, nudges))| {
-                // A trial that moves cells onto each other, or opens the polygon of a cell that counts, is no solution.
-                let Ok(nudged) = self.place_with_own(index, nudges, coefficients.as_slice()) else {
-                    return (f64::INFINITY, 0.0);
-                };
-                let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
-                let squares = residuals(frame, &predicted)
-                    .into_iter()
-                    .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
-                let free = self.floor() / self.spring();
-                let unseen = nudges.chunks_exact(2).enumerate().filter(|(cell, _)| !frame.is_seen(*cell));
-                let stray = unseen.map(|(_, e)| free * (e[0] * e[0] + e[1] * e[1])).sum::<f64>();
-                let seen = position_rows::squares(frame, &nudged.tessellation, &nudged.positions, nudges)
-                    .sum::<f64>();
-                (squares.sum(), seen + stray)
-            })
-            .collect();
+        let floor = self.floor() / self.spring();
+        let of_frame = |((frame, nudges), (nudged, evaluated)): ((&Observation, &&[f64]), &Moving<'_>)| {
+            let squares = residuals(frame, &evaluated.predicted)
+                .into_iter()
+                .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
+            let unseen = nudges.chunks_exact(2).enumerate().filter(|(cell, _)| !frame.is_seen(*cell));
+            let stray = unseen.map(|(_, e)| floor * (e[0] * e[0] + e[1] * e[1])).sum::<f64>();
+            let seen =
+                position_rows::squares(frame, &nudged.tessellation, &nudged.positions, nudges).sum::<f64>();
+            (squares.sum(), seen + stray)
+        };
+        let parts: Vec<(f64, f64)> = self.frames.par_iter().zip(&nudges).zip(placed).map(of_frame).collect();
         let (residual, nudges) =
             parts.into_iter().fold((0.0, 0.0), |sum, part| (sum.0 + part.0, sum.1 + part.1));
-        Parts { residual, nudges, priors: self.prior_penalty(&coefficients) }
+        Parts { residual, nudges, priors: self.prior_penalty(&self.space.coefficients(free)) }
     }
 
     /// Stiffness that keeps cells that were not seen where they were put.
@@ -266,9 +264,7 @@ impl<'a> Objective<'a> {
 
     /// Φ; infinite where there is no tessellation.
     pub fn value(&self, parameters: &[f64]) -> f64 {
-        let parts = self.parts(parameters);
-        let value = parts.residual + self.spring() * parts.nudges + parts.priors;
-        if value.is_nan() { f64::INFINITY } else { value }
+        self.placed_at(parameters).map_or(f64::INFINITY, |placed| self.value_of(&placed, parameters))
     }
 }
 
@@ -283,23 +279,29 @@ pub(crate) struct Parts {
     pub priors: f64,
 }
 
-// argmin takes its problem by value: it is given a reference.
-impl CostFunction for &Objective<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
+impl<'a> Placing for Objective<'a> {
+    type Placed = Vec<Moving<'a>>;
 
-    fn cost(&self, parameters: &Vec<f64>) -> Result<f64, ArgminError> {
-        Ok(self.value(parameters))
+    fn placed_at(&self, parameters: &[f64]) -> Result<Self::Placed, Error> {
+        let (free, nudges) = self.split(parameters);
+        let coefficients = self.space.coefficients(free);
+        let of_frame = |(index, nudges): (usize, &&[f64])| {
+            let nudged = self.place_with_own(index, nudges, coefficients.as_slice())?;
+            let evaluated = nudged.evaluate(coefficients.as_slice());
+            Ok((nudged, evaluated))
+        };
+        // Of several faults the first is told, whatever thread comes upon it.
+        let all: Vec<Result<Moving<'_>, Error>> = nudges.par_iter().enumerate().map(of_frame).collect();
+        all.into_iter().collect()
     }
-}
 
-impl Obstacles for &Objective<'_> {}
+    fn value_of(&self, placed: &Self::Placed, parameters: &[f64]) -> f64 {
+        let parts = self.parts_of(placed, parameters);
+        let value = parts.residual + self.spring() * parts.nudges + parts.priors;
+        if value.is_nan() { f64::INFINITY } else { value }
+    }
 
-impl Jacobian for &Objective<'_> {
-    type Param = Vec<f64>;
-    type Jacobian = NormalEquations;
-
-    fn jacobian(&self, parameters: &Vec<f64>) -> Result<NormalEquations, ArgminError> {
-        Ok(self.linearise(parameters)?)
+    fn linearise_of(&self, placed: &Self::Placed, parameters: &[f64]) -> Result<NormalEquations, Error> {
+        self.linearise_among(placed, parameters, &[], None)
     }
 }

@@ -30,6 +30,29 @@ impl<S: Scalar> Parameters<S> {
     }
 }
 
+impl Parameters<f64> {
+    /// Each parameter by the name that it has in files, on the command line and in Python.
+    ///
+    /// ```
+    /// let mut parameters = voronudge_model::Parameters::default();
+    /// for (name, value) in parameters.by_name() {
+    ///     if name == "alpha" {
+    ///         *value = 0.5;
+    ///     }
+    /// }
+    /// assert_eq!(parameters.chirality, 0.5);
+    /// ```
+    pub fn by_name(&mut self) -> [(&'static str, &mut f64); 5] {
+        [
+            ("K_A", &mut self.area_elasticity),
+            ("K_P", &mut self.perimeter_elasticity),
+            ("P_0", &mut self.preferred_perimeter),
+            ("A_0", &mut self.preferred_area),
+            ("alpha", &mut self.chirality),
+        ]
+    }
+}
+
 impl Default for Parameters<f64> {
     fn default() -> Self {
         Self {

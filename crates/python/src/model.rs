@@ -25,17 +25,10 @@ impl Given {
                 given.effects = effects(py, &value)?;
                 continue;
             }
-            let parameters = &mut given.parameters;
-            let slot = match name.as_str() {
-                "K_A" => &mut parameters.area_elasticity,
-                "K_P" => &mut parameters.perimeter_elasticity,
-                "P_0" => &mut parameters.preferred_perimeter,
-                "A_0" => &mut parameters.preferred_area,
-                "alpha" => &mut parameters.chirality,
-                _ => {
-                    let hint = "the parameters are K_A, K_P, P_0, A_0, alpha and effects={id: coefficients}";
-                    return Err(fault(py, format!("there is no parameter {name:?}"), Some(hint)));
-                }
+            let slots = given.parameters.by_name();
+            let Some((_, slot)) = slots.into_iter().find(|(own, _)| *own == name) else {
+                let hint = "the parameters are K_A, K_P, P_0, A_0, alpha and effects={id: coefficients}";
+                return Err(fault(py, format!("there is no parameter {name:?}"), Some(hint)));
             };
             *slot = value.extract().map_err(|_| not_a_number(py, &name))?;
             if !slot.is_finite() {

@@ -1,10 +1,11 @@
 //! The base model against the model with the effects that were added.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Something of the base model and the same of the model with the effects added. Where no effect
 /// was added the two are equal.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct BeforeAfter<T> {
     /// Of the base model.
     pub before: T,

@@ -1,23 +1,19 @@
 //! `report.json` of the commands `channel` and `estimate-chirality`.
 //!
-//! Field names are the interface that scripts use; [`CHANNEL_SCHEMA`] and [`CHIRALITY_SCHEMA`] describe them. Numbers that are not
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not
 //! finite are written as `null`.
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
+use crate::ModelParameters;
 use crate::infer_report::RunRecord;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`ChannelReport`].
-pub const CHANNEL_SCHEMA: &str = include_str!("../schema/channel.schema.json");
-/// JSON Schema (draft 2020-12) of [`ChiralityReport`].
-pub const CHIRALITY_SCHEMA: &str = include_str!("../schema/estimate-chirality.schema.json");
-
 /// Everything `channel` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ChannelReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -29,11 +25,12 @@ pub struct ChannelReport {
     /// Length, along y.
     pub length: f64,
     /// `x` with torque-free walls at both edges; null in a periodic box.
+    #[schemars(extend("enum" = ["x"]))]
     pub walls: Option<&'static str>,
     /// The cell size ℓ₀ at the beginning.
     pub cell_size: f64,
     /// Parameters of the model, by the names of the interface.
-    pub parameters: BTreeMap<&'static str, f64>,
+    pub parameters: ModelParameters,
     /// Extrusion and proliferation.
     pub turnover: TurnoverRecord,
     /// Time before the averages.
@@ -69,19 +66,21 @@ pub struct ChannelReport {
 }
 
 /// How cells are extruded and born.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TurnoverRecord {
     /// Rate of extrusion at the edge.
     pub extrusion_rate: f64,
     /// Its decay length; null if it is the same everywhere.
     pub extrusion_length: f64,
     /// `replacing` or `independent`.
+    #[schemars(extend("enum" = ["replacing", "independent"]))]
     pub proliferation: &'static str,
     /// Rate of proliferation at the edge, if it is independent.
     pub proliferation_rate: Option<f64>,
     /// Its decay length.
     pub proliferation_length: f64,
     /// `vertex`, `division` or `cycle`.
+    #[schemars(extend("enum" = ["vertex", "division", "cycle"]))]
     pub injection: &'static str,
     /// Distance of a daughter from her mother, if cells divide, or of two daughters, if it was given.
     pub division_distance: Option<f64>,
@@ -90,13 +89,14 @@ pub struct TurnoverRecord {
 }
 
 /// Cycles of growth and division.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct CycleRecord {
     /// Coefficient of variation of their lengths that was asked for.
     pub variation: f64,
     /// Preferred area at division over that of the model.
     pub size_at_division: f64,
     /// `long` or `random`.
+    #[schemars(extend("enum" = ["long", "random"]))]
     pub axis: &'static str,
     /// Preferred area over that of the model, mean over cells and time.
     pub mean_size: f64,
@@ -109,7 +109,7 @@ pub struct CycleRecord {
 }
 
 /// Numbers of cells.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct CellNumbers {
     /// At the beginning.
     pub first: usize,
@@ -126,7 +126,7 @@ pub struct CellNumbers {
 }
 
 /// A decay from the edges.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct DecayRecord {
     /// Decay length.
     pub length: f64,
@@ -145,7 +145,7 @@ pub struct DecayRecord {
 }
 
 /// ∂_x(ρ v_x)/ρ against k_prolif − k_extr.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct ConservationRecord {
     /// Places between bins, from the edge to the middle.
     pub faces: usize,
@@ -158,7 +158,7 @@ pub struct ConservationRecord {
 }
 
 /// What carries cells along the channel between a distance from the edge and the middle, each with its standard error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct MomentumRecord {
     /// Distance from the edge, next to where the decays are fitted from.
     pub distance: f64,
@@ -171,7 +171,7 @@ pub struct MomentumRecord {
 }
 
 /// The theory beside the simulation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct ContinuumRecord {
     /// B + μ
     pub longitudinal: f64,
@@ -186,7 +186,7 @@ pub struct ContinuumRecord {
 }
 
 /// The theory of a liquid with an equation of state beside the simulation.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct LiquidRecord {
     /// Lowest and highest density of the equation of state.
     pub density_range: [f64; 2],
@@ -203,7 +203,7 @@ pub struct LiquidRecord {
 }
 
 /// A line through the points (v_x, v_y).
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SlopeRecord {
     /// Points.
     pub points: usize,
@@ -230,7 +230,7 @@ pub struct SlopeRecord {
 }
 
 /// Largest change of a velocity at a birth.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct DisturbanceRecord {
     /// Places tried.
     pub draws: usize,
@@ -245,7 +245,7 @@ pub struct DisturbanceRecord {
 }
 
 /// Everything `estimate-chirality` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ChiralityReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -254,27 +254,6 @@ pub struct ChiralityReport {
     #[serde(flatten)]
     pub line: SlopeRecord,
     /// Whether the line was held at the origin: `zero` or `free`.
+    #[schemars(extend("enum" = ["zero", "free"]))]
     pub intercept_kind: &'static str,
-}
-
-impl ChannelReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
-impl ChiralityReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
 }

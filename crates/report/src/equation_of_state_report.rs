@@ -1,20 +1,16 @@
 //! `report.json` of the command `equation-of-state`.
 //!
-//! Field names are the interface that scripts use; [`EQUATION_OF_STATE_SCHEMA`] describes them. Numbers that are not finite are written as `null`.
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are written as `null`.
 
-use std::collections::BTreeMap;
-
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
+use crate::ModelParameters;
 use crate::infer_report::RunRecord;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`EquationOfStateReport`].
-pub const EQUATION_OF_STATE_SCHEMA: &str = include_str!("../schema/equation-of-state.schema.json");
-
 /// Everything `equation-of-state` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EquationOfStateReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -22,7 +18,7 @@ pub struct EquationOfStateReport {
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
     /// Parameters of the model, by the names of the interface.
-    pub parameters: BTreeMap<&'static str, f64>,
+    pub parameters: ModelParameters,
     /// The cell size ℓ₀ that `relative_density` refers to.
     pub cell_size: f64,
     /// Cells of each run.
@@ -37,19 +33,8 @@ pub struct EquationOfStateReport {
     pub points: Vec<UniformRecord>,
 }
 
-impl EquationOfStateReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
 /// A uniform tissue of some density.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct UniformRecord {
     /// Cells per area ρ.
     pub density: f64,
@@ -72,7 +57,7 @@ pub struct UniformRecord {
 }
 
 /// A mean over runs and its standard error.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Measured {
     /// The mean.
     pub value: f64,
@@ -81,7 +66,7 @@ pub struct Measured {
 }
 
 /// Stress and moduli of a honeycomb.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Honeycomb {
     /// p.
     pub pressure: f64,

@@ -7,8 +7,7 @@
 //!   (axes by plotters), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
 //! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
 //! - [`movie`]: cells of many frames, for the player of a page and as an animated image.
-//! - [`infer_report`], [`discover_report`], [`spectrum_report`]: what `report.json` holds, described by [`INFER_SCHEMA`],
-//!   [`DISCOVER_SCHEMA`] and [`SPECTRUM_SCHEMA`].
+//! - [`infer_report`], [`discover_report`], [`spectrum_report`] and their like: what `report.json` holds, described by [`schema_of`].
 //!
 //! ```
 //! use voronudge_report::figure::{ErrorBar, Emphasis, error_bars};
@@ -35,6 +34,7 @@ pub mod infer_report;
 pub mod key;
 pub mod map;
 pub mod markers;
+mod model_parameters;
 pub mod moduli_report;
 pub mod movie;
 pub mod numbers;
@@ -43,6 +43,7 @@ pub mod page;
 pub mod phase_diffusion_report;
 pub mod phase_report;
 pub mod rheology_report;
+mod schema;
 pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;
@@ -50,25 +51,24 @@ pub mod units;
 mod view;
 pub mod waves_report;
 
-/// JSON Schema (draft 2020-12) of the report of `simulate`, which the command line writes by itself.
-pub const SIMULATE_SCHEMA: &str = include_str!("../schema/simulate.schema.json");
-
 pub use before_after::BeforeAfter;
-pub use channel_report::{CHANNEL_SCHEMA, CHIRALITY_SCHEMA, ChannelReport, ChiralityReport};
-pub use discover_report::{DISCOVER_SCHEMA, DiscoverReport};
-pub use equation_of_state_report::{EQUATION_OF_STATE_SCHEMA, EquationOfStateReport};
+pub use channel_report::{ChannelReport, ChiralityReport};
+pub use discover_report::DiscoverReport;
+pub use equation_of_state_report::EquationOfStateReport;
 pub use error::ReportError;
-pub use infer_report::{INFER_SCHEMA, InferReport};
-pub use moduli_report::{MODULI_SCHEMA, ModuliReport};
+pub use infer_report::InferReport;
+pub use model_parameters::ModelParameters;
+pub use moduli_report::ModuliReport;
 pub use page::{
     DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SectionPage, SimulatePage, SpectrumPage,
     SpreadView, StripFigures, Uncertainty,
 };
-pub use phase_diffusion_report::{PHASE_DIFFUSION_SCHEMA, PhaseDiffusionReport};
-pub use phase_report::{PHASE_SCHEMA, PhaseReport};
-pub use rheology_report::{RHEOLOGY_SCHEMA, RheologyReport};
-pub use shape_report::{FIELD_SCHEMA, FieldReport, SHAPE_SCHEMA, ShapeReport};
-pub use spectrum_report::{SPECTRUM_SCHEMA, SpectrumReport};
+pub use phase_diffusion_report::PhaseDiffusionReport;
+pub use phase_report::PhaseReport;
+pub use rheology_report::RheologyReport;
+pub use schema::schema_of;
+pub use shape_report::{FieldReport, ShapeReport};
+pub use spectrum_report::SpectrumReport;
 pub use units::Units;
 pub use view::{CellStatus, CellView, ChangedEdges, FrameView, Segment};
-pub use waves_report::{WAVES_SCHEMA, WavesReport};
+pub use waves_report::WavesReport;

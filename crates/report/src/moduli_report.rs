@@ -1,22 +1,20 @@
 //! `report.json` of the command `moduli`.
 //!
-//! Field names are the interface that scripts use; [`MODULI_SCHEMA`] describes them. Numbers that are not finite are
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are
 //! written as `null`.
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
+use crate::ModelParameters;
 use crate::infer_report::RunRecord;
 use crate::phase_report::CellSpread;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`ModuliReport`].
-pub const MODULI_SCHEMA: &str = include_str!("../schema/moduli.schema.json");
-
 /// Everything `moduli` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ModuliReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -26,7 +24,7 @@ pub struct ModuliReport {
     /// Number of cells.
     pub cells: usize,
     /// Parameters as used, by the names of the interface.
-    pub parameters: BTreeMap<&'static str, f64>,
+    pub parameters: ModelParameters,
     /// By how much cells differ, if they do.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub cell_spread: Option<CellSpread>,
@@ -48,21 +46,11 @@ pub struct ModuliReport {
     pub replicas: Vec<ReplicaRecord>,
 }
 
-impl ModuliReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
 /// One modulus or viscosity.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ModulusRecord {
     /// `bulk`, `odd_bulk`, `shear`, `odd_shear`, `shear_viscosity` or `odd_shear_viscosity`.
+    #[schemars(extend("enum" = ["bulk", "odd_bulk", "shear", "odd_shear", "shear_viscosity", "odd_shear_viscosity"]))]
     pub name: &'static str,
     /// Symbol; `_x` sets a subscript.
     pub symbol: &'static str,
@@ -83,7 +71,7 @@ pub struct ModulusRecord {
 }
 
 /// Storage and loss moduli at one frequency.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DynamicRecord {
     /// Angular frequency ω, in 1/time.
     pub frequency: f64,
@@ -92,9 +80,10 @@ pub struct DynamicRecord {
 }
 
 /// A complex modulus `G′ + i G″` at one frequency.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DynamicModulusRecord {
     /// `bulk`, `odd_bulk`, `shear` or `odd_shear`.
+    #[schemars(extend("enum" = ["bulk", "odd_bulk", "shear", "odd_shear"]))]
     pub name: &'static str,
     /// Symbol.
     pub symbol: &'static str,
@@ -105,7 +94,7 @@ pub struct DynamicModulusRecord {
 }
 
 /// A number of one or several replicas.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Estimate {
     /// Mean over replicas.
     pub value: f64,
@@ -116,9 +105,10 @@ pub struct Estimate {
 }
 
 /// A medium of one elasticity and one viscosity.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MediumRecord {
     /// `kelvin_voigt` or `maxwell`.
+    #[schemars(extend("enum" = ["kelvin_voigt", "maxwell"]))]
     pub arrangement: &'static str,
     /// Elasticity: shear modulus and odd shear modulus.
     pub elasticity: [f64; 2],
@@ -129,11 +119,12 @@ pub struct MediumRecord {
 }
 
 /// One replica.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ReplicaRecord {
     /// Seed of its starting positions.
     pub seed: u64,
     /// `at_rest` or `flowing`.
+    #[schemars(extend("enum" = ["at_rest", "flowing"]))]
     pub motion: &'static str,
     /// Largest speed before the strain.
     pub speed: f64,

@@ -1,15 +1,15 @@
 //! `report.json` of `voronudge observe`.
 
+use crate::ModelParameters;
 use crate::infer_report::{Quantity, RunRecord};
 use crate::units::Units;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The JSON Schema of [`ObserveReport`].
-pub const OBSERVE_SCHEMA: &str = include_str!("../schema/observe.schema.json");
-
 /// Everything `observe` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObserveReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -25,6 +25,7 @@ pub struct ObserveReport {
     /// The cell size: root of the mean area of the cells that count.
     pub length_scale: Quantity,
     /// `given`, `from_positions`, or `none`.
+    #[schemars(extend("enum" = ["given", "from_positions", "none"]))]
     pub velocities: &'static str,
     /// Whether the median motion of the cells is taken for one of the stage.
     pub common_motion_removed: bool,
@@ -39,7 +40,7 @@ pub struct ObserveReport {
 }
 
 /// The director and its defects.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedNematic {
     /// Standard deviation of the Gaussian over which shapes are smoothed.
     pub smoothing_width: Quantity,
@@ -48,11 +49,11 @@ pub struct ObservedNematic {
     /// Those of −½.
     pub minus: usize,
     /// Parameters of the model whose stresses are averaged around defects, if they are.
-    pub stress_of: Option<BTreeMap<&'static str, f64>>,
+    pub stress_of: Option<ModelParameters>,
 }
 
 /// T1 transitions that come together.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedAvalanches {
     /// Longest time between two that do.
     pub threshold: Quantity,
@@ -63,7 +64,7 @@ pub struct ObservedAvalanches {
 }
 
 /// A measured number.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedNumber {
     /// Value.
     pub value: f64,
@@ -76,7 +77,7 @@ pub struct ObservedNumber {
 }
 
 /// A measured function.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedCurve {
     /// What it is a function of.
     pub axis: &'static str,

@@ -1,17 +1,15 @@
 //! `report.json` of the command `phase-diffusion`.
 //!
-//! Field names are the interface that scripts use; [`PHASE_DIFFUSION_SCHEMA`] describes them. Numbers that are not finite are written as `null`.
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are written as `null`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::infer_report::{Quantity, RunRecord};
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`PhaseDiffusionReport`].
-pub const PHASE_DIFFUSION_SCHEMA: &str = include_str!("../schema/phase-diffusion.schema.json");
-
 /// Everything `phase-diffusion` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PhaseDiffusionReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -25,10 +23,13 @@ pub struct PhaseDiffusionReport {
     /// The cell size ℓ₀, ℓ₀² = area of the box per cell.
     pub length_scale: Quantity,
     /// `given` if the places without displacement were given, `free` if a constant displacement was fitted.
+    #[schemars(extend("enum" = ["given", "free"]))]
     pub reference: &'static str,
     /// `measurement` or `driving`: what the residuals are taken for.
+    #[schemars(extend("enum" = ["measurement", "driving"]))]
     pub fluctuations: &'static str,
     /// `second` or `fourth`: the highest power of the wave vector in the rates.
+    #[schemars(extend("enum" = ["second", "fourth"]))]
     pub order: &'static str,
     /// Phase diffusivities of the paper's equation, ε_xy = +1.
     pub diffusivities: Diffusivities,
@@ -47,7 +48,7 @@ pub struct PhaseDiffusionReport {
 }
 
 /// The four phase diffusivities.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct Diffusivities {
     /// D_∥.
@@ -61,7 +62,7 @@ pub struct Diffusivities {
 }
 
 /// An estimate of a diffusivity.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Diffusivity {
     /// Value.
     pub value: f64,
@@ -74,7 +75,7 @@ pub struct Diffusivity {
 }
 
 /// Moduli, per friction where they come from diffusivities.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct ImpliedModuli {
     /// Bulk modulus.
@@ -88,7 +89,7 @@ pub struct ImpliedModuli {
 }
 
 /// One wave vector.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WaveVectorRecord {
     /// Its components.
     pub q: [f64; 2],

@@ -1,20 +1,17 @@
 //! `report.json` of the commands `phase-diagram` and `merge`.
 //!
-//! Field names are the interface that scripts use; [`PHASE_SCHEMA`] describes them. Numbers that are not finite are written as
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are written as
 //! `null`.
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
 use crate::infer_report::RunRecord;
 
-/// JSON Schema (draft 2020-12) of [`PhaseReport`].
-pub const PHASE_SCHEMA: &str = include_str!("../schema/phase-diagram.schema.json");
-
 /// By how much cells differ in their parameters, and how.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CellSpread {
     /// Standard deviation of each parameter over cells as a share of its mean.
     pub shares: BTreeMap<String, f64>,
@@ -23,7 +20,7 @@ pub struct CellSpread {
 }
 
 /// Everything `phase-diagram` reports. Lengths are in ℓ₀ and rates in K_P.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct PhaseReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -68,19 +65,8 @@ pub struct PhaseReport {
     pub no_collapse: Option<String>,
 }
 
-impl PhaseReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
 /// The values of a quantity over the diagram.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct QuantityRecord {
     /// The least, with its P_0 and α.
     pub least: Option<Extreme>,
@@ -91,7 +77,7 @@ pub struct QuantityRecord {
 }
 
 /// An extreme value and where it is.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Extreme {
     /// The value.
     pub value: f64,
@@ -104,7 +90,7 @@ pub struct Extreme {
 }
 
 /// A run that ended with an error.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FailedRun {
     /// Its preferred perimeter.
     #[serde(rename = "P_0")]
@@ -119,7 +105,7 @@ pub struct FailedRun {
 }
 
 /// Lines to compare with.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct PhaseLines {
     /// P_0* at α = 0 of the paper's P_0* − |α|, measured for |α| ≤ 0.2.
     pub disordered_transition: f64,
@@ -128,7 +114,7 @@ pub struct PhaseLines {
 }
 
 /// The scaling of ⟨v²⟩ about the transition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CollapseRecord {
     /// Range of |α|.
     pub alpha: [f64; 2],
@@ -147,7 +133,7 @@ pub struct CollapseRecord {
 }
 
 /// Exponents as given.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct GivenExponents {
     /// The power of |ΔP|.
     pub beta: f64,
@@ -158,7 +144,7 @@ pub struct GivenExponents {
 }
 
 /// Exponents as fitted.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct FittedExponents {
     /// The power of |ΔP|.
     pub beta: ExponentRecord,
@@ -171,7 +157,7 @@ pub struct FittedExponents {
 }
 
 /// A fitted exponent.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct ExponentRecord {
     /// The estimate.
     pub value: f64,

@@ -1,20 +1,17 @@
 //! `report.json` of the command `rheology`.
 //!
-//! Field names are the interface that scripts use; [`RHEOLOGY_SCHEMA`] describes them. Numbers that are not finite are written as `null`.
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are written as `null`.
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
 use crate::infer_report::RunRecord;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`RheologyReport`].
-pub const RHEOLOGY_SCHEMA: &str = include_str!("../schema/rheology.schema.json");
-
 /// Everything `rheology` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RheologyReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -26,24 +23,14 @@ pub struct RheologyReport {
     /// Seeds of the starting positions, the same for all fits.
     pub seeds: Vec<u64>,
     /// What `fits[].at` is: `time` as given, or the mean `frame` of each fit.
+    #[schemars(extend("enum" = ["time", "frame"]))]
     pub against: &'static str,
     /// Each fit, in the order given.
     pub fits: Vec<FittedRheology>,
 }
 
-impl RheologyReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
 /// What one fit implies.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FittedRheology {
     /// The report of `infer`, as given.
     pub path: String,
@@ -66,7 +53,7 @@ pub struct FittedRheology {
 }
 
 /// Storage and loss moduli at one frequency.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RheologyFrequency {
     /// Angular frequency, in 1/time of the data.
     pub frequency: f64,
@@ -75,7 +62,7 @@ pub struct RheologyFrequency {
 }
 
 /// A measured number with what is not known of it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RheologyQuantity {
     /// For example `shear`, `odd_shear_viscosity` or `shear_loss`.
     pub name: String,

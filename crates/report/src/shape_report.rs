@@ -1,20 +1,16 @@
 //! `report.json` of `import labels`, `import outlines` and `import field`.
 //!
-//! Field names are the interface that scripts use; [`SHAPE_SCHEMA`] and [`FIELD_SCHEMA`] describe them. Numbers that are not finite are
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are
 //! written as `null`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::infer_report::RunRecord;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`ShapeReport`].
-pub const SHAPE_SCHEMA: &str = include_str!("../schema/shapes.schema.json");
-/// JSON Schema (draft 2020-12) of [`FieldReport`].
-pub const FIELD_SCHEMA: &str = include_str!("../schema/field.schema.json");
-
 /// Everything that `import labels` and `import outlines` report.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ShapeReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -44,16 +40,17 @@ pub struct ShapeReport {
 }
 
 /// Something that was understood of a file that does not say everything about itself.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct NoteRecord {
     /// `read`, `guessed` or `doubtful`.
+    #[schemars(extend("enum" = ["read", "guessed", "doubtful"]))]
     pub kind: String,
     /// What it is, for people.
     pub text: String,
 }
 
 /// Sites whose Voronoi polygons follow outlines best.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SiteRecord {
     /// Root mean square distance of the lines along which cells touch from the bisectors of their centroids.
     pub misfit_of_centroids: f64,
@@ -66,7 +63,7 @@ pub struct SiteRecord {
 }
 
 /// Agreement in one frame.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FrameAgreement {
     /// Index of the frame, zero-based.
     pub frame: usize,
@@ -78,7 +75,7 @@ pub struct FrameAgreement {
 }
 
 /// How well the Voronoi polygons of positions stand for the true outlines.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct AgreementRecord {
     /// Cells whose shapes are compared.
     pub cells: usize,
@@ -132,7 +129,7 @@ impl AgreementRecord {
 }
 
 /// Everything that `import field` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FieldReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]

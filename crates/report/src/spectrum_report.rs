@@ -1,21 +1,19 @@
 //! `report.json` of the command `spectrum`.
 //!
-//! Field names are the interface that scripts use; [`SPECTRUM_SCHEMA`] describes them. Numbers that are not finite are
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that are not finite are
 //! written as `null`.
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
+use crate::ModelParameters;
 use crate::infer_report::RunRecord;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`SpectrumReport`].
-pub const SPECTRUM_SCHEMA: &str = include_str!("../schema/spectrum.schema.json");
-
 /// Everything `spectrum` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SpectrumReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -25,7 +23,7 @@ pub struct SpectrumReport {
     /// Which modes were asked for.
     pub selection: SelectionRecord,
     /// Parameters as used, by the names of the interface.
-    pub parameters: BTreeMap<&'static str, f64>,
+    pub parameters: ModelParameters,
     /// Values of parameters in which cells differ, by name, one for each cell of the data; of types by the labels in the first frame.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub cell_parameters: BTreeMap<&'static str, Vec<f64>>,
@@ -42,19 +40,8 @@ pub struct SpectrumReport {
     pub strip: Option<StripRecord>,
 }
 
-impl SpectrumReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
 /// Which modes were asked for.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "modes", rename_all = "snake_case")]
 pub enum SelectionRecord {
     /// All.
@@ -81,9 +68,10 @@ pub enum SelectionRecord {
 }
 
 /// What the theory of the honeycomb says.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeanFieldRecord {
     /// `solid`, `odd_elastic_solid` or `unstable`.
+    #[schemars(extend("enum" = ["solid", "odd_elastic_solid", "unstable"]))]
     pub phase: &'static str,
     /// The P_0 at which the honeycomb becomes unstable.
     pub stability_limit: f64,
@@ -94,7 +82,7 @@ pub struct MeanFieldRecord {
 }
 
 /// The spectrum of one frame.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FrameSpectrum {
     /// Index of the frame, zero-based.
     pub frame: usize,
@@ -141,7 +129,7 @@ pub struct FrameSpectrum {
 }
 
 /// One mode.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ModeRecord {
     /// Row in `eigenvalues.npy`.
     pub index: usize,
@@ -152,6 +140,7 @@ pub struct ModeRecord {
     /// Share of the cells that take part.
     pub participation: Option<f64>,
     /// Share of the divergence in the gradients.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub longitudinal: Option<f64>,
     /// Condition number.
     pub condition: Option<f64>,
@@ -160,7 +149,7 @@ pub struct ModeRecord {
 }
 
 /// How near a snapshot is to a T1 transition.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TransitionRecord {
     /// Length of the shortest side.
     pub shortest_side: f64,
@@ -175,7 +164,7 @@ pub struct TransitionRecord {
 }
 
 /// The exact Jacobian of a honeycomb against the theory.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LatticeRecord {
     /// Cells in a row and rows.
     pub size: [usize; 2],
@@ -186,22 +175,26 @@ pub struct LatticeRecord {
 }
 
 /// Where between walls the modes are.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WallsRecord {
     /// `x` or `both`.
+    #[schemars(extend("enum" = ["x", "both"]))]
     pub sides: &'static str,
     /// Share of the cells within two rows of a wall.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub cells: f64,
     /// Mean over the modes of their share of |u|² there.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub mean_share: f64,
     /// Modes that have more than half of their |u|² there.
     pub mostly: usize,
 }
 
 /// The modes of a strip of the honeycomb at one wave number along it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StripRecord {
     /// `periodic`, `held` or `walls`.
+    #[schemars(extend("enum" = ["periodic", "held", "walls"]))]
     pub ends: &'static str,
     /// Rows.
     pub rows: usize,

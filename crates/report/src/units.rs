@@ -3,7 +3,7 @@
 use crate::numbers::superscript;
 
 /// The units that axis labels, scale bars and tables carry, as the data set states them.
-#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 pub struct Units {
     /// Unit of length, for example `um`.
     pub length: String,

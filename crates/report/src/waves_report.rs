@@ -1,18 +1,16 @@
 //! `report.json` of `voronudge waves`.
 
+use crate::ModelParameters;
 use crate::infer_report::{Quantity, RunRecord};
 use crate::units::Units;
+use schemars::JsonSchema;
 use serde::Serialize;
-use std::collections::BTreeMap;
-
 /// The JSON Schema of [`WavesReport`].
-pub const WAVES_SCHEMA: &str = include_str!("../schema/waves.schema.json");
-
 /// Rows of D(q), in components along the wave vector and a quarter turn ahead.
 pub type Rates = [[f64; 2]; 2];
 
 /// Everything `waves` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WavesReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -28,18 +26,21 @@ pub struct WavesReport {
     /// The cell size: root of the mean area of the cells that count.
     pub length_scale: Quantity,
     /// `given`, `from_positions`, or `none`.
+    #[schemars(extend("enum" = ["given", "from_positions", "none"]))]
     pub velocities: &'static str,
     /// Whether the median motion of the cells is taken for one of the stage.
     pub common_motion_removed: bool,
     /// `displacements` or `velocities`: what was resolved into waves.
+    #[schemars(extend("enum" = ["displacements", "velocities"]))]
     pub field: &'static str,
     /// τ_0 in frames.
     pub first_lag: usize,
     /// Parameters of the model whose D(q) stands beside, if they are given.
-    pub parameters: Option<BTreeMap<&'static str, f64>>,
+    pub parameters: Option<ModelParameters>,
     /// Probability of differences of D from τ and 2τ that are as large if waves relax linearly and without memory, of all shells together.
     pub linear: Option<f64>,
     /// `linear`, `not_linear` or `unknown`.
+    #[schemars(extend("enum" = ["linear", "not_linear", "unknown"]))]
     pub verdict: &'static str,
     /// Probability of entries off the diagonal that are as large without chirality, of all shells together.
     pub achiral: Option<f64>,
@@ -54,7 +55,7 @@ pub struct WavesReport {
 }
 
 /// A number with its error.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Measured {
     /// Value.
     pub value: f64,
@@ -65,7 +66,7 @@ pub struct Measured {
 }
 
 /// D over q² of long waves.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct LongWavesRecord {
     /// (B + μ)/ζ.
@@ -81,7 +82,7 @@ pub struct LongWavesRecord {
 }
 
 /// How spectra were taken.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SpectraRecord {
     /// Frames of a segment.
     pub segment: usize,
@@ -92,7 +93,7 @@ pub struct SpectraRecord {
 }
 
 /// One shell.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WaveShellRecord {
     /// Mean wave number.
     pub wave_number: f64,
@@ -109,7 +110,7 @@ pub struct WaveShellRecord {
 }
 
 /// How the waves of a shell relax.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RelaxationRecord {
     /// τ in frames.
     pub lag: usize,

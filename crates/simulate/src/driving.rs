@@ -7,6 +7,7 @@ use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Scalar, Vector};
 
@@ -16,7 +17,7 @@ pub(crate) const CHUNK: usize = 1024;
 /// Simple shear of the periodic box (Lees–Edwards): the image one box above is displaced by `γ(t) L_y` along x.
 ///
 /// Cells are carried along by the affine flow `γ̇ y x̂`, with `y` unwrapped.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub enum Shear {
     /// `γ = strain` from the start: the starting positions are sheared too.
     Step {
@@ -105,7 +106,7 @@ impl Shear {
 /// Noise is additive and is put in at the end of each step: of weak order one in `Δt`, without a step-size bias of its own
 /// (Euler–Maruyama for the noise, the chosen method for the rest). Its numbers come from the seed, the step and the cell,
 /// whatever the number of threads.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub struct Driving {
     /// Shear of the box.
     pub shear: Option<Shear>,

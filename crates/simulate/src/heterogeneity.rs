@@ -4,6 +4,7 @@ use crate::Generator;
 use rand::Rng;
 use rand::seq::SliceRandom;
 use rand_distr::StandardNormal;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// How a parameter is distributed over cells, as multiples of its mean.
@@ -15,7 +16,7 @@ use serde::{Deserialize, Serialize};
 /// sorted.sort_by(f64::total_cmp);
 /// assert_eq!(sorted, [0.0, 0.0, 2.0, 2.0]);
 /// ```
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum Distribution {
     /// Normal.

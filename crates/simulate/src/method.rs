@@ -1,11 +1,12 @@
 //! Methods of integration in time.
 
 use crate::scaled::real;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Scalar, Vector};
 
 /// How positions are moved in time.
-#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, JsonSchema)]
 pub enum Method {
     /// The classical Runge–Kutta method of fourth order; every step has the size that is asked for.
     #[default]

@@ -2,6 +2,7 @@
 
 use crate::scaled::without_derivatives;
 use crate::{Driving, Error};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
 use voronudge_model::Model;
@@ -15,7 +16,7 @@ use voronudge_model::Model;
 ///
 /// The paper (SI, "Details of numerical simulations") has the mirror images, but leaves the vertices on the wall out of the equation of
 /// motion. At a row of regular hexagons the wall then takes up the whole prestress torque: see `docs/corrections.md`, "Torque-free walls".
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Walls {
     /// At `x = 0` and `x = L_x`; periodic in y: a channel.

@@ -3,6 +3,7 @@
 use super::LARGEST_PARAMETER;
 use crate::failure::Failure;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -55,7 +56,7 @@ pub(crate) struct OwnParameters {
 }
 
 /// The values (N) of each parameter in which cells differ, by name.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub(crate) struct OfCells(pub BTreeMap<&'static str, Vec<f64>>);
 

@@ -2,6 +2,7 @@
 
 use crate::failure::Failure;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -18,7 +19,7 @@ pub(crate) struct EffectArguments {
 }
 
 /// Effects with their coefficients.
-#[derive(Debug, Clone, Default, Serialize)]
+#[derive(Debug, Clone, Default, Serialize, JsonSchema)]
 #[serde(transparent)]
 pub(crate) struct ChosenEffects(BTreeMap<&'static str, Vec<f64>>);
 

@@ -3,9 +3,9 @@
 use crate::failure::Failure;
 use clap::Args;
 use serde_json::Value;
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use voronudge_model::Parameters;
+use voronudge_report::ModelParameters;
 
 /// Largest parameter whose forces and stresses are finite numbers.
 pub(crate) const LARGEST_PARAMETER: f64 = 1e50;
@@ -42,8 +42,12 @@ impl ParameterArguments {
 
     /// Whether any is given.
     pub fn is_given(&self) -> bool {
-        self.parameters.is_some()
-            || [self.K_A, self.K_P, self.P_0, self.A_0, self.alpha].iter().any(Option::is_some)
+        self.parameters.is_some() || self.flags().iter().any(Option::is_some)
+    }
+
+    /// The flags, in the order of [`Parameters::by_name`].
+    fn flags(&self) -> [Option<f64>; 5] {
+        [self.K_A, self.K_P, self.P_0, self.A_0, self.alpha]
     }
 
     /// The file that they are read from, if there is one.
@@ -57,13 +61,7 @@ impl ParameterArguments {
         if let Some(file) = &self.parameters {
             parameters = read(file)?;
         }
-        for (name, slot, flag) in [
-            ("K_A", &mut parameters.area_elasticity, self.K_A),
-            ("K_P", &mut parameters.perimeter_elasticity, self.K_P),
-            ("P_0", &mut parameters.preferred_perimeter, self.P_0),
-            ("A_0", &mut parameters.preferred_area, self.A_0),
-            ("alpha", &mut parameters.chirality, self.alpha),
-        ] {
+        for ((name, slot), flag) in parameters.by_name().into_iter().zip(self.flags()) {
             if let Some(value) = flag {
                 if !value.is_finite() {
                     return Err(Failure::new(format!("--{name} is {value}, but it must be finite"))
@@ -82,15 +80,15 @@ impl ParameterArguments {
     }
 }
 
-/// The parameters by their names in files.
-pub(crate) fn named(p: &Parameters<f64>) -> BTreeMap<&'static str, f64> {
-    BTreeMap::from([
-        ("K_A", p.area_elasticity),
-        ("K_P", p.perimeter_elasticity),
-        ("P_0", p.preferred_perimeter),
-        ("A_0", p.preferred_area),
-        ("alpha", p.chirality),
-    ])
+/// The parameters as reports have them.
+pub(crate) fn named(p: &Parameters<f64>) -> ModelParameters {
+    ModelParameters {
+        K_A: p.area_elasticity,
+        K_P: p.perimeter_elasticity,
+        P_0: p.preferred_perimeter,
+        A_0: p.preferred_area,
+        alpha: p.chirality,
+    }
 }
 
 fn read(file: &Path) -> Result<Parameters<f64>, Failure> {
@@ -104,13 +102,7 @@ fn read(file: &Path) -> Result<Parameters<f64>, Failure> {
     let table = table.as_object().ok_or_else(|| fault("not a table of parameters".into()))?;
     let mut parameters = Parameters::default();
     let mut found = 0;
-    for (name, slot) in [
-        ("K_A", &mut parameters.area_elasticity),
-        ("K_P", &mut parameters.perimeter_elasticity),
-        ("P_0", &mut parameters.preferred_perimeter),
-        ("A_0", &mut parameters.preferred_area),
-        ("alpha", &mut parameters.chirality),
-    ] {
+    for (name, slot) in parameters.by_name() {
         let Some(entry) = table.get(name) else { continue };
         let value = entry.get("value").unwrap_or(entry).as_f64().filter(|value| value.is_finite());
         *slot = value.ok_or_else(|| fault(format!("{name} is not a finite number")))?;

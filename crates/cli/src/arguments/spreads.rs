@@ -3,6 +3,7 @@
 use super::cells::{KNOWN, OwnParameters, Values, named, of_model};
 use crate::failure::Failure;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use voronudge_model::{CellParameter, Parameters};
@@ -32,9 +33,11 @@ fn distribution(name: &str) -> Result<Distribution, String> {
 }
 
 /// By how much cells differ, by name of the parameter, and how.
-#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 pub(crate) struct Spreads {
+    /// Standard deviation of each parameter over cells as a share of its mean.
     shares: BTreeMap<String, f64>,
+    /// How values are distributed.
     distribution: Distribution,
 }
 

@@ -6,6 +6,7 @@ use crate::failure::Failure;
 use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 use voronudge_geometry::{Domain, PeriodicBox};
@@ -36,22 +37,32 @@ pub(crate) struct Arguments {
 /// Cells of the built-in configurations.
 const BUILT_IN_CELLS: usize = 100;
 
-#[derive(Serialize)]
-struct Report {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Report {
+    /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
+    /// Whether all checks passed.
     passed: bool,
+    /// Each check.
     checks: Vec<Check>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Check {
+    /// The cells.
     configuration: String,
+    /// The term of the model.
     term: String,
+    /// What is differentiated, and by what.
     quantity: String,
+    /// The largest difference, as a share of the largest derivative.
     worst: f64,
+    /// Where that is.
     place: String,
+    /// The largest that passes.
     tolerance: f64,
+    /// Whether it passes.
     passed: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use crate::arguments::{
     CellArguments, ChosenEffects, CommonArguments, DataSetArguments, EffectArguments, ExportArguments,
-    OfCells, ParameterArguments, cell_frame, environment,
+    OfCells, ParameterArguments, cell_frame, environment, named,
 };
 use crate::boundary::domain_at;
 use crate::failure::Failure;
@@ -11,14 +11,16 @@ use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::io::Cursor;
 use std::path::Path;
 use voronudge_geometry::{Tessellation, Vector, areas, perimeters};
 use voronudge_io::{CellFrame, CellValues, DataSet, FrameSelection, OutputDirectory, Snapshot, YAxis};
-use voronudge_model::{BlockMatrix, Model, Parameters, jacobian, stress, velocities};
+use voronudge_model::{BlockMatrix, Model, jacobian, stress, velocities};
 use voronudge_observables::mean_square_velocity;
+use voronudge_report::ModelParameters;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_report::numbers::significant;
 
@@ -52,55 +54,37 @@ pub(crate) struct Arguments {
 /// Coordinates up to which the Jacobian is written dense.
 const DENSE_LIMIT: usize = 4000;
 
-#[derive(Serialize)]
-struct Report {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Report {
+    /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
+    /// Numbers of cells.
     cells: Cells,
+    /// Parameters as used.
     parameters: ModelParameters,
+    /// Values of parameters in which cells differ, one for each cell.
     #[serde(skip_serializing_if = "OfCells::is_empty")]
     cell_parameters: OfCells,
+    /// Effects beyond the base model with their coefficients.
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     effects: ChosenEffects,
+    /// Mean stress of each frame, force index first.
     stress: Vec<[[f64; 2]; 2]>,
+    /// Mean square velocity of each frame, over the cells that count.
     mean_square_velocity: Vec<f64>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Cells {
+    /// Frames evaluated, zero-based.
     frames: Vec<usize>,
+    /// Cells that are present, of each.
     present: Vec<usize>,
+    /// Cells with a velocity.
     with_velocity: Vec<usize>,
+    /// Cells that count in sums.
     counted: Vec<usize>,
-}
-
-/// Parameters under the names of the interface.
-#[derive(Serialize)]
-#[allow(non_snake_case, reason = "the names of the file")]
-pub(crate) struct ModelParameters {
-    K_A: f64,
-    K_P: f64,
-    P_0: f64,
-    A_0: f64,
-    alpha: f64,
-}
-
-impl ModelParameters {
-    pub fn perimeter_elasticity(&self) -> f64 {
-        self.K_P
-    }
-}
-
-impl From<&Parameters<f64>> for ModelParameters {
-    fn from(p: &Parameters<f64>) -> Self {
-        Self {
-            K_A: p.area_elasticity,
-            K_P: p.perimeter_elasticity,
-            P_0: p.preferred_perimeter,
-            A_0: p.preferred_area,
-            alpha: p.chirality,
-        }
-    }
 }
 
 /// One frame's fields.
@@ -199,7 +183,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             counted: fields.iter().map(|f| f.counted.iter().filter(|counted| **counted).count()).collect(),
             frames,
         },
-        parameters: (&parameters).into(),
+        parameters: named(&parameters),
         cell_parameters: own.of_data(&data, first),
         effects,
         stress: fields.iter().map(|f| f.stress).collect(),

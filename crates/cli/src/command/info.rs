@@ -5,6 +5,7 @@ use crate::failure::Failure;
 use crate::program::Answer;
 use crate::terminal::{self, legible};
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::fmt::Write as _;
 use std::path::PathBuf;
@@ -25,24 +26,40 @@ pub(crate) struct Arguments {
 }
 
 /// What `--json` prints.
-#[derive(Serialize)]
-struct Record {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Record {
+    /// Path as given.
     path: String,
+    /// What it is, in words.
     kind: String,
+    /// Shape of an array or of an image.
     shape: Option<Vec<usize>>,
+    /// Number of frames.
     frames: Option<usize>,
+    /// Number of cells, or of tracks.
     cells: Option<usize>,
+    /// Cells that are present in each frame.
     present: Vec<usize>,
+    /// Least x and y and greatest x and y, in units of the data.
     extent: Option<[f64; 4]>,
+    /// Length of a pixel.
     pixel_size: Option<f64>,
+    /// Unit of length.
     length_unit: Option<String>,
+    /// Time between frames.
     frame_interval: Option<f64>,
+    /// Unit of time.
     time_unit: Option<String>,
+    /// Which way y grows.
     y_axis: Option<String>,
+    /// Sides of the periodic box.
     #[serde(rename = "box")]
     cell_box: Option<[f64; 2]>,
+    /// The files that belong to it.
     files: Vec<String>,
+    /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,
+    /// The command that reads it.
     command: String,
     /// Words of the command before the path.
     arguments: Vec<&'static str>,

@@ -21,6 +21,7 @@ pub(crate) mod phase_diffusion;
 mod recorded;
 pub(crate) mod replicates;
 pub(crate) mod rheology;
+pub(crate) mod schema;
 pub(crate) mod simulate;
 pub(crate) mod spectrum;
 pub(crate) mod waves;

@@ -1,23 +1,11 @@
 //! `channel` and `estimate-chirality`: files, schemas, the chirality put in, and what is refused.
 
-use crate::program::{succeed, voronudge};
+use crate::program::{assert_described, succeed, voronudge};
 use crate::refusal::{assert_arguments_refused, assert_refused};
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array1, Array2, Array3, Axis};
-use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs;
-use std::path::Path;
-
-/// Asserts that a report is as the schema says.
-fn assert_described(report: &Value, name: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("../report/schema/{name}.schema.json"));
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
-}
 
 const SHORT: &str = "channel --preset ht1080 --width 200 --length 150 --relaxation 2 --time 20 --dt 0.02 --samples 16 --seed 1 --quiet";
 
@@ -55,7 +43,7 @@ fn a_channel_is_a_data_set_with_profiles_and_lives() {
     ];
     assert_eq!(out.names(), names);
     let report = report(out.path());
-    assert_described(&report, "channel");
+    assert_described(&report);
     for count in ["first", "last", "fewest", "most"] {
         assert_eq!(number(&report, &format!("/cells/{count}")), 48.0);
     }
@@ -95,7 +83,7 @@ fn a_channel_is_a_data_set_with_profiles_and_lives() {
     let estimate = Folder::new();
     succeed("estimate-chirality --quiet", &[("", out.path()), ("--out", estimate.path())]);
     let found = crate::scratch::report(estimate.path());
-    assert_described(&found, "estimate-chirality");
+    assert_described(&found);
     let [a, b] = [number(&found, "/slope"), number(&report, "/chirality_from_flow/slope")];
     assert!((a - b).abs() < 1e-9, "{a} {b}");
 }
@@ -108,7 +96,7 @@ fn a_channel_between_walls_says_so() {
     succeed(SHORT, &[("--out", periodic.path())]);
     let (walled, periodic) = (report(out.path()), report(periodic.path()));
     for report in [&walled, &periodic] {
-        assert_described(report, "channel");
+        assert_described(report);
     }
     assert!(walled["walls"] == "x" && periodic["walls"].is_null());
     for count in ["first", "last", "fewest", "most"] {
@@ -144,7 +132,7 @@ fn a_channel_whose_cells_grow_and_divide_says_so() {
     let out = Folder::new();
     succeed(&format!("{SHORT} --injection cycle --frames 3"), &[("--out", out.path())]);
     let report = report(out.path());
-    assert_described(&report, "channel");
+    assert_described(&report);
     assert!(report["turnover"]["injection"] == "cycle" && report["turnover"]["cycle"]["axis"] == "long");
     assert_eq!(number(&report, "/cells/births"), number(&report, "/cells/extrusions"));
     assert_eq!((number(&report, "/cells/fewest"), number(&report, "/cells/most")), (48.0, 48.0));
@@ -197,7 +185,7 @@ fn a_population_that_explodes_keeps_what_there_was_and_answers_no() {
     let outcome = voronudge(words);
     assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
     let report = report(out.path());
-    assert_described(&report, "channel");
+    assert_described(&report);
     assert!(report["ended"].as_str().unwrap().contains("limit 60"));
     assert!(number(&report, "/samples") < 64.0 && number(&report, "/cells/most") <= 60.0);
     assert!(out.names().contains(&"positions.npy".to_owned()));
@@ -217,7 +205,7 @@ fn a_table_gives_a_chirality() {
     assert!((number(&without, "/alpha_range/1") / number(&without, "/slope") - 1.0 / 0.456).abs() < 0.01);
     succeed("estimate-chirality --shape-index 4 --intercept free --to 35 --quiet", &arguments);
     let with = report(out.path());
-    assert_described(&with, "estimate-chirality");
+    assert_described(&with);
     assert_eq!(number(&with, "/points"), 3.0);
     // 3 − 4/(2√(2√3)) = 1.925.
     assert!((number(&with, "/alpha") / number(&with, "/slope") - 1.9254).abs() < 1e-3);

@@ -1,6 +1,6 @@
 //! `discover`: what it adds to tissues whose missing effect is known, and the files it leaves.
 
-use crate::program::{fixture, succeed};
+use crate::program::{assert_described, fixture, succeed};
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array2, Array3};
 use serde_json::Value;
@@ -26,16 +26,6 @@ fn discover(data: &Path, flags: &str) -> Folder {
     out
 }
 
-#[track_caller]
-pub fn assert_valid(report: &Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/discover.schema.json");
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
 /// Sum of the squares of an array, without what is absent.
 fn squares(folder: &Folder, name: &str) -> f64 {
     let array: Array2<f64> = read(&folder.file(name));
@@ -53,7 +43,7 @@ fn what_is_found_is_put_to_the_test_on_other_data() {
     let line = format!("discover {} {same} --predict {other}", options.join(" "));
     succeed(&line, &[("", &data), ("--out", out.path())]);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     assert_eq!(report["predictions"].as_array().unwrap().len(), 2);
     let error = |at: &str| number(&report, &format!("/predictions/{at}/value"));
     assert!((error("0/after") - number(&report, "/after/nmse/un_nudged")).abs() < 1e-9);
@@ -67,7 +57,7 @@ fn a_drift_is_found_and_taken_out() {
     let out = discover(&data, "");
     assert_eq!(out.names(), FILES);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     assert_eq!(report["verdict"], "attributed");
     let selected: Vec<&Value> = report["selected"].as_array().unwrap().iter().collect();
     assert_eq!(selected.len(), 1, "{selected:?}");
@@ -123,7 +113,7 @@ fn nothing_is_added_where_nothing_is_missing() {
     let out = discover(&fixture("undeclared/set-48"), "");
     assert_eq!(out.names(), FILES);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     assert_eq!(report["verdict"], "nothing_missing");
     assert_eq!(report["selected"], serde_json::json!([]));
     assert_eq!(report["before"]["parameters"], report["after"]["parameters"]);
@@ -157,7 +147,7 @@ fn the_summary_tells_the_verdict_and_the_best_candidates() {
     let outcome =
         succeed("discover --null-sets 0 --format json --quiet", &[("", &data), ("--out", out.path())]);
     let printed: Value = serde_json::from_str(&outcome.stdout).unwrap();
-    assert_valid(&printed);
+    assert_described(&printed);
     assert_eq!(printed, report(out.path()));
 }
 
@@ -178,7 +168,7 @@ fn the_page_needs_nothing_from_elsewhere() {
 fn tracks_that_lack_nothing_lead_to_nothing() {
     let out = discover(&fixture("open-field"), "");
     let told = report(out.path());
-    assert_valid(&told);
+    assert_described(&told);
     assert_eq!(told["verdict"], "nothing_missing");
     assert!(told["measurement"]["tracks"]["tracks"].as_u64() > Some(100));
     let reason = |id: &str| {
@@ -203,7 +193,7 @@ fn earlier_velocities_never_share_time_with_those_explained() {
     warned("forward differences");
     warned("spurious restoring force");
     let told = report(out.path());
-    assert_valid(&told);
+    assert_described(&told);
     assert_eq!(told["cells"]["frames"], serde_json::json!([1, 2, 3]));
     let interval = told["predictors"]["interval"].as_str().unwrap();
     assert!(interval.contains("from frame t − 1 to frame t"), "{interval}");

@@ -1,9 +1,8 @@
 //! `equation-of-state`, and what `channel` predicts from it.
 
-use crate::program::succeed;
+use crate::program::{assert_described, succeed};
 use crate::refusal::assert_arguments_refused;
 use crate::scratch::{Folder, number, read, report};
-use crate::shape_imports::assert_described;
 use ndarray::{Array1, Array2};
 use std::fs;
 
@@ -28,7 +27,7 @@ fn it_is_written_as_arrays_and_as_a_report() {
     ];
     assert_eq!(out.names(), names);
     let report = report(out.path());
-    assert_described(&report, "equation-of-state.schema.json");
+    assert_described(&report);
     let density: Array1<f64> = read(&out.file("density.npy"));
     assert_eq!(density.to_vec(), [0.6, 1.0, 1.4, 1.8, 2.2]);
     let [pressure, bulk, torque]: [Array2<f64>; 3] =
@@ -60,7 +59,7 @@ fn a_channel_is_predicted_from_it() {
     succeed(SHORT, &[("--out", equation.path())]);
     succeed(CHANNEL, &[("--equation-of-state", equation.path()), ("--out", out.path())]);
     let report = report(out.path());
-    assert_described(&report, "channel.schema.json");
+    assert_described(&report);
     assert!((number(&report, "/liquid/density_range/0") - 0.6 / 625.0).abs() < 1e-12);
     // Conservation alone fixes v_x, so that both theories agree with it alike.
     let [liquid, honeycomb] =

@@ -1,7 +1,7 @@
 //! Where every cell would have been seen: as declared, as given, and as what cannot be.
 
-use crate::inferences::{assert_valid, infer};
-use crate::program::{fixture, succeed};
+use crate::inferences::infer;
+use crate::program::{assert_described, fixture, succeed};
 use crate::refusal::{assert_refused, assert_unreadable};
 use crate::scratch::{Folder, number, report};
 use serde_json::json;
@@ -51,13 +51,13 @@ fn impossible_fields_of_view_are_refused() {
 fn a_declared_field_of_view_keeps_more_cells_than_the_hull() {
     let out = infer(&fixture("open-field"), FRAME);
     let hull = report(out.path());
-    assert_valid(&hull);
+    assert_described(&hull);
     assert_eq!(hull["measurement"]["field_of_view"]["source"], "hull");
     assert_eq!(hull["measurement"]["field_of_view"]["corners"], json!(null));
     let folder = declared(RECTANGLE);
     let out = infer(folder.path(), FRAME);
     let stated = report(out.path());
-    assert_valid(&stated);
+    assert_described(&stated);
     let view = &stated["measurement"]["field_of_view"];
     assert_eq!(view["source"], "data_set");
     assert_eq!(view["corners"], json!([[40.0, 44.0], [360.0, 44.0], [360.0, 360.0], [40.0, 360.0]]));

@@ -1,7 +1,7 @@
 //! `infer` from velocities on a grid.
 
-use crate::inferences::{assert_valid, infer};
-use crate::program::fixture;
+use crate::inferences::infer;
+use crate::program::{assert_described, fixture};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array1, Array2, Array3};
@@ -83,7 +83,7 @@ fn the_chirality_is_found_from_a_flow_field() {
             ]
         );
         let report = report(out.path());
-        assert_valid(&report);
+        assert_described(&report);
         let found = number(&report, "/parameters/K_P_alpha/value");
         assert!((found - truth).abs() < 0.05 * 3.4, "{y_axis}: {found}");
         assert_eq!(report["flow"]["grid_points"], serde_json::json!([POINTS, POINTS]));
@@ -117,7 +117,7 @@ fn a_gaussian_window_and_velocities_of_cells_can_be_chosen() {
     let data = flow_data();
     // These are averages over squares, which a Gaussian only comes near to.
     let gaussian = report(infer(data.path(), "--window gaussian --max-steps 20").path());
-    assert_valid(&gaussian);
+    assert_described(&gaussian);
     assert_eq!(gaussian["flow"]["window"], "gaussian");
     assert!((0.25..0.6).contains(&(number(&gaussian, "/flow/width") / spacing())));
     let wide = "--window gaussian --window-width 0.5 --max-steps 20";

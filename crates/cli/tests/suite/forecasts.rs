@@ -1,7 +1,6 @@
 //! `discover --forecast` and `--check`: what the models make of cells.
 
-use crate::discoveries::assert_valid;
-use crate::program::succeed;
+use crate::program::{assert_described, succeed};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, report};
 use serde_json::{Value, json};
@@ -31,7 +30,7 @@ fn cells_that_crawl_are_forecast() {
     let line = "discover --frames 2..7 --fix K_A=0 --effects polarity,drift --forecast 3 --check 39 --seed 4";
     succeed(line, &[("", data.path()), ("--out", out.path())]);
     let told = report(out.path());
-    assert_valid(&told);
+    assert_described(&told);
     assert_eq!(told["selected"][0]["effect"], "polarity");
     let forecast = &told["forecast"];
     assert_eq!(forecast["starts"], json!([7, 8, 9, 10]));
@@ -69,7 +68,7 @@ fn a_tissue_without_noise_goes_on_as_the_model_says() {
         &[("", data.path()), ("--out", out.path())],
     );
     let told = report(out.path());
-    assert_valid(&told);
+    assert_described(&told);
     assert_eq!(told["cells"]["frames"], json!([0, 1, 2, 3]));
     let forecast = &told["forecast"];
     assert_eq!((&forecast["starts"], &forecast["skill"]["extended"]), (&json!([4, 5, 6]), &Value::Null));

@@ -1,9 +1,8 @@
 //! `infer`: what it finds in tissues with a known truth, and the files it leaves.
 
-use crate::program::{fixture, succeed, voronudge};
+use crate::program::{assert_described, fixture, succeed, voronudge};
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array2, Array3};
-use serde_json::Value;
 use std::ffi::OsStr;
 use std::fs;
 use std::path::Path;
@@ -27,26 +26,12 @@ pub fn infer(data: &Path, flags: &str) -> Folder {
     out
 }
 
-fn schema() -> jsonschema::Validator {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/infer.schema.json");
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    jsonschema::validator_for(&schema).unwrap()
-}
-
-/// Asserts that a report is as the schema says.
-#[track_caller]
-pub fn assert_valid(report: &Value) {
-    let faults: Vec<String> =
-        schema().iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
 #[test]
 fn the_chirality_of_a_noisy_liquid_is_found() {
     let out = infer(&fixture("chiral-liquid"), "--fix K_A=0.1");
     assert_eq!(out.names(), FILES);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     let nudged = number(&report, "/parameters/K_P_alpha/value");
     let naive = number(&report, "/naive/K_P_alpha");
     assert!((nudged - TRUTH).abs() < 0.05 * TRUTH, "{nudged}");
@@ -61,7 +46,7 @@ fn the_chirality_of_a_noisy_liquid_is_found() {
 fn a_liquid_without_noise_is_found_exactly() {
     let flags = "--position-noise 0.1% --velocity-noise 0.1%";
     let report = report(infer(&fixture("chiral-liquid-clean"), flags).path());
-    assert_valid(&report);
+    assert_described(&report);
     for (name, truth) in [("K_A", 0.1), ("K_P", 1.0), ("P_0", 4.0), ("alpha", 3.4), ("K_P_alpha", 3.4)] {
         let found = number(&report, &format!("/parameters/{name}/value"));
         assert!((found - truth).abs() < 0.02 * truth, "{name} is {found}");
@@ -86,7 +71,7 @@ fn arrays_belong_to_the_cells_of_the_data_set() {
         assert!(if place.0 == 5 { sum.is_nan() } else { (sum - velocity).abs() < 1e-12 }, "{place:?}");
     }
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     assert_eq!((number(&report, "/cells/used"), number(&report, "/cells/left_out/no_velocity")), (99.0, 1.0));
 }
 
@@ -101,7 +86,7 @@ fn a_fit_that_contradicts_its_noise_is_written_and_ends_with_1() {
     assert_eq!(outcome.code, Some(1), "{}", outcome.stderr);
     assert_eq!(out.names(), FILES);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     let warning = report["warnings"][0].as_str().unwrap();
     assert!(warning.contains("expected value") && outcome.stderr.contains(warning), "{}", outcome.stderr);
 }
@@ -144,7 +129,7 @@ fn tracks_are_fitted_themselves() {
     files.push("trajectories.npy");
     assert_eq!(out.names(), files);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     assert_eq!(report["cells"]["frames"], serde_json::json!([0, 1, 2, 3, 4]));
     let tracks = &report["measurement"]["tracks"];
     assert!(tracks["substeps"].as_u64() >= Some(1) && tracks["drifts"].as_array().unwrap().len() == 4);
@@ -205,7 +190,7 @@ fn of_cells_that_do_not_crawl_no_polarity_is_found() {
     let out = infer(&fixture("open-field"), "--align --fix K_A=0");
     assert!(out.names().contains(&"polarities.npy".into()));
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     let v_0 = &report["activity"]["v_0"];
     assert!(number(v_0, "/ci95/0") == 0.0 && number(v_0, "/ci95/1") < 0.01, "{v_0}");
     assert!(report["activity"]["D_r"]["ci95"].is_null() && report["activity"]["J"]["ci95"].is_null());
@@ -225,7 +210,7 @@ fn positions_alone_tell_the_sense_of_chirality() {
     let out = infer(&fixture("open-field"), "--difference central");
     assert_eq!(out.names(), FILES);
     let report = report(out.path());
-    assert_valid(&report);
+    assert_described(&report);
     // Central differences exist for all frames but the first and the last.
     assert_eq!(report["cells"]["frames"], serde_json::json!([1, 2, 3]));
     assert_eq!(report["nmse"]["mean_removed"], "per_frame");
@@ -269,7 +254,7 @@ fn cells_may_differ() {
     let data = fixture("chiral-liquid");
     let out = infer(&data, "--fix K_A=0.1 --vary alpha");
     let told = report(out.path());
-    assert_valid(&told);
+    assert_described(&told);
     let spreads = told["spreads"].as_array().unwrap();
     assert_eq!((spreads.len(), &spreads[0]["parameter"]), (1, &serde_json::json!("alpha")));
     let [low, value] = ["ci95/0", "relative"].map(|name| number(&told, &format!("/spreads/0/{name}")));

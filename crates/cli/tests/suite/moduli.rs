@@ -1,20 +1,9 @@
 //! `moduli`: the honeycomb against the theory, its files, and what is refused.
 
-use crate::program::{succeed, voronudge};
+use crate::program::{assert_described, succeed, voronudge};
 use crate::refusal::assert_arguments_refused;
 use crate::scratch::{Folder, number, report};
-use serde_json::Value;
 use std::fs;
-use std::path::Path;
-
-fn assert_described(report: &Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/moduli.schema.json");
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
-}
 
 #[test]
 fn a_honeycomb_is_as_the_theory_says() {

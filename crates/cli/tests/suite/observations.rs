@@ -1,9 +1,8 @@
 //! `observe`: the same measurements on simulated and on measured cells.
 
-use crate::program::{fixture, succeed};
+use crate::program::{assert_described, fixture, succeed};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
-use crate::shape_imports::assert_described;
 use ndarray::{Array2, Array3, Array4, Axis, Slice};
 
 /// A run is measured while it goes, by `simulate`, and afterwards from its files: displacements and ⟨v²⟩ are the same to rounding, T1 transitions but for those that
@@ -15,7 +14,7 @@ fn what_is_measured_on_a_run_is_measured_on_its_files() {
     succeed(line, &[("--out", run.path())]);
     succeed("observe", &[("", run.path()), ("--out", out.path())]);
     let (during, after) = (report(run.path()), report(out.path()));
-    assert_described(&after, "observe.schema.json");
+    assert_described(&after);
     let told: Array2<f64> = read(&run.file("mean_square_displacement.npy"));
     let found: Array2<f64> = read(&out.file("mean_square_displacement.npy"));
     let mut compared = 0;
@@ -67,7 +66,7 @@ fn a_field_of_view_shows_what_the_whole_is_like() {
     part.write("dataset.toml", "boundary = \"open\"\nframe_interval = 0.5\nunwrapped = true\n");
     succeed("observe", &[("", part.path()), ("--out", seen.path())]);
     let (all, some) = (report(whole.path()), report(seen.path()));
-    assert_described(&some, "observe.schema.json");
+    assert_described(&some);
     assert!(number(&some, "/counted/0") < 0.8 * number(&some, "/seen/0"));
     for name in ["mean_square_velocity", "mean_shape_index", "hexatic_mean_modulus"] {
         let [truth, found, error] = [
@@ -100,8 +99,8 @@ fn avalanches_of_transitions_are_told() {
     succeed("observe --stress", &[("", run.path()), stress, ("--out", out.path())]);
     succeed("observe --burst-time 0.5", &[("", run.path()), ("--out", longer.path())]);
     let (found, later) = (report(out.path()), report(longer.path()));
-    assert_described(&found, "observe.schema.json");
-    assert_described(&later, "observe.schema.json");
+    assert_described(&found);
+    assert_described(&later);
     let transitions: Array2<f64> = read(&out.file("t1.npy"));
     let counts = |folder: &Folder| {
         let all: Array2<f64> = read(&folder.file("avalanches.npy"));
@@ -135,7 +134,7 @@ fn one_frame_without_velocities_has_no_motion_and_says_so() {
     let outcome = succeed("observe", &[("", cells.path()), ("--out", out.path())]);
     assert!(outcome.stderr.contains("nothing is said of motion"), "{}", outcome.stderr);
     let found = report(out.path());
-    assert_described(&found, "observe.schema.json");
+    assert_described(&found);
     assert_eq!(found["velocities"], "none");
     assert!(found["numbers"].get("mean_square_velocity").is_none());
     assert!(found["curves"].get("mean_square_displacement").is_none());
@@ -153,7 +152,7 @@ fn defects_are_told_with_what_cells_do_around_them() {
         &[("", run.path()), ("--parameters", &parameters), ("--out", out.path())],
     );
     let found = report(out.path());
-    assert_described(&found, "observe.schema.json");
+    assert_described(&found);
     let [plus, minus] = ["plus", "minus"].map(|sign| found["nematic"][sign].as_u64().unwrap());
     assert!(plus == minus && plus > 20, "{plus} and {minus}");
     assert!((number(&found, "/nematic/stress_of/alpha") - 1.0).abs() < 1e-12);

@@ -1,13 +1,12 @@
 //! `phase-diagram` and `merge`: physics over the grid, parts put together, and what is refused.
 
-use crate::program::{succeed, voronudge};
+use crate::program::{assert_described, succeed, voronudge};
 use crate::refusal::{assert_arguments_refused, assert_told};
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array1, Array2};
 use serde_json::Value;
 use std::ffi::OsString;
 use std::fs;
-use std::path::Path;
 
 const SMALL: &str =
     "phase-diagram --P_0 3.5 4 3 --alpha 0.1 0.3 2 --replicas 2 --cells 36 --time 2 --seed 5 --quiet";
@@ -16,16 +15,6 @@ fn diagram(line: &str) -> Folder {
     let out = Folder::new();
     succeed(line, &[("--out", out.path())]);
     out
-}
-
-/// Asserts that a report is as the schema says.
-fn assert_described(report: &Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/phase-diagram.schema.json");
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
 }
 
 /// Asserts that two diagrams have the same files with the same bytes, but for the reports, whose record of the run differs.

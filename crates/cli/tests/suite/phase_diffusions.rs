@@ -1,9 +1,8 @@
 //! `import field` and `phase-diffusion`: a pattern of convection cells that relaxes, from images to diffusivities.
 
-use crate::program::{succeed, voronudge};
+use crate::program::{assert_described, succeed, voronudge};
 use crate::refusal::assert_arguments_refused;
 use crate::scratch::{Folder, npy, number, read, report};
-use crate::shape_imports::assert_described;
 use ndarray::{Array2, Array3};
 use std::f64::consts::TAU;
 use std::ffi::OsStr;
@@ -99,13 +98,13 @@ fn from_images_of_convection_cells_to_cross_diffusivities() {
     source.write_array("stream.npy", &stream);
     succeed("import field --periodic", &[("", &source.file("stream.npy")), ("--out", data.path())]);
     let found = report(data.path());
-    assert_described(&found, "field.schema.json");
+    assert_described(&found);
     let positions: Array3<f64> = read(&data.file("positions.npy"));
     assert_eq!(number(&found, "/tracks") as usize, positions.dim().1);
     assert_eq!(number(&found, "/linked") as usize, (frames - 1) * positions.dim().1);
     let outcome = succeed("phase-diffusion --wave-vectors 8", &[("", data.path()), ("--out", out.path())]);
     let found = report(out.path());
-    assert_described(&found, "phase-diffusion.schema.json");
+    assert_described(&found);
     assert_eq!(out.names(), ["report.html", "report.json"]);
     let names = ["D_parallel", "D_perp", "D_parallel_cross", "D_perp_cross"];
     for (name, truth) in names.into_iter().zip(TRUE) {
@@ -163,7 +162,7 @@ fn inferred_parameters_imply_the_diffusivities_of_the_pattern() {
     ]);
     assert!(matches!(outcome.code, Some(0 | 1)), "{}", outcome.stderr);
     let found = report(out.path());
-    assert_described(&found, "infer.schema.json");
+    assert_described(&found);
     for (name, truth) in [("B", bulk), ("mu", shear), ("K_o", odd), ("D_perp_cross", odd)] {
         let value = number(&found, &format!("/implied_moduli/{name}/value"));
         // The model's rates have terms of fourth order in q, which the equation lacks: (q ℓ₀)² is 0.06 and 0.12 here.

@@ -1,5 +1,6 @@
 //! Running the program as a user does.
 
+use serde_json::Value;
 use std::ffi::OsStr;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -34,6 +35,19 @@ pub fn succeed(line: &str, paths: &[(&str, &Path)]) -> Outcome {
     let outcome = voronudge(words.chain(paths.filter(|argument| !argument.is_empty())));
     assert_eq!(outcome.code, Some(0), "{line}: {}", outcome.stderr);
     outcome
+}
+
+/// Asserts that a report is as `voronudge schema` says of its command.
+#[track_caller]
+pub fn assert_described(report: &Value) {
+    let [command, line] = ["command", "command_line"].map(|name| report[name].as_str().unwrap());
+    let words = line.split_whitespace().skip_while(|word| *word != command);
+    let words: Vec<&str> = words.take(if command == "import" { 2 } else { 1 }).collect();
+    let schema = succeed(&format!("schema {}", words.join(" ")), &[]).stdout;
+    let schema = jsonschema::validator_for(&serde_json::from_str(&schema).unwrap()).unwrap();
+    let faults: Vec<String> =
+        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
+    assert!(faults.is_empty(), "{faults:#?}");
 }
 
 pub fn fixture(name: &str) -> PathBuf {

@@ -1,20 +1,10 @@
 //! `rheology`: moduli of fitted tissues, with the errors of the fit.
 
-use crate::program::{succeed, voronudge};
+use crate::program::{assert_described, succeed, voronudge};
 use crate::refusal::assert_arguments_refused;
 use crate::scratch::{Folder, number, report};
 use serde_json::{Value, json};
 use std::fs;
-use std::path::Path;
-
-fn assert_described(report: &Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/rheology.schema.json");
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
-}
 
 /// What of a report of `infer` is read: cells of 20 µm, K_P = 0.02 per minute, and two axes.
 pub fn fit(shape_index: f64, chirality: f64, frame: usize) -> Value {

@@ -1,10 +1,9 @@
 //! `import labels` and `import outlines`: true shapes beside Voronoi polygons.
 
-use crate::program::succeed;
+use crate::program::{assert_described, succeed};
 use crate::refusal::{assert_arguments_refused, assert_told};
 use crate::scratch::{Folder, npy, number, read, report};
 use ndarray::{Array2, Array3, Axis};
-use serde_json::Value;
 use std::ffi::OsStr;
 use std::fmt::Write as _;
 use std::fs;
@@ -14,16 +13,6 @@ use tiff::encoder::{TiffEncoder, colortype};
 
 const COLUMNS: usize = 130;
 const ROWS: usize = 112;
-
-/// Asserts that a report is as a schema of the crate `report` says.
-pub fn assert_described(report: &Value, schema: &str) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema").join(schema);
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
-}
 
 /// Centres of a shaken honeycomb of spacing 14, moved along x.
 fn centres(shift: f64) -> Vec<[f64; 2]> {
@@ -74,7 +63,7 @@ fn a_voronoi_diagram_agrees_with_itself() {
         &[("", &source.file("labels.npy")), ("--out", data.path())],
     );
     let found = report(data.path());
-    assert_described(&found, "shapes.schema.json");
+    assert_described(&found);
     assert_eq!(
         data.names().join(" "),
         "cell_numbers.npy dataset.toml position_errors.npy positions.npy report.html report.json true_areas.npy true_perimeters.npy"
@@ -116,7 +105,7 @@ fn a_voronoi_diagram_agrees_with_itself() {
         &[("", &source.file("labels.npy")), ("--out", centroids.path())],
     );
     let other = report(centroids.path());
-    assert_described(&other, "shapes.schema.json");
+    assert_described(&other);
     for part in ["sites", "all", "of_centroids"] {
         assert_eq!(other[part], found[part]);
     }
@@ -147,7 +136,7 @@ fn cells_are_followed_over_the_pages_of_a_tiff() {
         (positions, report(data.path()))
     };
     let (followed, found) = imported("--link overlap");
-    assert_described(&found, "shapes.schema.json");
+    assert_described(&found);
     let cells = number(&found, "/frames/0/present") as usize;
     assert!(followed.dim().1 < cells + 8, "{:?}", followed.dim());
     let mut errors = Vec::new();
@@ -193,7 +182,7 @@ fn outlines_of_hexagons_are_measured() {
     let file = source.write("outlines.csv", &table);
     succeed("import outlines --y-axis up", &[("", &file), ("--out", data.path())]);
     let found = report(data.path());
-    assert_described(&found, "shapes.schema.json");
+    assert_described(&found);
     assert_eq!((number(&found, "/all/precision"), number(&found, "/all/recall")), (1.0, 1.0));
     assert!((number(&found, "/all/area_ratio") - 1.0).abs() < 1e-5);
     assert!((number(&found, "/all/perimeter_ratio") - 1.0).abs() < 1e-5);

@@ -1,10 +1,9 @@
 //! `simulate`: its output is a data set, and a seed is a run.
 
-use crate::program::{fixture, succeed};
+use crate::program::{assert_described, fixture, succeed};
 use crate::scratch::{Folder, number, read, report};
 use ndarray::{Array1, Array2, Array3};
 use std::fs;
-use std::path::Path;
 
 const LINE: &str = "simulate --cells 60 --box 10 6 --dt 0.01 --P_0 4 --quiet";
 
@@ -89,16 +88,6 @@ fn a_time_step_too_large_is_told() {
         "simulate --cells 20 --time 100 --dt 10 --K_P 50 --quiet".split_whitespace(),
         &["at time", "time step"],
     );
-}
-
-/// Asserts that a report is as the schema says.
-fn assert_described(report: &serde_json::Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/simulate.schema.json");
-    let schema: serde_json::Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
 }
 
 #[test]

@@ -1,22 +1,10 @@
 //! `spectrum`: eigenvalues against recorded answers, files, and what is refused.
 
-use crate::program::{fixture, succeed, voronudge};
+use crate::program::{assert_described, fixture, succeed, voronudge};
 use crate::refusal::{assert_arguments_refused, assert_refused};
 use crate::scratch::{Folder, read, report};
 use ndarray::{Array1, Array2, Array4, Axis};
-use serde_json::Value;
 use std::fs;
-use std::path::Path;
-
-/// Asserts that a report is as the schema says.
-fn assert_described(report: &Value) {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../report/schema/spectrum.schema.json");
-    let schema: Value = serde_json::from_str(&fs::read_to_string(path).unwrap()).unwrap();
-    let schema = jsonschema::validator_for(&schema).unwrap();
-    let faults: Vec<String> =
-        schema.iter_errors(report).map(|fault| format!("{}: {fault}", fault.instance_path())).collect();
-    assert!(faults.is_empty(), "{faults:?}");
-}
 
 fn nearest(values: &Array2<f64>, [re, im]: [f64; 2]) -> f64 {
     values.rows().into_iter().map(|v| (v[0] - re).hypot(v[1] - im)).fold(f64::INFINITY, f64::min)

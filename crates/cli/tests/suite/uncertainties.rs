@@ -1,14 +1,14 @@
 //! `infer`: constraints, intervals, and what is asked beyond the fit.
 
-use crate::inferences::{assert_valid, infer};
-use crate::program::fixture;
+use crate::inferences::infer;
+use crate::program::{assert_described, fixture};
 use crate::scratch::{number, report};
 use serde_json::Value;
 
 /// A fit of the noisy chiral liquid.
 fn fitted(flags: &str) -> Value {
     let report = report(infer(&fixture("chiral-liquid"), flags).path());
-    assert_valid(&report);
+    assert_described(&report);
     report
 }
 
@@ -146,7 +146,7 @@ fn the_descent_of_the_paper_can_be_compared_with() {
         // It seldom reaches the minimum.
         assert!(matches!(outcome.code, Some(0 | 1)), "{outcome:?}");
         let report = report(out.path());
-        assert_valid(&report);
+        assert_described(&report);
         assert_eq!(report["fit"]["method"], "descent");
         let found = number(&report, "/parameters/K_P_alpha/value");
         let naive = number(&report, "/naive/K_P_alpha");
@@ -159,7 +159,7 @@ fn the_descent_of_the_paper_can_be_compared_with() {
 fn a_background_takes_up_a_drift() {
     let with = |flags: &str| {
         let report = report(infer(&fixture("drifting-liquid"), flags).path());
-        assert_valid(&report);
+        assert_described(&report);
         report
     };
     let removed = with("--fix K_A=0.1 --background 0");

@@ -1,9 +1,8 @@
 //! `waves`: D(q) of a recording beside that of the model that it was simulated with.
 
-use crate::program::succeed;
+use crate::program::{assert_described, succeed};
 use crate::refusal::assert_refused;
 use crate::scratch::{Folder, number, read, report};
-use crate::shape_imports::assert_described;
 use ndarray::{Array2, Array3, Axis};
 use serde_json::Value;
 
@@ -40,7 +39,7 @@ fn a_solid_shows_its_odd_waves() {
     let line = format!("waves --frames 100..800 --largest-wave-number 1.5 {MODEL}");
     succeed(&line, &[("", run.path()), ("--out", out.path())]);
     let found = report(out.path());
-    assert_described(&found, "waves.schema.json");
+    assert_described(&found);
     assert_eq!((&found["field"], &found["verdict"]), (&"displacements".into(), &"linear".into()));
     assert!(number(&found, "/achiral") < 1e-6);
     let shells = found["shells"].as_array().unwrap();
@@ -105,7 +104,7 @@ fn a_solid_shows_its_odd_waves() {
     mirrored.write_array("positions.npy", &positions);
     succeed(&format!("waves --frames 100..800 {MODEL}"), &[("", mirrored.path()), ("--out", out.path())]);
     let part = report(out.path());
-    assert_described(&part, "waves.schema.json");
+    assert_described(&part);
     assert!((number(&part, "/localisation/value") / 0.005 - 1.0).abs() < 0.3, "{}", part["localisation"]);
     assert!(number(&part, "/achiral") < 0.01);
 }

@@ -1,17 +1,22 @@
 //! The objective linearised about a point.
 
-use super::{Measurable, Objective};
+use super::{Measurable, Moving, Objective};
 use crate::Error;
 use crate::least_squares::{free_rows, residuals};
 use crate::linearisation::{Linearisation, Local};
 use crate::measurement::Unknown;
 use crate::normal_equations::NormalEquations;
+use crate::placing::Placing;
 use crate::position_rows::PositionRows;
 use crate::rows::Rows;
 use crate::stiffness::Stiffness;
+use nalgebra::DMatrix;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
+
+/// Datum, residual, and its derivative by the free coefficients (2, p).
+type Row = (usize, Vector<f64>, DMatrix<f64>);
 
 /// The cells of a frame that are not held, where most are.
 #[derive(Debug)]
@@ -73,37 +78,57 @@ impl<'a> Objective<'a> {
         coefficients: &[f64],
         nudges: &[f64],
     ) -> Result<Measurable<'a>, Error> {
-        let frame = &self.frames[index];
         let nudged = self.place_with_own(index, nudges, coefficients)?;
-        let mut evaluated = nudged.evaluate(coefficients);
-        if self.own.is_some() {
+        let evaluated = nudged.evaluate(coefficients);
+        let placed = (nudged, evaluated);
+        let (rows, jacobian) = self.derivatives(index, coefficients, nudges, &placed)?;
+        Ok(Measurable { nudged: placed.0, rows, jacobian })
+    }
+
+    /// The residuals of one frame with their derivatives by the free coefficients, and the derivative of what is measured by the positions.
+    fn derivatives(
+        &self,
+        index: usize,
+        coefficients: &[f64],
+        nudges: &[f64],
+        (nudged, evaluated): &Moving<'_>,
+    ) -> Result<(Vec<Row>, BlockMatrix), Error> {
+        let frame = &self.frames[index];
+        let of_free = match self.own {
             // What a cell has of its own does not change with the coefficients.
-            evaluated.by_coefficient = self.place(index, nudges)?.evaluate(coefficients).by_coefficient;
-        }
-        let rows = residuals(frame, &evaluated.predicted)
-            .into_iter()
-            .zip(free_rows(frame, &evaluated.by_coefficient, self.space))
-            .map(|((datum, rest), x)| (datum, rest, x))
-            .collect();
-        let mut jacobian = nudged.jacobian(coefficients, &evaluated);
+            Some(_) => {
+                let alike = self.place(index, nudges)?.evaluate(coefficients);
+                free_rows(frame, &alike.by_coefficient, self.space)
+            }
+            None => free_rows(frame, &evaluated.by_coefficient, self.space),
+        };
+        let rests = residuals(frame, &evaluated.predicted).into_iter();
+        let rows = rests.zip(of_free).map(|((datum, rest), x)| (datum, rest, x)).collect();
+        let mut jacobian = nudged.jacobian(coefficients, evaluated);
         if !frame.is_free() {
             jacobian = jacobian.only(|cell| !frame.is_held(cell));
         }
-        Ok(Measurable { nudged, evaluated, rows, jacobian })
+        Ok((rows, jacobian))
     }
 
     /// The same with unknowns of the measurement as further coefficients, after all others.
     pub fn linearise_with(&self, parameters: &[f64], unknowns: &[Unknown]) -> Result<NormalEquations, Error> {
-        self.linearise_among(parameters, unknowns, None)
+        self.linearise_among(&self.placed_at(parameters)?, parameters, unknowns, None)
     }
 
     /// The same for the nudges of those cells alone that are not held, where there is one frame.
-    pub fn linearise_free(&self, parameters: &[f64], free: &Free) -> Result<NormalEquations, Error> {
-        self.linearise_among(parameters, &[], Some(free))
+    pub fn linearise_free(
+        &self,
+        placed: &[Moving<'_>],
+        parameters: &[f64],
+        free: &Free,
+    ) -> Result<NormalEquations, Error> {
+        self.linearise_among(placed, parameters, &[], Some(free))
     }
 
-    fn linearise_among(
+    pub(super) fn linearise_among(
         &self,
+        placed: &[Moving<'_>],
         parameters: &[f64],
         unknowns: &[Unknown],
         among: Option<&Free>,
@@ -118,10 +143,12 @@ impl<'a> Objective<'a> {
             .frames
             .par_iter()
             .zip(&nudges)
+            .zip(placed)
             .enumerate()
-            .map(|(index, (frame, nudges))| {
-                let Measurable { nudged, evaluated, mut rows, mut jacobian } =
-                    self.measurable(index, coefficients.as_slice(), nudges)?;
+            .map(|(index, ((frame, nudges), placed))| {
+                let (mut rows, mut jacobian) =
+                    self.derivatives(index, coefficients.as_slice(), nudges, placed)?;
+                let (nudged, evaluated) = placed;
                 for (_, _, x) in &mut rows {
                     *x = std::mem::take(x).resize_horizontally(p, 0.0);
                 }

@@ -13,13 +13,12 @@ mod transitions;
 pub(crate) use continuation::follow;
 pub(crate) use descent::descend;
 
-use crate::levenberg_marquardt::{LevenbergMarquardt, Observer, Obstacles};
+use crate::levenberg_marquardt::{LevenbergMarquardt, Observer};
 use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
+use crate::placing::{Placing, Remembering};
 use crate::{Error, Progress, Status};
-use argmin::core::{
-    CostFunction, Executor, Jacobian, OptimizationResult, TerminationReason, TerminationStatus,
-};
+use argmin::core::{Executor, OptimizationResult, TerminationReason, TerminationStatus};
 use rayon::prelude::*;
 use std::ops::ControlFlow;
 
@@ -133,36 +132,26 @@ impl Found {
 }
 
 /// Levenberg–Marquardt from a point, until a step gains less than the tolerance, as a share of the objective.
-pub(crate) fn optimise<P>(
-    objective: P,
+pub(crate) fn optimise<P: Placing>(
+    objective: &P,
     start: Vec<f64>,
     max_steps: u64,
     tolerance: f64,
     observer: Observer<'_>,
-) -> Result<Optimum, Error>
-where
-    P: CostFunction<Param = Vec<f64>, Output = f64>
-        + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>
-        + Obstacles,
-{
+) -> Result<Optimum, Error> {
     optimise_knowing(objective, (start, None), max_steps, tolerance, observer)
 }
 
 /// As [`optimise`], from a point where the problem may be linearised already.
-pub(crate) fn optimise_knowing<P>(
-    objective: P,
+pub(crate) fn optimise_knowing<P: Placing>(
+    objective: &P,
     (start, linearised): (Vec<f64>, Option<NormalEquations>),
     max_steps: u64,
     tolerance: f64,
     observer: Observer<'_>,
-) -> Result<Optimum, Error>
-where
-    P: CostFunction<Param = Vec<f64>, Output = f64>
-        + Jacobian<Param = Vec<f64>, Jacobian = NormalEquations>
-        + Obstacles,
-{
+) -> Result<Optimum, Error> {
     let solver = LevenbergMarquardt::new(tolerance, observer).knowing(linearised);
-    let executor = Executor::new(objective, solver)
+    let executor = Executor::new(Remembering::new(objective), solver)
         .configure(|state| state.param(start).max_iters(max_steps))
         .ctrlc(false);
     let OptimizationResult { solver, mut state, .. } = executor.run().map_err(own_error)?;

@@ -1,10 +1,9 @@
 //! A part of a frame cut out, to try changes in without touching the rest.
 
-use crate::levenberg_marquardt::Obstacles;
 use crate::normal_equations::NormalEquations;
-use crate::objective::{Free, Nudged, Objective};
+use crate::objective::{Free, Moving, Nudged, Objective};
+use crate::placing::Placing;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Velocities};
-use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use std::collections::HashMap;
 use voronudge_geometry::Vector;
 use voronudge_model::Structure;
@@ -109,36 +108,35 @@ pub(super) struct OfFree<'a> {
 }
 
 impl OfFree<'_> {
+    /// The nudges of all cells.
+    fn all(&self, nudges: &[f64]) -> Vec<f64> {
+        self.patch.free.within(&self.patch.nudges, nudges)
+    }
+
     pub fn value(&self, nudges: &[f64]) -> f64 {
-        self.objective.value(&self.patch.free.within(&self.patch.nudges, nudges))
+        self.objective.value(&self.all(nudges))
     }
 
     pub fn linearise(&self, nudges: &[f64]) -> Result<NormalEquations, Error> {
-        let all = self.patch.free.within(&self.patch.nudges, nudges);
-        self.objective.linearise_free(&all, &self.patch.free)
+        self.linearise_of(&self.placed_at(nudges)?, nudges)
     }
 }
 
-// argmin takes its problem by value: it is given a reference.
-impl CostFunction for &OfFree<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
+impl<'a> Placing for OfFree<'a> {
+    type Placed = Vec<Moving<'a>>;
 
-    fn cost(&self, nudges: &Vec<f64>) -> Result<f64, ArgminError> {
-        Ok(self.value(nudges))
+    fn placed_at(&self, nudges: &[f64]) -> Result<Self::Placed, Error> {
+        self.objective.placed_at(&self.all(nudges))
+    }
+
+    fn value_of(&self, placed: &Self::Placed, nudges: &[f64]) -> f64 {
+        self.objective.value_of(placed, &self.all(nudges))
+    }
+
+    fn linearise_of(&self, placed: &Self::Placed, nudges: &[f64]) -> Result<NormalEquations, Error> {
+        self.objective.linearise_free(placed, &self.all(nudges), &self.patch.free)
     }
 }
-
-impl Jacobian for &OfFree<'_> {
-    type Param = Vec<f64>;
-    type Jacobian = NormalEquations;
-
-    fn jacobian(&self, nudges: &Vec<f64>) -> Result<NormalEquations, ArgminError> {
-        Ok(self.linearise(nudges)?)
-    }
-}
-
-impl Obstacles for &OfFree<'_> {}
 
 /// Cells by their distance in rings, with positions that do not jump across the box.
 struct Rings {

@@ -65,7 +65,7 @@ impl Followed {
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
         let reduced = equations.reduced()?;
         Ok(Beside {
-            value: objective.phi(&at),
+            value: objective.phi_of(&placed, &at),
             normal: equations.frames.iter().map(|part| part.free_normal().clone()).sum(),
             components: objective.explained_components(&placed, &at),
             information: reduced.information,

@@ -12,6 +12,7 @@ use crate::Error;
 use crate::least_squares::combined;
 use crate::linearisation::{Linearisation, Local};
 use crate::normal_equations::{NormalEquations, Reduced};
+use crate::placing::Placing;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
 use rayon::prelude::*;
@@ -54,7 +55,7 @@ struct Rests<'a> {
 impl MovieObjective<'_> {
     /// The problem linearised about a point, with what integrating over the unknowns adds.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
-        Ok(self.linearise_with(parameters, Share::Known)?.tilted(self.tilt(self.split(parameters).0)))
+        self.linearise_of(&self.place(parameters)?, parameters)
     }
 
     /// Φ by itself, perhaps with the share of the way to the centroids as a further coefficient, after all others.

@@ -9,6 +9,7 @@
 //! translation of the stage. What the model misses of a displacement is a random walk: its variance grows
 //! with the time, so that σ_v is the error of a mean velocity over T.
 
+use super::anchors::Share;
 use super::memory::Memory;
 use super::motions::Motion;
 use super::movie::Movie;
@@ -16,11 +17,11 @@ use super::passage::Passage;
 use super::rule::Rule;
 use super::states::States;
 use crate::normal_equations::NormalEquations;
-use crate::objective::{Evaluated, Nudged};
+use crate::objective::{Moving, Nudged};
+use crate::placing::Placing;
 use crate::position_rows::squares;
 use crate::robust::{loss, posterior_weight};
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
-use argmin::core::{CostFunction, Error as ArgminError, Jacobian};
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_model::Structure;
@@ -49,9 +50,6 @@ pub(crate) struct MovieObjective<'a> {
     /// How what the model leaves of the motion of a cell goes on from one interval to the next, if it does.
     pub memory: Option<Memory>,
 }
-
-/// Cells at some time, with the velocities that the model gives them.
-pub(crate) type Moving<'a> = (Nudged<'a>, Evaluated);
 
 /// All frames at some places, and how the cells get from one to the next.
 pub(crate) struct Placed<'a> {
@@ -266,18 +264,21 @@ impl<'a> MovieObjective<'a> {
 
     /// The parts of Φ.
     pub fn parts(&self, parameters: &[f64]) -> Result<MovieParts, Error> {
-        let placed = self.place(parameters)?;
+        Ok(self.parts_of(&self.place(parameters)?, parameters))
+    }
+
+    fn parts_of(&self, placed: &Placed<'_>, parameters: &[f64]) -> MovieParts {
         let (free, displacements) = self.split(parameters);
-        let rests = self.residuals(&placed, parameters);
+        let rests = self.residuals(placed, parameters);
         let residual = rests.iter().map(|rest| self.counted(rest)).sum();
-        let of_seen = self.of_seen(&placed, displacements, |_, cells, nudged, nudges| {
+        let of_seen = self.of_seen(placed, displacements, |_, cells, nudged, nudges| {
             squares(cells, &nudged.tessellation, &nudged.positions, nudges).sum::<f64>()
         });
         let nudges = of_seen.iter().sum();
-        let surprise = self.weight_of_outset() * self.surprise(&placed, displacements);
-        let floor = self.stiffness().of(displacements) + surprise + self.driven(&placed, parameters);
+        let surprise = self.weight_of_outset() * self.surprise(placed, displacements);
+        let floor = self.stiffness().of(displacements) + surprise + self.driven(placed, parameters);
         let priors = self.space.penalty(&self.space.coefficients(free), self.levels.velocity);
-        Ok(MovieParts { residual, nudges, floor, priors })
+        MovieParts { residual, nudges, floor, priors }
     }
 
     /// Φ with what integrating over the unknowns adds; infinite where there is no tessellation.
@@ -287,27 +288,39 @@ impl<'a> MovieObjective<'a> {
 
     /// Φ by itself; infinite where there is no tessellation.
     pub fn phi(&self, parameters: &[f64]) -> f64 {
-        let Ok(parts) = self.parts(parameters) else { return f64::INFINITY };
+        self.place(parameters).map_or(f64::INFINITY, |placed| self.phi_of(&placed, parameters))
+    }
+
+    /// The same where cells are placed already.
+    pub(super) fn phi_of(&self, placed: &Placed<'_>, parameters: &[f64]) -> f64 {
+        let parts = self.parts_of(placed, parameters);
         let value = parts.residual + self.levels.spring() * parts.nudges + parts.floor + parts.priors;
         if value.is_nan() { f64::INFINITY } else { value }
     }
 }
 
-// argmin takes its problem by value: it is given a reference.
-impl CostFunction for &MovieObjective<'_> {
-    type Param = Vec<f64>;
-    type Output = f64;
+impl<'a> Placing for MovieObjective<'a> {
+    type Placed = Placed<'a>;
 
-    fn cost(&self, parameters: &Vec<f64>) -> Result<f64, ArgminError> {
-        Ok(self.value(parameters))
+    fn placed_at(&self, parameters: &[f64]) -> Result<Placed<'a>, Error> {
+        self.place(parameters)
     }
-}
 
-impl Jacobian for &MovieObjective<'_> {
-    type Param = Vec<f64>;
-    type Jacobian = NormalEquations;
+    fn value_of(&self, placed: &Placed<'_>, parameters: &[f64]) -> f64 {
+        self.phi_of(placed, parameters) + self.integration(self.split(parameters).0)
+    }
 
-    fn jacobian(&self, parameters: &Vec<f64>) -> Result<NormalEquations, ArgminError> {
-        Ok(self.linearise(parameters)?)
+    fn linearise_of(&self, placed: &Placed<'_>, parameters: &[f64]) -> Result<NormalEquations, Error> {
+        let equations = self.linearise_at(placed, parameters, Share::Known)?;
+        Ok(equations.tilted(self.tilt(self.split(parameters).0)))
+    }
+
+    fn obstacles_between(
+        &self,
+        before: (&Placed<'_>, &[f64]),
+        after: (&Placed<'_>, &[f64]),
+        promised: f64,
+    ) -> Option<Vec<usize>> {
+        self.obstacles(before, after, promised)
     }
 }

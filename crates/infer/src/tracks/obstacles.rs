@@ -1,8 +1,7 @@
 //! Where a step fails: the cells at which the linearised problem does not hold, because contacts change there.
 
-use super::objective::MovieObjective;
+use super::objective::{MovieObjective, Placed};
 use super::states::Place;
-use crate::levenberg_marquardt::Obstacles;
 use crate::position_rows::squares;
 
 /// Share of the promised decrease that the rest of the tissue must keep.
@@ -25,14 +24,13 @@ enum Owner {
 
 impl MovieObjective<'_> {
     /// The terms of Φ that belong to cells.
-    fn terms(&self, parameters: &[f64]) -> Option<Vec<(Owner, f64)>> {
-        let placed = self.place(parameters).ok()?;
-        let residuals = self.residuals(&placed, parameters);
+    fn terms(&self, (placed, parameters): (&Placed<'_>, &[f64])) -> Option<Vec<(Owner, f64)>> {
+        let residuals = self.residuals(placed, parameters);
         let motions = residuals.iter().enumerate();
         let mut terms: Vec<(Owner, f64)> =
             motions.map(|(number, rest)| (Owner::Motion(number), self.counted(rest))).collect();
         let spring = self.levels.spring();
-        let of_frames = self.of_seen(&placed, self.split(parameters).1, |frame, cells, nudged, nudges| {
+        let of_frames = self.of_seen(placed, self.split(parameters).1, |frame, cells, nudged, nudges| {
             let all = squares(cells, &nudged.tessellation, &nudged.positions, nudges).enumerate();
             all.map(|(cell, square)| (Owner::Position(frame, cell), spring * square)).collect::<Vec<_>>()
         });
@@ -64,9 +62,15 @@ impl MovieObjective<'_> {
     }
 }
 
-impl Obstacles for &MovieObjective<'_> {
-    fn obstacles(&self, at: &[f64], trial: &[f64], promised: f64) -> Option<Vec<usize>> {
-        let (before, after) = (self.terms(at)?, self.terms(trial)?);
+impl MovieObjective<'_> {
+    /// The places at which a step from one point to another fails, if they are few.
+    pub(super) fn obstacles(
+        &self,
+        before: (&Placed<'_>, &[f64]),
+        after: (&Placed<'_>, &[f64]),
+        promised: f64,
+    ) -> Option<Vec<usize>> {
+        let (before, after) = (self.terms(before)?, self.terms(after)?);
         let mut changes: Vec<(Owner, f64)> = after
             .into_iter()
             .zip(before)
@@ -99,7 +103,9 @@ impl Obstacles for &MovieObjective<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::levenberg_marquardt::Obstacles;
     use crate::normal_equations::Step;
+    use crate::placing::Remembering;
     use crate::tracks::first::naive_coefficients;
     use crate::tracks::rule::Rule;
     use crate::tracks::sample::Filmed;
@@ -118,6 +124,7 @@ mod tests {
         let (movie, states, structure, space) = (&movie, &states, &structure, &space);
         let rule = Rule::RungeKutta(1);
         let objective = &MovieObjective { movie, states, rule, structure, space, levels, memory: None };
+        let problem = Remembering::new(objective);
         let onwards = |at: &[f64]| {
             let Step { step, promised } = objective.linearise(at).unwrap().step(1e-3, &[]).unwrap();
             (at.iter().zip(&step).map(|(x, s)| x + s).collect::<Vec<f64>>(), promised)
@@ -136,7 +143,7 @@ mod tests {
         let trial = astray(&mut [one, other].into_iter());
         let lost = objective.value(&trial) - objective.value(&at);
         assert!(lost > 0.0, "{lost} {gained} {promised}");
-        let places = objective.obstacles(&at, &trial, promised).unwrap();
+        let places = problem.obstacles(&at, &trial, promised).unwrap();
         assert!(places.contains(&one) && places.contains(&other) && places.len() < 150, "{places:?}");
         let mut without = trial.clone();
         for place in places {
@@ -146,6 +153,6 @@ mod tests {
         let kept = objective.value(&at) - objective.value(&without);
         assert!(kept > 0.3 * promised, "{kept} {promised}");
         let everywhere = astray(&mut (0..states.anchors.len()).step_by(3));
-        assert!(objective.obstacles(&at, &everywhere, promised).is_none());
+        assert!(problem.obstacles(&at, &everywhere, promised).is_none());
     }
 }

@@ -8,10 +8,10 @@
 //! Cells whose motion is explained go as the model says, with their polarity, if cells crawl, and their share of the translation of the stage;
 //! the others go straight from where they are in one frame to where they are in the next. What changes of neighbours within a step add is in [`super::turn`].
 
-use super::objective::{MovieObjective, Moving};
+use super::objective::MovieObjective;
 use super::turn::{Turn, single_terms};
 use crate::Error;
-use crate::objective::Nudged;
+use crate::objective::{Moving, Nudged};
 use voronudge_geometry::{MovingTessellation, Vector};
 use voronudge_model::Model;
 

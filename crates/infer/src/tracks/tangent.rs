@@ -6,10 +6,11 @@
 //!
 //! Derivatives by the places of cells farther than two rings are left out: what a cell does to others falls off fast.
 
-use super::objective::{MovieObjective, Moving};
+use super::objective::MovieObjective;
 use super::passage::{Passage, STAGES, is_known};
 use super::row_builder::IDENTITY;
 use crate::least_squares::combined;
+use crate::objective::Moving;
 use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;

@@ -8,8 +8,8 @@
 //! the stages of a step, at its shares c_i and with weights w_i, those that have the new neighbours (the second sum) would count the jump from
 //! wherever they are. With the further term the displacement does not leap where a transition moves from one stage, or one step, to another.
 
-use super::objective::Moving;
 use super::passage::STAGES;
+use crate::objective::Moving;
 use crate::objective::Nudged;
 use nalgebra::DMatrix;
 use std::sync::Arc;

@@ -1,9 +1,10 @@
 //! Whether simulated movies of the models are like the measured one.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What models make of the cells of a movie against what was seen, for all that was measured on it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CheckReport {
     /// Frames of the data set that are compared, the first of them the one from which models go on.
     pub frames: Vec<usize>,
@@ -18,7 +19,7 @@ pub struct CheckReport {
 }
 
 /// One of each model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ByModel<T> {
     /// The base model.
     pub base: T,
@@ -35,7 +36,7 @@ impl<T> ByModel<T> {
 }
 
 /// One of the functions that were measured, or a number: a function of nothing with a single value.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CheckedQuantity {
     /// Name, as in `observe`.
     pub name: &'static str,
@@ -56,7 +57,7 @@ pub struct CheckedQuantity {
 }
 
 /// What the movies of a model have.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Simulated {
     /// Share of all movies that are as far from the mean as the measured one.
     pub p: f64,

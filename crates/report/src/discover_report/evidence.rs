@@ -1,12 +1,13 @@
 //! What remains, what noise makes of the data, and how the search was checked.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::model_fit::HeldOutError;
 use super::ranking::Gain;
 
 /// What remains after the last fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Unexplained {
     /// Share of the squared velocities that neither model nor noise explains.
     pub share: f64,
@@ -21,18 +22,19 @@ pub struct Unexplained {
 }
 
 /// One test for structure in the residual.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StructureTest {
     /// What is tested, for a reader.
     pub name: String,
     /// The statistic.
     pub statistic: f64,
     /// Probability of so large a statistic of a residual without structure.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub p: f64,
 }
 
 /// What the squared velocities are made of, in shares of their sum.
-#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct NoiseBudget {
     /// The sum Σ‖v‖² over the cells used, in units of length² per time².
     pub total: f64,
@@ -59,7 +61,7 @@ impl NoiseBudget {
 
 /// What effects with a memory were predicted from. They may use velocities of earlier intervals
 /// only that share no position with the interval that is explained.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Predictors {
     /// The earlier interval, in words.
     pub interval: String,
@@ -68,7 +70,7 @@ pub struct Predictors {
 }
 
 /// Synthetic data without an effect, fitted as the data were.
-#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct NullSets {
     /// Number of sets fitted.
     pub refitted: usize,
@@ -77,20 +79,23 @@ pub struct NullSets {
 }
 
 /// How the search behaved on the null sets.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Calibration {
     /// Probability at which a candidate counts as found.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub level: f64,
     /// What p a single candidate needs to stay within that level over all candidates.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub single_p: f64,
     /// Share of the null sets in which some candidate came below the unadjusted level.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub unadjusted_false_positives: f64,
     /// How the search behaved, in a sentence.
     pub words: String,
 }
 
 /// Velocities of another data set predicted with everything as it was fitted.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Prediction {
     /// The data set, as given.
     pub dataset: String,

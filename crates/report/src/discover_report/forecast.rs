@@ -1,12 +1,13 @@
 //! What the cells do next, said before.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Gain;
 use crate::infer_report::Quantity;
 
 /// Forecasts from frames that no fit has seen, against what was seen then. Lists have one entry for each horizon.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ForecastReport {
     /// Frames of the data set from which forecasts start.
     pub starts: Vec<usize>,
@@ -35,7 +36,7 @@ pub struct ForecastReport {
 }
 
 /// One list for each who says what comes next.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Forecasters<T> {
     /// The base model.
     pub base: Vec<T>,

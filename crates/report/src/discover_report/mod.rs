@@ -1,6 +1,6 @@
 //! `report.json` of the command `discover`.
 //!
-//! Field names are the interface that scripts use; [`DISCOVER_SCHEMA`] describes them. Numbers that
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that
 //! are not finite are written as `null`. What `infer` reports too has the types of
 //! [`crate::infer_report`].
 
@@ -20,20 +20,17 @@ pub use ranking::{CandidateStatus, EffectKind, Gain, RankedEffect};
 pub use selected::{EffectCoefficient, SelectedEffect};
 pub use verdict::Verdict;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::before_after::BeforeAfter;
-use crate::error::ReportError;
 use crate::infer_report::{
     CellCounts, FlowGrid, GivenConstraints, Measurement, ProspectsReport, Quantity, RunRecord,
 };
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`DiscoverReport`].
-pub const DISCOVER_SCHEMA: &str = include_str!("../../schema/discover.schema.json");
-
 /// Everything `discover` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DiscoverReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -90,15 +87,6 @@ pub struct DiscoverReport {
 }
 
 impl DiscoverReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-
     /// Whether an effect was added, so that before and after differ.
     #[must_use]
     pub fn is_extended(&self) -> bool {

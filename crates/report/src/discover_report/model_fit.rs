@@ -1,11 +1,12 @@
 //! One fitted model: parameters, errors, noise, nudges.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::infer_report::{EigenDirection, Fit, MeanRemoved, Noise, Nudge, Parameters};
 
 /// One fitted model: what `infer` reports, for the base model and for the model with the effects.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ModelFit {
     /// The nudged estimate.
     pub parameters: Parameters,
@@ -27,7 +28,7 @@ pub struct ModelFit {
 }
 
 /// Normalised mean square errors Σ‖v − v̂‖²/Σ‖v‖² over the cells used.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ModelNmse {
     /// Parameters by least squares at the measured positions.
     pub naive: f64,
@@ -56,7 +57,7 @@ impl ModelNmse {
 }
 
 /// An error on data that the fit has not seen.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct HeldOutError {
     /// The normalised mean square error.
     pub value: f64,
@@ -68,7 +69,7 @@ pub struct HeldOutError {
 
 /// The base model with a generic description of what it leaves unexplained. Not a mechanism: it
 /// says how much any mechanism of that smoothness could explain.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct DescriptionFit {
     /// Id of the description, for example `smooth_field`.
     pub effect: String,

@@ -1,9 +1,10 @@
 //! What became of every candidate.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What became of one candidate.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RankedEffect {
     /// Id of the effect.
     pub effect: String,
@@ -15,8 +16,10 @@ pub struct RankedEffect {
     /// missing. Of cells that were put in or taken away: by how much −2 log likelihood falls, beyond what they cost.
     pub statistic: f64,
     /// Probability of so large a statistic if nothing is missing.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub p: f64,
     /// The same for the largest over all candidates, from refitted null data.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub p_adjusted: f64,
     /// Smallest size that would be found in 9 of 10 cases, in percent of the velocity (rms).
     pub detection_limit: f64,
@@ -33,7 +36,7 @@ pub struct RankedEffect {
 }
 
 /// By how much an error falls, or velocities held out become more probable.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Gain {
     /// The fall.
     pub value: f64,
@@ -48,7 +51,7 @@ impl From<[f64; 2]> for Gain {
 }
 
 /// What became of a candidate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CandidateStatus {
     /// Something that the measurement does, found before the search and taken into account by all fits.
@@ -81,7 +84,7 @@ impl CandidateStatus {
 }
 
 /// The family an effect belongs to.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EffectKind {
     /// Motion of the whole field of view: drift, expansion, rotation, shear, distortion.

@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::EffectKind;
 use crate::infer_report::Parameter;
 
 /// One effect that was added to the base model.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SelectedEffect {
     /// Id of the effect, for example `density_gradient`.
     pub effect: String,
@@ -23,6 +24,7 @@ pub struct SelectedEffect {
     /// 95 % interval of each coefficient; an end that is infinite (`null`) is not bounded by the data.
     pub ci95: Vec<[f64; 2]>,
     /// Probability of so large a statistic of any candidate if nothing is missing.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub p_adjusted: f64,
     /// Share of what the base model lacks beyond noise that the effect explains.
     pub share_of_excess: f64,
@@ -33,7 +35,7 @@ pub struct SelectedEffect {
 }
 
 /// One coefficient of an effect.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EffectCoefficient {
     /// Name or axis; empty for the only coefficient of an effect.
     pub name: String,

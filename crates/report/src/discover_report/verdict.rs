@@ -1,9 +1,10 @@
 //! The answer of `discover` as one word.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The answer as one word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Verdict {
     /// The base model leaves nothing but noise.

@@ -1,10 +1,11 @@
 //! Cells that crawl.
 
 use super::Parameter;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The polarity of the cells: a velocity that each has of itself.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct ActivityReport {
     /// Speed of self-propulsion.
@@ -24,5 +25,6 @@ pub struct ActivityReport {
     /// By how much −2 log L falls from cells that do not.
     pub evidence_of_velocity_alignment: Option<f64>,
     /// Correlation of the mean polarity over the time between two frames with that over the next.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub correlation: f64,
 }

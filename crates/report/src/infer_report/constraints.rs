@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Parameters held, bounded or known to some precision, by name and as given.
-#[derive(Debug, Clone, Default, PartialEq, Serialize)]
+#[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct GivenConstraints {
     /// Values of parameters held.
     pub fixed: BTreeMap<String, f64>,
@@ -16,7 +17,7 @@ pub struct GivenConstraints {
 }
 
 /// A Gaussian prior.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct GivenPrior {
     /// Mean.
     pub mean: f64,

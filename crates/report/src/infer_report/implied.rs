@@ -1,11 +1,12 @@
 //! What parameters imply by the mean-field theory of the honeycomb.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Parameter;
 
 /// Moduli and phase diffusivities of the honeycomb at the fitted parameters.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct ImpliedByMeanField {
     /// Bulk modulus over γ.

@@ -1,11 +1,12 @@
 //! Kinds of cells, told by labels.
 
 use super::Parameters;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// What a fit says of the cells of one label.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct KindReport {
     /// The label.
     pub label: i64,
@@ -28,7 +29,7 @@ pub struct KindReport {
 }
 
 /// A difference, in the unit of the parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct KindDifference {
     /// Its value.
     pub value: f64,

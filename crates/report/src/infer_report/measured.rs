@@ -1,14 +1,16 @@
 //! What positions and velocities are measurements of.
 
 use super::FlowWindow;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What of a cell its position is: its Voronoi site, its centroid, or a point between.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredPositions {
     /// What the positions were taken for.
     pub are: PositionKind,
     /// The share of the way from the site to the centroid.
+    #[schemars(range(min = 0.0, max = 1.0))]
     pub share: f64,
     /// 95 % interval of the share; `null` where it was declared.
     pub ci95: Option<[f64; 2]>,
@@ -19,7 +21,7 @@ pub struct MeasuredPositions {
 }
 
 /// What positions are.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PositionKind {
     /// Voronoi sites.
@@ -31,7 +33,7 @@ pub enum PositionKind {
 }
 
 /// Where what is said of the measurement comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasurementSource {
     /// It was declared.
@@ -43,7 +45,7 @@ pub enum MeasurementSource {
 }
 
 /// What a grid point of a flow field stands for.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredWindow {
     /// The kind of average.
     pub kind: FlowWindow,
@@ -58,7 +60,7 @@ pub struct MeasuredWindow {
 }
 
 /// A kind of window that was tried.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TriedWindow {
     /// The kind of average.
     pub kind: FlowWindow,

@@ -1,10 +1,11 @@
 //! How the cells were measured, as far as the results depend on it.
 
 use super::{LatentCells, MeasuredPositions, MeasuredWindow, TracksReport};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// What was seen of the tissue, and how.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Measurement {
     /// Where every cell would have been seen; `null` in a periodic box.
     pub field_of_view: Option<SeenRegion>,
@@ -25,7 +26,7 @@ pub struct Measurement {
 }
 
 /// A region where every cell would have been seen.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SeenRegion {
     /// Where it comes from.
     pub source: RegionSource,
@@ -36,7 +37,7 @@ pub struct SeenRegion {
 }
 
 /// Where a field of view comes from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum RegionSource {
     /// Given on the command line.

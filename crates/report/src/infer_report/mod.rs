@@ -1,6 +1,6 @@
 //! `report.json` of the command `infer`.
 //!
-//! Field names are the interface that scripts use; [`INFER_SCHEMA`] describes them. Numbers that
+//! Field names are the interface that scripts use; [`schema_of`](crate::schema_of) describes them. Numbers that
 //! are not finite are written as `null`.
 
 mod activity;
@@ -31,16 +31,13 @@ pub use verdict::{Verdict, VerdictKind};
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
-use crate::error::ReportError;
 use crate::units::Units;
 
-/// JSON Schema (draft 2020-12) of [`InferReport`].
-pub const INFER_SCHEMA: &str = include_str!("../../schema/infer.schema.json");
-
 /// What every command reports about its run.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RunRecord {
     /// Name of the command, for example `infer`.
     pub command: String,
@@ -61,16 +58,17 @@ pub struct RunRecord {
 }
 
 /// One file read.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct InputFile {
     /// Path as given.
     pub path: String,
     /// SHA-256 of the content, hexadecimal.
+    #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub sha256: String,
 }
 
 /// Everything `infer` reports.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct InferReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
@@ -123,19 +121,8 @@ pub struct InferReport {
     pub fit: Fit,
 }
 
-impl InferReport {
-    /// The report as indented JSON.
-    ///
-    /// # Errors
-    ///
-    /// [`ReportError::Json`] if serialisation fails.
-    pub fn to_json(&self) -> Result<String, ReportError> {
-        Ok(serde_json::to_string_pretty(self)?)
-    }
-}
-
 /// A number with its unit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Quantity {
     /// The number.
     pub value: f64,
@@ -144,7 +131,7 @@ pub struct Quantity {
 }
 
 /// Which cells took part.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CellCounts {
     /// Indices of the frames used, zero-based.
     pub frames: Vec<usize>,
@@ -155,7 +142,7 @@ pub struct CellCounts {
 }
 
 /// The grid on which velocities were measured.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FlowGrid {
     /// Number of grid points along x and y.
     pub grid_points: [usize; 2],
@@ -168,7 +155,7 @@ pub struct FlowGrid {
 }
 
 /// The average over cells that a grid point stands for.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FlowWindow {
     /// Over the square around it.
@@ -180,7 +167,7 @@ pub enum FlowWindow {
 }
 
 /// One parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Parameter {
     /// Value.
     pub value: f64,
@@ -207,7 +194,7 @@ impl Parameter {
 }
 
 /// The parameters of the model and two combinations of them.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct Parameters {
     /// Area elasticity.
@@ -227,7 +214,7 @@ pub struct Parameters {
 }
 
 /// The estimate without nudges; not finite (`null`) where it was not determined.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct NaiveParameters {
     /// Area elasticity.
@@ -245,7 +232,7 @@ pub struct NaiveParameters {
 }
 
 /// Normalised mean square errors Σ‖v − v̂‖²/Σ‖v‖² over the cells used.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Nmse {
     /// Naive parameters at the measured positions.
     pub naive: f64,
@@ -267,7 +254,7 @@ pub struct Nmse {
 }
 
 /// Which mean velocity was removed before the fit.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeanRemoved {
     /// None.
@@ -279,7 +266,7 @@ pub enum MeanRemoved {
 }
 
 /// Measurement noise per component.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Noise {
     /// Standard deviation of the positions, in units of length.
     pub sigma_r: f64,
@@ -290,7 +277,7 @@ pub struct Noise {
 }
 
 /// Where the noise levels come from.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum NoiseSource {
     /// Given on the command line.
@@ -304,7 +291,7 @@ pub enum NoiseSource {
 }
 
 /// The nudges as a whole.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Nudge {
     /// Spring constant σ_v²/σ_r², in units of a rate squared.
     pub k: f64,
@@ -321,7 +308,7 @@ pub struct Nudge {
 }
 
 /// Course of the fit.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Fit {
     /// How the objective was made small.
     pub method: FitMethod,
@@ -330,6 +317,7 @@ pub struct Fit {
     /// Whether there is no reason not to trust it.
     pub trustworthy: bool,
     /// What is in doubt, one name for each of `doubts`.
+    #[schemars(extend("items" = {"type": "string", "enum": ["objective", "position_noise", "optimiser", "profile", "cells", "outliers", "pattern", "tracks", "positions", "window"]}))]
     pub doubtful: Vec<String>,
     /// Reasons not to trust it, and what to do.
     pub doubts: Vec<String>,
@@ -350,7 +338,7 @@ pub struct Fit {
 }
 
 /// How the objective was made small.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FitMethod {
     /// Levenberg–Marquardt by continuation, flips of contacts, further starts.
@@ -360,7 +348,7 @@ pub enum FitMethod {
 }
 
 /// Flips of contacts between neighbours.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Transitions {
     /// Those tried.
     pub tried: usize,
@@ -369,7 +357,7 @@ pub struct Transitions {
 }
 
 /// How a fit ended.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FitStatus {
     /// At a minimum.

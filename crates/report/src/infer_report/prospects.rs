@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Other measurements by name, in the order in which they are told, with words for them.
@@ -13,13 +14,14 @@ pub const DESIGNS: [(&str, &str); 4] = [
 ];
 
 /// What would be known of the parameters, and of effects, with other measurements.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct ProspectsReport {
     /// What to measure next, in a sentence; empty if there is nothing to advise.
     pub words: String,
     /// What is least certain: the name of a quantity, or of two effects that the data cannot tell apart.
     pub least_certain: Option<String>,
     /// The measurement that makes that most certain.
+    #[schemars(extend("enum" = ["twice_the_frames", "half_the_interval", "half_the_position_noise", "twice_the_field"]))]
     pub recommended: Option<String>,
     /// Its standard error then, as a share of the present one.
     pub share: Option<f64>,
@@ -30,7 +32,7 @@ pub struct ProspectsReport {
 }
 
 /// A quantity and how well it would be known.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ProspectOf {
     /// The name of the parameter, or of the effect and its coefficient.
     pub name: String,
@@ -45,7 +47,7 @@ pub struct ProspectOf {
 }
 
 /// Two effects that the data cannot tell apart.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct AmbiguityReport {
     /// The effect that was added.
     pub effect: String,

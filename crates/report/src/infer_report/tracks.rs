@@ -1,9 +1,10 @@
 //! Tracks that were fitted themselves.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The tracks of a movie, and how the motion along them was integrated.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TracksReport {
     /// Number of tracks after joining.
     pub tracks: usize,
@@ -20,6 +21,7 @@ pub struct TracksReport {
     /// Steps of integration from one frame to the next.
     pub substeps: usize,
     /// Order of the rule in the length of a step.
+    #[schemars(extend("enum" = [2, 4]))]
     pub order: usize,
     /// By how much a finer rule would change the coefficients: the largest change, in standard errors.
     pub integration_error: f64,

@@ -2,10 +2,11 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// One direction in the space of parameters and how well the data determine it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EigenDirection {
     /// One over the variance along it.
     pub eigenvalue: f64,
@@ -16,7 +17,7 @@ pub struct EigenDirection {
 }
 
 /// The profile likelihood of one parameter.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ProfileResult {
     /// Name of the parameter.
     pub parameter: String,
@@ -29,7 +30,7 @@ pub struct ProfileResult {
 }
 
 /// The rise of −2 log likelihood over two parameters.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LandscapeResult {
     /// Names of the two parameters.
     pub parameters: [String; 2],
@@ -42,7 +43,7 @@ pub struct LandscapeResult {
 }
 
 /// Estimates from synthetic data sets that the fit itself could have made.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct BootstrapResult {
     /// Number of data sets fitted.
     pub replicates: usize,

@@ -1,9 +1,10 @@
 //! What a fit says, in a word and in a sentence.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// The answer of a fit.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Verdict {
     /// In a word.
     pub kind: VerdictKind,
@@ -12,7 +13,7 @@ pub struct Verdict {
 }
 
 /// The answer of a fit in a word.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum VerdictKind {
     /// What the model misses of velocities that it has not seen is what the noise of the measurement alone leaves.

@@ -19,6 +19,7 @@ use crate::numbers::Ticks;
 use crate::view::{CellStatus, CellView, is_finite};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Stands for a number that is not known.
@@ -28,7 +29,7 @@ const STEPS: f64 = 65534.0;
 /// How far corners are kept beyond the centres of the cells, in spacings.
 const ROOM: f64 = 4.0;
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Header<'a> {
     frames: Vec<FrameHeader<'a>>,
     /// The frame to begin with.
@@ -49,7 +50,7 @@ struct Header<'a> {
     data: String,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct FrameHeader<'a> {
     label: &'a str,
     time: Option<f64>,
@@ -57,7 +58,7 @@ struct FrameHeader<'a> {
     corners: usize,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct QuantityHeader<'a> {
     name: &'a str,
     unit: &'a str,
@@ -70,7 +71,7 @@ struct QuantityHeader<'a> {
     colours: Vec<String>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct ArrowHeader<'a> {
     name: &'a str,
     unit: String,

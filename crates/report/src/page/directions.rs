@@ -1,5 +1,6 @@
 //! The table of what the data determine.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::parameter_table::symbol_of;
@@ -9,20 +10,20 @@ use crate::infer_report::EigenDirection;
 use crate::numbers::NO_VALUE;
 
 /// The table of eigenvalues: one column per parameter, tinted by the component.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Directions {
     names: Vec<String>,
     rows: Vec<DirectionRow>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct DirectionRow {
     words: String,
     eigenvalue: f64,
     cells: Vec<DirectionCell>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct DirectionCell {
     text: String,
     colour: String,

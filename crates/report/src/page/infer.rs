@@ -1,5 +1,6 @@
 //! The page of the command `infer`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::kinds::{self, KindRow};
@@ -193,7 +194,7 @@ impl InferPage<'_> {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a InferReport,

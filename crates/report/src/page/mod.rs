@@ -32,6 +32,7 @@ pub use strip::StripFigures;
 pub use uncertainty::Uncertainty;
 
 use minijinja::{AutoEscape, Environment, Value};
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::ReportError;
@@ -46,7 +47,7 @@ const STYLE: &str = include_str!("../../templates/style.css");
 const SCRIPT: &str = include_str!("../../templates/tabs.js");
 
 /// A figure with its caption.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Figure {
     /// Stand-alone SVG.
     pub svg: String,
@@ -63,7 +64,7 @@ impl Figure {
 }
 
 /// A key number at the head of a page.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Card {
     /// Name or symbol; `_x` sets a subscript.
     pub label: String,
@@ -74,7 +75,7 @@ pub struct Card {
 }
 
 /// Figures under one tab, for example those of one frame.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Panel {
     /// Name of the tab.
     pub label: String,
@@ -85,7 +86,7 @@ pub struct Panel {
 }
 
 /// How many figures stand side by side where there is room.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Columns {
     /// Two, for maps of many cells.
@@ -103,7 +104,7 @@ impl Columns {
 }
 
 /// What every page has, whatever the command.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub struct PageHead<'a> {
     /// Title of the page, for example the name of the data set.
     pub title: &'a str,

@@ -1,5 +1,6 @@
 //! The page of the command `moduli`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Card, Figure, PageHead, Template, render};
@@ -28,7 +29,7 @@ pub struct ModuliPage<'a> {
     pub report: &'a ModuliReport,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a ModuliReport,
@@ -41,7 +42,7 @@ struct Context<'a> {
     media: Vec<Vec<String>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Row {
     symbol: &'static str,
     name: String,

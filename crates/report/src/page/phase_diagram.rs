@@ -1,5 +1,6 @@
 //! The page of the commands `phase-diagram` and `merge`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Card, Figure, PageHead, Template, render};
@@ -27,7 +28,7 @@ pub struct PhasePage<'a> {
     pub collapse: &'a [Figure],
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a PhaseReport,

@@ -1,5 +1,6 @@
 //! Cells that can be played, stepped through, coloured and asked for their numbers.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::ReportError;
@@ -9,7 +10,7 @@ use crate::view::CellStatus;
 const SCRIPT: &str = include_str!("../../templates/player.js");
 
 /// A movie in a page. Without a script, and in print, a still stands in its place.
-#[derive(Debug, Clone, Serialize)]
+#[derive(Debug, Clone, Serialize, JsonSchema)]
 pub(super) struct Player {
     /// Stand-alone SVG.
     still: String,

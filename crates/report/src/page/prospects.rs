@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::parameter_table::symbol_of;
@@ -10,7 +11,7 @@ use crate::numbers::{NO_VALUE, significant};
 use crate::units::unit_text;
 
 /// The table; measurements that cannot be judged have no column.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct ProspectsView {
     words: String,
     columns: Vec<String>,
@@ -19,7 +20,7 @@ pub(super) struct ProspectsView {
 }
 
 /// A quantity, or two effects, and a cell for each measurement.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Row {
     name: String,
     unit: String,
@@ -29,7 +30,7 @@ struct Row {
     is_main: bool,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Cell {
     text: String,
     /// As a share of now.

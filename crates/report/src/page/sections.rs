@@ -1,5 +1,6 @@
 //! A page of sections, each of text, a table and figures.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::{Card, Figure, PageHead, Template, render};
@@ -10,7 +11,7 @@ const TEMPLATE: Template =
     Template { name: "sections.html", source: include_str!("../../templates/sections.html") };
 
 /// A section; empty parts are left out.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Section {
     /// Heading.
     pub heading: String,
@@ -25,7 +26,7 @@ pub struct Section {
 }
 
 /// A table whose first column names the rows.
-#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+#[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct Table {
     /// Names of the columns.
     pub header: Vec<String>,
@@ -52,7 +53,7 @@ pub struct SectionPage<'a> {
     pub run: &'a RunRecord,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     guide: &'a [[&'a str; 2]],

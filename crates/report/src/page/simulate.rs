@@ -1,5 +1,6 @@
 //! The page of the command `simulate`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::player::Player;
@@ -34,7 +35,7 @@ pub struct SimulatePage<'a> {
     pub run: &'a RunRecord,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     configuration: &'a Figure,

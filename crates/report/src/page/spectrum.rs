@@ -1,5 +1,6 @@
 //! The page of the command `spectrum`.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::strip::StripFigures;
@@ -40,7 +41,7 @@ pub struct SpectrumPage<'a> {
     pub strip: Option<StripFigures>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a SpectrumReport,
@@ -54,7 +55,7 @@ struct Context<'a> {
 }
 
 /// A mode as a line of the table.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Row {
     name: &'static str,
     cells: Vec<String>,

@@ -1,5 +1,6 @@
 //! The figures and sentences that say how well the parameters are known.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Figure;
@@ -22,7 +23,7 @@ pub struct Uncertainty {
 }
 
 /// The section of the page.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Known {
     intervals: Figure,
     parameters: Vec<String>,

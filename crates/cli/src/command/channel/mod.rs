@@ -112,7 +112,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     let by_age = shapes.found();
     shapes::write(&mut out, &by_age)?;
-    let json = findings.report.to_json()?;
+    let json = serde_json::to_string_pretty(&findings.report)?;
     out.write_text("report.json", &json)?;
     let figures = figures::Figures {
         request: &request,

@@ -149,7 +149,7 @@ fn headline(report: &ChannelReport, at_edge: Option<&Estimate>) -> String {
             if flow.slope > 0.0 { "upwards at the left edge" } else { "downwards at the left edge" },
             significant(flow.slope.abs(), 2),
             flow.alpha.map_or("unknown".into(), |alpha| significant(alpha, 2)),
-            report.parameters["alpha"]
+            report.parameters.alpha
         ),
         _ => "Cells flow across the channel, and no flow along it is found.".into(),
     }
@@ -301,11 +301,7 @@ pub(super) fn summary(report: &ChannelReport, out: &Path) -> String {
     if let Some(flow) = &report.chirality_from_flow {
         let [low, high] = flow.slope_ci95.map(|end| significant(end, 3));
         let alpha = flow.alpha.map_or(String::new(), |alpha| {
-            format!(
-                ", which implies alpha {} (put in: {})",
-                significant(alpha, 3),
-                report.parameters["alpha"]
-            )
+            format!(", which implies alpha {} (put in: {})", significant(alpha, 3), report.parameters.alpha)
         });
         let _ = writeln!(text, "v_y / v_x    {} (95 %: {low} to {high}){alpha}", significant(flow.slope, 3));
     }

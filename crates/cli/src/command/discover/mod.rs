@@ -182,7 +182,7 @@ fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
         compared,
     };
     let report = report::report(&run, &found, &discovery);
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report, movie)?)?;
     progress.heed().map_err(|failure| kept.failed(failure))?;

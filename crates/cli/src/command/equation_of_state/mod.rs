@@ -117,7 +117,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     doubts.into_iter().for_each(|doubt| run.warn(doubt));
     let report = request.report(&run, points);
     write_arrays(&mut out, &report)?;
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&report, &request)?)?;
     let summary = page::summary(&report, out.path());

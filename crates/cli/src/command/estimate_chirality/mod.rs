@@ -122,7 +122,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         sha256: profile.input.sha256.clone(),
     }];
     let report = ChiralityReport { run: record, line, intercept_kind };
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let title = arguments.profiles.display().to_string();
     out.write_text("report.html", &page::page(&title, &points, &report, known.units.as_ref())?)?;

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 use voronudge_io::{DataSet, FlowColumnNames, FlowOptions, FlowSummary, import_flow};
@@ -51,17 +52,26 @@ pub(super) struct Arguments {
     common: CommonArguments,
 }
 
-#[derive(Serialize)]
-struct Report {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Report {
+    /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
+    /// Number of frames.
     frames: usize,
+    /// Number of the first in the files.
     first_frame: i64,
+    /// Grid points along y.
     rows: usize,
+    /// Grid points along x.
     columns: usize,
+    /// Distances of grid points along x and y.
     spacing: [f64; 2],
+    /// Grid points without a vector, over all frames.
     missing_points: usize,
+    /// Number of cells, where their positions were given.
     cells: Option<usize>,
+    /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,
 }
 

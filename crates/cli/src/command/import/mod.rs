@@ -11,7 +11,10 @@ mod shapes;
 mod sites;
 mod tracks;
 
+pub(crate) use flow::Report as FlowReport;
 pub(crate) use notes::records;
+pub(crate) use points::Report as PointsReport;
+pub(crate) use tracks::Report as TracksReport;
 
 use crate::failure::Failure;
 use crate::program::Answer;

@@ -8,6 +8,7 @@ use crate::failure::Failure;
 use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::PathBuf;
 use voronudge_io::import_points;
@@ -30,14 +31,20 @@ pub(super) struct Arguments {
     common: CommonArguments,
 }
 
-#[derive(Serialize)]
-struct Report {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Report {
+    /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
+    /// Points of each frame.
     frames: Vec<usize>,
+    /// Number of the first frame in the table.
     first_frame: i64,
+    /// Number of tracks.
     tracks: usize,
+    /// Points that continue one of the frame before.
     linked: usize,
+    /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,
 }
 

@@ -7,6 +7,7 @@ use crate::failure::Failure;
 use crate::program::Answer;
 use crate::run::Run;
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use voronudge_io::{Import, ImportOptions};
@@ -26,18 +27,28 @@ pub(super) struct Arguments {
     common: CommonArguments,
 }
 
-#[derive(Serialize)]
-struct Report {
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Report {
+    /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
+    /// Number of frames.
     frames: usize,
+    /// Number of the first in the table.
     first_frame: i64,
+    /// Frames without a cell.
     empty_frames: usize,
+    /// Number of tracks.
     tracks: usize,
+    /// Places of cells that were read.
     spots: usize,
+    /// Places left out because they belong to no track.
     left_out_untracked: usize,
+    /// Places left out because a track has another in the same frame.
     left_out_duplicate: usize,
+    /// Numbers of the tracks in the table.
     track_ids: Vec<i64>,
+    /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,
 }
 

@@ -209,7 +209,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
         (&answers, foreseen.as_ref()),
         told,
     );
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let page = page::page(&arguments, &data, (&prepared, &result), &report, &answers, movie.as_ref())?;
     out.write_text("report.html", &page)?;

@@ -58,7 +58,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let measured = measure::replicas(&starts, &models, &protocol, arguments.common.verbosity())?;
     report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));
     let report = report::report(&run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let (title, headline) = (report::title(&arguments), report::headline(&report));
     let unit = report.units.powers(0, -1);

@@ -45,7 +45,7 @@ pub(crate) fn finish(
         Collapse { record: Err("This is a part of a diagram.".into()), figures: Vec::new() }
     };
     let report = report(run, points, &diagram, &collapse);
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let summary = summary(&report, points, out);
     if whole {

@@ -126,7 +126,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
         .collect();
     let against = if arguments.times.is_empty() { "frame" } else { "time" };
     let report = RheologyReport { run: record, units, cells, seeds, against, fits: fitted };
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     out.write_text("report.html", &page::page(&report)?)?;
     let summary = page::summary(&report, out.path());

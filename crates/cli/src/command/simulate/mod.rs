@@ -14,7 +14,7 @@ mod surroundings;
 
 use crate::arguments::{
     CellArguments, CommonArguments, EffectArguments, MovieArguments, ParameterArguments, SpreadArguments,
-    environment,
+    environment, named,
 };
 use crate::failure::Failure;
 use crate::program::Answer;
@@ -25,6 +25,7 @@ use clap::{Args, ValueEnum};
 use driving::DrivingArguments;
 use outcome::Finished;
 use recorder::{Kept, Recorder};
+pub(crate) use report::Report;
 use report::Request;
 use sensitivity::Asked;
 pub(crate) use start::{Start, StartArguments};
@@ -133,7 +134,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
             MethodName::Rk4 => Method::RungeKutta4,
             MethodName::Adaptive => Method::BogackiShampine { tolerance: arguments.tolerance },
         },
-        parameters: (&parameters).into(),
+        parameters: named(&parameters),
         of_cells,
         spreads,
         labels,

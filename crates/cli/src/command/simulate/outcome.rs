@@ -51,7 +51,7 @@ pub(super) fn finish(
         Measurements::new(&mut recorder, &schedule, (&cell_box(simulation, &request)?, spectra))?;
     let [width, height] = request.box_lengths;
     let cell_size = (width * height / request.cells as f64).sqrt();
-    let shown = units_of_model(&units, cell_size, request.parameters.perimeter_elasticity());
+    let shown = units_of_model(&units, cell_size, request.parameters.K_P);
     let movie = movie(&mut recorder, (&request, start), schedule.frame_interval(), &shown)?;
     let mut results = recorder.results()?;
     asked.write(&mut results, movie.as_ref(), run)?;

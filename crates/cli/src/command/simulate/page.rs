@@ -56,7 +56,7 @@ fn headline(report: &Report, units: &Units) -> String {
     let Some(square) = report.mean_square_velocity else {
         return "The run was too short to be measured.".into();
     };
-    let rest = AT_REST * report.request.parameters.perimeter_elasticity().abs() * report.spacing();
+    let rest = AT_REST * report.request.parameters.K_P.abs() * report.spacing();
     if square.sqrt() < rest {
         return "The cells have come to rest: a solid.".into();
     }

@@ -2,60 +2,90 @@
 
 use super::start::Origin;
 use crate::arguments::{ChosenEffects, OfCells, Spreads};
-use crate::command::evaluate::ModelParameters;
+use schemars::JsonSchema;
 use serde::Serialize;
+use voronudge_report::ModelParameters;
 use voronudge_report::histogram::Histogram;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_report::numbers::significant;
 use voronudge_simulate::{Driving, Method, Walls};
 
 /// Everything that the positions of a run depend on.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Request {
+    /// Number of cells.
     pub cells: usize,
+    /// Sides of the periodic box.
     #[serde(rename = "box")]
     pub box_lengths: [f64; 2],
+    /// Where the positions come from.
     pub start: Origin,
+    /// Duration.
     pub time: f64,
+    /// Time step.
     pub dt: f64,
+    /// Frames kept.
     pub frames: usize,
+    /// Method of integration.
     pub method: Method,
+    /// Parameters of the model.
     pub parameters: ModelParameters,
+    /// Values of parameters in which cells differ, one for each cell.
     #[serde(rename = "cell_parameters", skip_serializing_if = "OfCells::is_empty")]
     pub of_cells: OfCells,
+    /// Spreads of parameters over cells as asked.
     #[serde(rename = "cell_spread", skip_serializing_if = "Spreads::is_empty")]
     pub spreads: Spreads,
     /// Labels of the cells, which are in a file of their own.
     #[serde(skip)]
     pub labels: Option<Vec<Option<i64>>>,
+    /// Effects beyond the base model with their coefficients.
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     pub effects: ChosenEffects,
+    /// Walls between which the cells are.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walls: Option<Walls>,
+    /// What moves cells besides the model.
     pub driving: Driving,
 }
 
-/// What came of a run, described by a schema beside those of the other reports.
-#[derive(Serialize)]
-pub(super) struct Report {
+/// What came of a run.
+#[derive(Serialize, JsonSchema)]
+pub(crate) struct Report {
+    /// The run, at the top level of the file.
     #[serde(flatten)]
-    pub run: RunRecord,
+    pub(super) run: RunRecord,
+    /// What it was asked for, likewise.
     #[serde(flatten)]
-    pub request: Request,
-    pub mean_square_velocity: Option<f64>,
-    pub mean_square_velocity_error: Option<f64>,
-    pub t1_rate: Option<f64>,
-    pub hexatic_order: f64,
-    pub hexatic_mean_modulus: f64,
-    pub stress: [[f64; 2]; 2],
-    pub area: Spread,
-    pub shape_index: Spread,
-    pub displacement: Displacement,
-    pub structure: Structure,
-    pub lyapunov: Option<Exponent>,
-    pub sensitivity: Vec<Sensitive>,
-    pub steps: usize,
-    pub steps_per_second: f64,
+    pub(super) request: Request,
+    /// Mean over cells and over the steps in the second half.
+    pub(super) mean_square_velocity: Option<f64>,
+    /// Its standard error.
+    pub(super) mean_square_velocity_error: Option<f64>,
+    /// T1 transitions per cell and time in the second half.
+    pub(super) t1_rate: Option<f64>,
+    /// Modulus of the mean of psi_i at the end.
+    pub(super) hexatic_order: f64,
+    /// Mean of the moduli of psi_i at the end.
+    pub(super) hexatic_mean_modulus: f64,
+    /// Mean stress at the end, force index first.
+    pub(super) stress: [[f64; 2]; 2],
+    /// Areas of the cells at the end.
+    pub(super) area: Spread,
+    /// Perimeter over root of area of the cells at the end.
+    pub(super) shape_index: Spread,
+    /// Mean square displacement, in short.
+    pub(super) displacement: Displacement,
+    /// Structure factor of the density, in short.
+    pub(super) structure: Structure,
+    /// Largest Lyapunov exponent; null if not asked for.
+    pub(super) lyapunov: Option<Exponent>,
+    /// Derivatives of the run at its end by what --sensitivity names, in short; empty if nothing.
+    pub(super) sensitivity: Vec<Sensitive>,
+    /// Steps made.
+    pub(super) steps: usize,
+    /// Steps per second of wall time.
+    pub(super) steps_per_second: f64,
 }
 
 impl Report {
@@ -67,37 +97,45 @@ impl Report {
 }
 
 /// How far the cells get, in short.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Displacement {
     /// Frames between which displacements were taken.
     pub frames: usize,
+    /// The longest lag; null for a single frame.
     pub longest_lag: Option<f64>,
+    /// Mean square displacement at that lag.
     pub mean_square: Option<f64>,
 }
 
 /// The structure factor of the density, in short.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Structure {
     /// Frames that were averaged.
     pub frames: usize,
+    /// Up to which wave number.
     pub largest_wave_number: Option<f64>,
+    /// The highest shell.
     pub peak: Option<Peak>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Peak {
+    /// Its mean wave number.
     pub wave_number: f64,
+    /// Its structure factor.
     pub value: f64,
 }
 
 /// Derivatives by one parameter or starting coordinate at the end of the run, in short.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Sensitive {
     /// Its name.
     pub by: String,
     /// Of positions, over the cells.
     pub root_mean_square: f64,
+    /// Derivative of the mean square velocity.
     pub mean_square_velocity: f64,
+    /// Derivative of the mean stress, force index first.
     pub stress: [[f64; 2]; 2],
     /// By how much the runs differ that derivatives are compared with, to either side.
     pub aside: f64,
@@ -118,25 +156,33 @@ impl Sensitive {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Exponent {
+    /// The exponent.
     pub value: f64,
+    /// Its standard error.
     pub standard_error: Option<f64>,
 }
 
 /// Mean and standard deviation over cells, and a histogram.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Spread {
+    /// Mean over cells.
     pub mean: f64,
+    /// Standard deviation over cells.
     pub standard_deviation: f64,
+    /// Number of cells in each bin; null if no value is finite.
     pub histogram: Option<Counts>,
 }
 
 /// Number of cells in each bin.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Counts {
+    /// Lower edge of the first bin.
     pub from: f64,
+    /// Width of a bin.
     pub width: f64,
+    /// Cells in each bin.
     pub counts: Vec<usize>,
 }
 

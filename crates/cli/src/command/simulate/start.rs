@@ -4,6 +4,7 @@ use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
 use clap::Args;
+use schemars::JsonSchema;
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
@@ -56,12 +57,23 @@ pub(crate) struct Start {
 }
 
 /// Where the positions come from, as the report tells it.
-#[derive(Debug, Clone, PartialEq, Serialize)]
+#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Origin {
-    Random { least_distance: f64 },
+    /// Random positions.
+    Random {
+        /// Least distance, in mean spacings.
+        least_distance: f64,
+    },
+    /// A lattice.
     Honeycomb,
-    Data { sha256: Vec<String>, frame: usize },
+    /// The end of a data set.
+    Data {
+        /// SHA-256 of its files.
+        sha256: Vec<String>,
+        /// Its frame.
+        frame: usize,
+    },
 }
 
 /// Cells times frames that are recorded: 16 GB of positions and velocities.

@@ -145,7 +145,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     }
     let model = (&parameters, own.of_data(&data, frames[0]), &effects);
     let report = report::report(&run, &data, model, &request, &solved, (waves.as_ref(), strip));
-    let json = report.to_json()?;
+    let json = serde_json::to_string_pretty(&report)?;
     out.write_text("report.json", &json)?;
     let title = match (&lattice, &arguments.data.dataset) {
         (Some(lattice), _) => lattice.title(),

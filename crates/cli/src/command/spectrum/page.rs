@@ -73,7 +73,7 @@ fn headline(frame: &FrameSpectrum, time_unit: &str) -> String {
 
 fn paragraphs(data: &DataSet, first: &Solved, report: &SpectrumReport) -> Vec<String> {
     let mut paragraphs = Vec::new();
-    let k_p = report.parameters.get("K_P").copied().unwrap_or(1.0).abs();
+    let k_p = report.parameters.K_P.abs();
     if first.speed > AT_REST * k_p * first.length {
         paragraphs.push(format!(
             "The model does not leave this snapshot at rest: its root mean square velocity is {} {}. The modes tell what \

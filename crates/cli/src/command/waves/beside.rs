@@ -2,11 +2,11 @@
 
 use crate::command::spectrum::mean_field;
 use crate::failure::Failure;
-use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, Tessellation, Vector};
 use voronudge_model::{Model, Parameters};
 use voronudge_observables::{Fluctuations, Plan, Recording, WaveField};
+use voronudge_report::ModelParameters;
 use voronudge_report::waves_report::Rates;
 use voronudge_spectrum::LinearProblem;
 
@@ -19,7 +19,7 @@ const LINE: usize = 80;
 /// What stands beside the measurement.
 pub(super) struct Beside {
     /// Parameters of the model, if there is one.
-    pub parameters: Option<BTreeMap<&'static str, f64>>,
+    pub parameters: Option<ModelParameters>,
     /// For each shell.
     pub shells: Vec<OfShell>,
     /// Wave numbers and D(q) of the theory.

@@ -44,7 +44,7 @@ pub(super) fn report(
             WaveField::Velocities => "velocities",
         },
         first_lag: found.first_lag,
-        parameters: beside.parameters.clone(),
+        parameters: beside.parameters,
         linear,
         verdict: match linear {
             Some(p) if p < NOT_LINEAR => "not_linear",

@@ -1,5 +1,6 @@
 //! The ranking of all candidates.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -9,7 +10,7 @@ use crate::figure::effect_ranking;
 use crate::numbers::{NO_VALUE, significant};
 
 /// One row of the table.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct CandidateRow {
     name: String,
     family: &'static str,

@@ -1,5 +1,6 @@
 //! The effects that were added: size, interval, aliases.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -10,7 +11,7 @@ use crate::figure::{ParameterRow, PartialRegression, parameter_intervals, partia
 use crate::units::Units;
 
 /// One selected effect.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct EffectView {
     name: String,
     formula: String,

@@ -8,6 +8,7 @@ mod effects;
 mod forecast;
 mod remainder;
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use self::answer::{Answer, answers};
@@ -70,7 +71,7 @@ pub struct DiscoverFigures {
     pub outliers: Vec<Vec<Outlier>>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a DiscoverReport,

@@ -1,5 +1,6 @@
 //! What remains after the last fit.
 
+use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -9,14 +10,14 @@ use crate::figure::{CorrelationFunction, correlation_function};
 use crate::numbers::significant;
 
 /// Numbers, tests and correlation functions of the rest.
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 pub(super) struct Remainder {
     facts: Vec<(&'static str, String)>,
     tests: Vec<TestRow>,
     correlations: Vec<Figure>,
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, JsonSchema)]
 struct TestRow {
     name: String,
     statistic: String,
