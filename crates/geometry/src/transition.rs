@@ -1,7 +1,6 @@
 //! T1 transitions: what lies between two tessellations of the same cells.
 
 use crate::Tessellation;
-use std::collections::HashSet;
 
 /// A side that vanishes and the one that appears in its place, between the other two of the four cells that met at its ends.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,21 +20,15 @@ impl Transition {
     /// Each of them exchanges one side while those around it stay. Where sides next to each other have changed both, what lies between is
     /// a sequence that two tessellations do not tell; such sides are left out, as are those of open polygons.
     pub fn between(before: &Tessellation, after: &Tessellation) -> Vec<Self> {
-        if before.neighbour == after.neighbour && before.image == after.image && before.start == after.start {
-            return Vec::new();
-        }
-        let of =
-            |tessellation: &Tessellation| -> HashSet<Edge> { tessellation.edges().into_iter().collect() };
-        let (old, new) = (of(before), of(after));
         let mut found = Vec::new();
-        for cell in 0..before.len() {
+        for cell in (0..before.len()).filter(|cell| !before.has_ring_of(after, *cell)) {
             for h in before.ring(cell).filter(|h| *h < before.twin(*h)) {
-                if new.contains(&before.edge(cell, h)) {
+                if after.has_edge(before, (cell, h)) {
                     continue;
                 }
                 let Some([from, to]) = before.opposite(cell, h) else { continue };
                 let edge = ordered(before.neighbour(from), before.neighbour(to), before.between(from, to));
-                if old.contains(&edge) {
+                if before.half_edge(edge).is_some() {
                     continue;
                 }
                 let Some(gained) = after.half_edge(edge) else { continue };
@@ -62,6 +55,13 @@ impl Tessellation {
     /// Whether there is the edge that a half-edge of a cell is in another tessellation of the same cells.
     pub fn has_edge(&self, other: &Self, (cell, h): (usize, usize)) -> bool {
         self.half_edge(other.edge(cell, h)).is_some()
+    }
+
+    /// Whether the ring of a cell is the same in another tessellation, begun at the same neighbour.
+    fn has_ring_of(&self, other: &Self, cell: usize) -> bool {
+        let [own, theirs] = [self, other].map(|tessellation| tessellation.ring(cell));
+        self.neighbour[own.clone()] == other.neighbour[theirs.clone()]
+            && self.image[own] == other.image[theirs]
     }
 
     /// The edge of a half-edge, as in [`edges`](Self::edges).

@@ -12,9 +12,9 @@ use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 pub(crate) use linearised::Free;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_model::{BlockMatrix, Environment, Model, Structure, jacobian};
+use voronudge_model::{BlockMatrix, Environment, Model, Structure, jacobian, velocities};
 
 /// `Φ(β, ε) = Σ w ‖v − F_β(r + ε)‖² + k Σ m ‖y − H(r + ε)‖² + σ_v² Σ (q(β) − m)² / s²` over all frames and priors, with weights w of
 /// velocities and the stiffness m of a cell. Cells that were not seen are held with the spread of [`WHEREABOUTS`]. The
@@ -41,8 +41,8 @@ pub(crate) struct Nudged<'a> {
     pub tessellation: Tessellation,
     structure: &'a Structure,
     environment: Arc<Environment>,
-    /// The columns of the terms for each cell.
-    columns: Columns,
+    /// The columns of the terms for each cell, once they are asked for.
+    columns: OnceLock<Columns>,
     sampling: Option<Sampling>,
 }
 
@@ -92,13 +92,13 @@ impl<'a> Nudged<'a> {
         tessellation: Tessellation,
         sampling: Option<Sampling>,
     ) -> Self {
-        let columns = structure.columns(&tessellation, &positions, &environment);
-        Self { positions, tessellation, structure, environment, columns, sampling }
+        Self { positions, tessellation, structure, environment, columns: OnceLock::new(), sampling }
     }
 
     /// Velocities and their derivatives for given coefficients.
     pub fn evaluate(&self, coefficients: &[f64]) -> Evaluated {
-        let Self { structure, tessellation, positions, columns, environment, .. } = self;
+        let Self { structure, tessellation, positions, environment, .. } = self;
+        let columns = self.columns.get_or_init(|| structure.columns(tessellation, positions, environment));
         let of_cells = structure.evaluate(tessellation, positions, columns, coefficients, environment);
         match &self.sampling {
             None => Evaluated {
@@ -119,13 +119,27 @@ impl<'a> Nudged<'a> {
         self.structure.model(coefficients, &self.environment)
     }
 
-    /// The derivative of what is measured with respect to the positions.
-    pub fn jacobian(&self, coefficients: &[f64], evaluated: &Evaluated) -> BlockMatrix {
+    /// The same without candidates that are not part of the model yet.
+    fn acting(&self, coefficients: &[f64]) -> Model<f64> {
         let mut model = self.model(coefficients);
-        // Candidates that are not part of the model yet.
         model.terms.retain(|weighted| weighted.coefficient != 0.0);
         model.responses.retain(|weighted| weighted.coefficient != 0.0);
-        let of_cells = jacobian(&self.tessellation, &self.positions, &model);
+        model
+    }
+
+    /// Velocities of the cells alone.
+    pub fn velocities(&self, coefficients: &[f64]) -> Vec<Vector<f64>> {
+        velocities(&self.tessellation, &self.positions, &self.acting(coefficients))
+    }
+
+    /// Their derivative with respect to the positions.
+    pub fn jacobian_of_cells(&self, coefficients: &[f64]) -> BlockMatrix {
+        jacobian(&self.tessellation, &self.positions, &self.acting(coefficients))
+    }
+
+    /// The derivative of what is measured with respect to the positions.
+    pub fn jacobian(&self, coefficients: &[f64], evaluated: &Evaluated) -> BlockMatrix {
+        let of_cells = self.jacobian_of_cells(coefficients);
         match &self.sampling {
             None => of_cells,
             Some(sampling) => {

@@ -11,7 +11,7 @@
 use super::objective::MovieObjective;
 use super::turn::{Turn, single_terms};
 use crate::Error;
-use crate::objective::{Moving, Nudged};
+use crate::objective::Nudged;
 use voronudge_geometry::{MovingTessellation, Vector};
 use voronudge_model::Model;
 
@@ -19,10 +19,35 @@ use voronudge_model::Model;
 pub(super) const STAGES: [(f64, f64); 4] =
     [(0.0, 1.0 / 6.0), (0.5, 1.0 / 3.0), (0.5, 1.0 / 3.0), (1.0, 1.0 / 6.0)];
 
+/// The stage that is the second estimate of the middle of a step.
+pub(super) const MIDDLE: usize = 2;
+
+/// Of how many steps at least derivatives of their middle are as good as those of all stages: these then err by less than a thousandth.
+const MANY_STEPS: usize = 4;
+
+/// What derivatives of a passage are made of.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Derivatives {
+    /// Those of velocities at all stages: exact.
+    OfStages,
+    /// Those at the middle of each step, held.
+    OfMiddle,
+}
+
+impl Derivatives {
+    /// For so many steps.
+    pub fn of(steps: usize) -> Self {
+        if steps < MANY_STEPS { Self::OfStages } else { Self::OfMiddle }
+    }
+}
+
+/// Cells at some time, and the velocities that the model gives them.
+pub(super) type Stage<'a> = (Nudged<'a>, Vec<Vector<f64>>);
+
 /// One step.
 pub(super) struct Step<'a> {
     /// The cells at its stages.
-    pub stages: [Moving<'a>; 4],
+    pub stages: [Stage<'a>; 4],
     /// The transitions in between.
     pub turns: Vec<Turn>,
 }
@@ -97,8 +122,8 @@ impl<'a> Way<'a, '_> {
             };
             begin.iter().enumerate().map(next).collect()
         };
-        let stage = |moving: &mut _, before: &Moving<'_>, share: f64| {
-            self.moving(moving, after(&|cell| before.1.of_cells[cell], share * length))
+        let stage = |moving: &mut _, before: &Stage<'_>, share: f64| {
+            self.moving(moving, after(&|cell| before.1[cell], share * length))
         };
         let first = self.moving(moving, begin.clone())?;
         let second = stage(moving, &first, STAGES[1].0)?;
@@ -106,9 +131,8 @@ impl<'a> Way<'a, '_> {
         let fourth = stage(moving, &third, STAGES[3].0)?;
         let stages = [first, second, third, fourth];
         let turns = Turn::within(&stages, &self.terms, length / self.objective.span(self.interval));
-        let weighted = |cell: usize| {
-            STAGES.iter().zip(&stages).map(|((_, weight), at)| at.1.of_cells[cell] * *weight).sum()
-        };
+        let weighted =
+            |cell: usize| STAGES.iter().zip(&stages).map(|((_, weight), at)| at.1[cell] * *weight).sum();
         let mut next = after(&weighted, length);
         for turn in &turns {
             for (number, cell) in turn.cells.iter().enumerate().filter(|(_, cell)| led[**cell]) {
@@ -123,12 +147,12 @@ impl<'a> Way<'a, '_> {
         &self,
         moving: &mut MovingTessellation,
         positions: Vec<Vector<f64>>,
-    ) -> Result<Moving<'a>, Error> {
+    ) -> Result<Stage<'a>, Error> {
         let MovieObjective { structure, states, .. } = self.objective;
         moving.renew(&positions).map_err(|_| Error::Diverges { frame: self.interval })?;
         let environment = states.intervals[self.interval].halfway.environment().clone();
         let nudged = Nudged::placed(structure, environment, positions, moving.tessellation().clone(), None);
-        let evaluated = nudged.evaluate(self.coefficients);
-        Ok((nudged, evaluated))
+        let velocities = nudged.velocities(self.coefficients);
+        Ok((nudged, velocities))
     }
 }

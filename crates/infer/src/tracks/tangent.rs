@@ -7,10 +7,9 @@
 //! Derivatives by the places of cells farther than two rings are left out: what a cell does to others falls off fast.
 
 use super::objective::MovieObjective;
-use super::passage::{Passage, STAGES, is_known};
+use super::passage::{Derivatives, MIDDLE, Passage, STAGES, Stage, Step, is_known};
 use super::row_builder::IDENTITY;
-use crate::least_squares::combined;
-use crate::objective::Moving;
+use crate::least_squares::{Columns, combined};
 use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;
@@ -82,9 +81,9 @@ impl Tangent {
         (rings, crawls): (usize, bool),
     ) -> Self {
         let led = &objective.states.intervals[interval].led;
-        let count = passage.steps.len() as f64;
         let span = objective.span(interval);
-        let advance = Advance { crawls, led, span, length: span / count, along: objective.along() };
+        let length = span / passage.steps.len() as f64;
+        let advance = Advance { crawls, led, span, length, along: objective.along() };
         let basis = objective.space.basis();
         let environment = objective.states.intervals[interval].halfway.environment();
         let model = objective.structure.model(coefficients, environment);
@@ -95,40 +94,35 @@ impl Tangent {
             DRIFT + objective.space.dimension(),
             crawls,
         );
-        let [mut slope, mut next, mut stage] = [0, 1, 2].map(|_| tangent.clone());
+        let by = Derivatives::of(passage.steps.len());
+        let mut work = Work { slope: tangent.clone(), next: tangent.clone(), stage: tangent.clone() };
         for (number, step) in passage.steps.iter().enumerate() {
-            next.take(&tangent);
-            stage.take(&tangent);
-            for (index, ((_, weight), at)) in STAGES.iter().zip(&step.stages).enumerate() {
-                advance.slope(&mut slope, &stage, &at.0.jacobian(coefficients, &at.1), at);
-                next.go_on(&slope, weight * advance.length);
-                if let Some((share, _)) = STAGES.get(index + 1) {
-                    stage.take(&tangent);
-                    stage.go_on(&slope, share * advance.length);
-                    advance.straight(&mut stage, (number as f64 + share) / count);
-                }
+            match by {
+                Derivatives::OfStages => work.stages(&tangent, step, (coefficients, number), &advance),
+                Derivatives::OfMiddle => work.middle(&tangent, step, (coefficients, number), &advance),
             }
+            let Work { next, stage, .. } = &mut work;
             for turn in &step.turns {
-                let by_places = turn.added_by_places(&model);
+                let by_places = turn.added_by_places(&model, by);
                 for (index, cell) in turn.cells.iter().enumerate().filter(|(_, cell)| led[**cell]) {
                     let jump = turn.added_by_fraction(index, coefficients) * advance.length;
-                    for (from, slopes) in [&tangent, &stage].into_iter().zip(&turn.slopes) {
+                    for (from, slopes) in [&tangent, &*stage].into_iter().zip(&turn.slopes) {
                         for (other, slope) in turn.cells.iter().zip(slopes) {
                             let block =
                                 [jump.x * slope.x, jump.x * slope.y, jump.y * slope.x, jump.y * slope.y];
                             next.add(*cell, &block, from, *other);
                         }
                     }
-                    next.add_dense(*cell, &(turn.added_by_coefficients(index, basis) * advance.length));
-                    for (from, of_cells) in [&tangent, &stage].into_iter().zip(&by_places) {
+                    next.add_dense(*cell, &(turn.added_by_coefficients(index, basis, by) * advance.length));
+                    for (from, of_cells) in [&tangent, &*stage].into_iter().zip(&by_places) {
                         for (other, block) in &of_cells[index] {
                             next.add(*cell, &block.map(|b| b * advance.length), from, *other as usize);
                         }
                     }
                 }
             }
-            advance.straight(&mut next, (number + 1) as f64 / count);
-            std::mem::swap(&mut tangent, &mut next);
+            advance.straight(next, number as f64 + 1.0);
+            std::mem::swap(&mut tangent, next);
         }
         tangent
     }
@@ -238,6 +232,74 @@ impl Tangent {
     }
 }
 
+/// Derivatives on their way.
+struct Work {
+    slope: Tangent,
+    /// Those at the end of a step, without its transitions.
+    next: Tangent,
+    /// Those at a stage; of a step that is done, at its last one.
+    stage: Tangent,
+}
+
+impl Work {
+    /// A step by the method of the passage: with the derivatives of each of its stages.
+    fn stages(
+        &mut self,
+        from: &Tangent,
+        step: &Step<'_>,
+        (coefficients, number): (&[f64], usize),
+        advance: &Advance<'_>,
+    ) {
+        let Self { slope, next, stage } = self;
+        next.take(from);
+        stage.take(from);
+        for (index, ((_, weight), at)) in STAGES.iter().zip(&step.stages).enumerate() {
+            advance.slope(slope, stage, &Local::at(at, coefficients));
+            next.go_on(slope, weight * advance.length);
+            if let Some((share, _)) = STAGES.get(index + 1) {
+                stage.take(from);
+                stage.go_on(slope, share * advance.length);
+                advance.straight(stage, number as f64 + share);
+            }
+        }
+    }
+
+    /// A step with the derivatives at its middle, held: to second order.
+    fn middle(
+        &mut self,
+        from: &Tangent,
+        step: &Step<'_>,
+        (coefficients, number): (&[f64], usize),
+        advance: &Advance<'_>,
+    ) {
+        let Self { slope, next, stage } = self;
+        let (middle, share) = (Local::at(&step.stages[MIDDLE], coefficients), STAGES[MIDDLE].0);
+        advance.slope(slope, from, &middle);
+        stage.take(from);
+        stage.go_on(slope, share * advance.length);
+        advance.straight(stage, number as f64 + share);
+        advance.slope(slope, stage, &middle);
+        next.take(from);
+        next.go_on(slope, advance.length);
+        stage.take(next);
+        advance.straight(stage, number as f64 + 1.0);
+    }
+}
+
+/// Derivatives of velocities at a stage.
+struct Local<'a> {
+    velocities: &'a [Vector<f64>],
+    jacobian: BlockMatrix,
+    by_coefficient: Columns,
+}
+
+impl<'a> Local<'a> {
+    fn at((cells, velocities): &'a Stage<'_>, coefficients: &[f64]) -> Self {
+        let by_coefficient = cells.evaluate(coefficients).by_coefficient;
+        Self { velocities, jacobian: cells.jacobian_of_cells(coefficients), by_coefficient }
+    }
+}
+
 /// What does not change from step to step.
 struct Advance<'a> {
     /// Whether cells crawl.
@@ -252,7 +314,7 @@ struct Advance<'a> {
 
 impl Advance<'_> {
     /// J dx + X dβ + (dd + du) / T for the cells that are led.
-    fn slope(&self, to: &mut Tangent, from: &Tangent, jacobian: &BlockMatrix, at: &Moving<'_>) {
+    fn slope(&self, to: &mut Tangent, from: &Tangent, at: &Local<'_>) {
         to.block.fill([0.0; 4]);
         to.dense.fill(0.0);
         let width = to.width;
@@ -261,7 +323,7 @@ impl Advance<'_> {
         for cell in (0..self.led.len()).filter(|cell| self.led[*cell]) {
             to.dense[2 * width * cell] = 1.0 / self.span;
             to.dense[2 * width * cell + width + 1] = 1.0 / self.span;
-            if !is_known(at.1.of_cells[cell]) {
+            if !is_known(at.velocities[cell]) {
                 continue;
             }
             let own = to.start[cell]..to.start[cell + 1];
@@ -273,7 +335,7 @@ impl Advance<'_> {
             if self.crawls {
                 row[index[2 * self.led.len() + cell] as usize] = IDENTITY.map(|one| one / self.span);
             }
-            for (other, block) in jacobian.row(cell) {
+            for (other, block) in at.jacobian.row(cell) {
                 for (column, b) in from.row(other) {
                     accumulate(&mut row[index[column] as usize], block, b);
                 }
@@ -283,16 +345,16 @@ impl Advance<'_> {
             to.column[own].iter().for_each(|column| index[*column as usize] = OUT_OF_REACH);
             let dense = &mut to.dense[2 * width * cell..];
             for (k, along) in self.along.iter().enumerate() {
-                let x: Vector<f64> = combined(&at.1.by_coefficient, along, cell);
+                let x: Vector<f64> = combined(&at.by_coefficient, along, cell);
                 dense[DRIFT + k] += x.x;
                 dense[width + DRIFT + k] += x.y;
             }
         }
     }
 
-    /// Sets the rows of the cells that go straight, after a share of the interval.
-    fn straight(&self, to: &mut Tangent, share: f64) {
-        let cells = self.led.len();
+    /// Sets the rows of the cells that go straight, after so many steps.
+    fn straight(&self, to: &mut Tangent, steps: f64) {
+        let (cells, share) = (self.led.len(), steps * self.length / self.span);
         for cell in (0..cells).filter(|cell| !self.led[*cell]) {
             let own = to.start[cell]..to.start[cell + 1];
             for at in own {

@@ -8,8 +8,7 @@
 //! the stages of a step, at its shares c_i and with weights w_i, those that have the new neighbours (the second sum) would count the jump from
 //! wherever they are. With the further term the displacement does not leap where a transition moves from one stage, or one step, to another.
 
-use super::passage::STAGES;
-use crate::objective::Moving;
+use super::passage::{Derivatives, MIDDLE, STAGES, Stage};
 use crate::objective::Nudged;
 use nalgebra::DMatrix;
 use std::sync::Arc;
@@ -27,8 +26,10 @@ pub(super) struct Turn {
     fraction: f64,
     /// The jump at the beginning of the step and at its last stage.
     jumps: [Jump; 2],
-    /// What these weigh.
+    /// What these weigh beside the stages.
     weights: [f64; 2],
+    /// What they weigh beside the second estimate of the middle alone.
+    beside_middle: [f64; 2],
     /// Derivative of the fraction by the places of the four cells at the beginning and at the last stage.
     pub slopes: [[Vector<f64>; 4]; 2],
 }
@@ -67,7 +68,7 @@ pub(super) fn single_terms(structure: &Structure, environment: &Arc<Environment>
 
 impl Turn {
     /// The transitions within a step that takes a share of the time between two frames.
-    pub fn within(stages: &[Moving<'_>; 4], terms: &[Model<f64>], share: f64) -> Vec<Self> {
+    pub fn within(stages: &[Stage<'_>; 4], terms: &[Model<f64>], share: f64) -> Vec<Self> {
         let least = GRAZING * share;
         let ends = [&stages[0].0, &stages[3].0];
         let turn = |transition: Transition| {
@@ -93,14 +94,18 @@ impl Turn {
                 Jump::new(ends[0], vanishing, cells, 1.0, terms)?,
                 Jump::new(ends[1], appearing, cells, -1.0, terms)?,
             ];
-            let mut weights = [0.5 * (1.0 - fraction).powi(2), 0.5 * (1.0 - fraction * fraction)];
-            for ((share, weight), stage) in STAGES.iter().zip(stages) {
+            let whole = [0.5 * (1.0 - fraction).powi(2), 0.5 * (1.0 - fraction * fraction)];
+            let (mut weights, mut beside_middle) = (whole, whole);
+            for (number, ((share, weight), stage)) in STAGES.iter().zip(stages).enumerate() {
                 if stage.0.tessellation.has_edge(&ends[1].tessellation, gained) {
                     weights[0] -= weight * (1.0 - share);
                     weights[1] -= weight * share;
+                    if number == MIDDLE {
+                        beside_middle = [whole[0] - (1.0 - share), whole[1] - share];
+                    }
                 }
             }
-            Some(Self { cells, fraction, jumps, weights, slopes })
+            Some(Self { cells, fraction, jumps, weights, beside_middle, slopes })
         };
         Transition::between(&ends[0].tessellation, &ends[1].tessellation)
             .into_iter()
@@ -118,23 +123,36 @@ impl Turn {
         self.combined(number, coefficients, [self.fraction - 1.0, -self.fraction])
     }
 
+    /// What its jumps weigh beside what derivatives are made of.
+    fn weights(&self, by: Derivatives) -> [f64; 2] {
+        match by {
+            Derivatives::OfStages => self.weights,
+            Derivatives::OfMiddle => self.beside_middle,
+        }
+    }
+
     /// Derivative of the same, for each of the four cells, by the positions at the beginning and at the last stage, the fraction held.
-    pub fn added_by_places(&self, model: &Model<f64>) -> [JumpSlopes; 2] {
+    pub fn added_by_places(&self, model: &Model<f64>, by: Derivatives) -> [JumpSlopes; 2] {
         [0, 1].map(|end| {
             let Jump { exchange, order, sign, .. } = &self.jumps[end];
             let mut slopes = exchange.slopes(model);
-            let factor = sign * self.weights[end];
+            let factor = sign * self.weights(by)[end];
             slopes.iter_mut().flatten().flat_map(|(_, block)| block).for_each(|entry| *entry *= factor);
             order.map(|number| std::mem::take(&mut slopes[number]))
         })
     }
 
     /// Derivative of the same by the free coefficients, whose directions are the columns of `basis` (2, p).
-    pub fn added_by_coefficients(&self, number: usize, basis: &DMatrix<f64>) -> DMatrix<f64> {
+    pub fn added_by_coefficients(
+        &self,
+        number: usize,
+        basis: &DMatrix<f64>,
+        by: Derivatives,
+    ) -> DMatrix<f64> {
         let mut x = DMatrix::zeros(2, basis.ncols());
         for (k, mut column) in x.column_iter_mut().enumerate() {
             let along = basis.column(k);
-            column.copy_from(&self.added(number, along.as_slice()));
+            column.copy_from(&self.combined(number, along.as_slice(), self.weights(by)));
         }
         x
     }
