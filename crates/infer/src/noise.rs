@@ -227,7 +227,8 @@ mod tests {
         let nudged = objective.place(0, nudges[0]).unwrap();
         let c = space.coefficients(free);
         let evaluated = nudged.evaluate(c.as_slice());
-        let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated).to_dense());
+        let j =
+            DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated.of_cells).to_dense());
         let x = DMatrix::from_fn(72, 4, |row, term| evaluated.by_coefficient[term][row / 2][row % 2]);
         let residual: Vec<f64> = residuals(&frames[0], &evaluated.predicted)
             .into_iter()

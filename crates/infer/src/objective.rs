@@ -47,6 +47,14 @@ pub(crate) struct Nudged<'a> {
 }
 
 /// What the model says of a frame with some coefficients.
+pub(crate) struct Predicted {
+    /// Velocities of the cells.
+    pub of_cells: Vec<Vector<f64>>,
+    /// Velocities as they are measured, where these are at the points of a grid.
+    on_grid: Option<Vec<Vector<f64>>>,
+}
+
+/// The same with derivatives.
 pub(crate) struct Evaluated {
     /// Velocities of the cells.
     pub of_cells: Vec<Vector<f64>>,
@@ -56,8 +64,15 @@ pub(crate) struct Evaluated {
     pub by_coefficient: Columns,
 }
 
+impl Predicted {
+    /// Velocities as they are measured: of the cells, or at the grid points.
+    pub fn as_measured(&self) -> &[Vector<f64>] {
+        self.on_grid.as_ref().unwrap_or(&self.of_cells)
+    }
+}
+
 /// Cells at some time, with the velocities that the model gives them.
-pub(crate) type Moving<'a> = (Nudged<'a>, Evaluated);
+pub(crate) type Moving<'a> = (Nudged<'a>, Predicted);
 
 /// One frame at some positions with its residuals and their derivatives.
 pub(crate) struct Measurable<'a> {
@@ -100,16 +115,14 @@ impl<'a> Nudged<'a> {
         let Self { structure, tessellation, positions, environment, .. } = self;
         let columns = self.columns.get_or_init(|| structure.columns(tessellation, positions, environment));
         let of_cells = structure.evaluate(tessellation, positions, columns, coefficients, environment);
+        let by_coefficient = of_cells.by_coefficient;
+        let of_cells = of_cells.velocities;
         match &self.sampling {
-            None => Evaluated {
-                predicted: of_cells.velocities.clone(),
-                of_cells: of_cells.velocities,
-                by_coefficient: of_cells.by_coefficient,
-            },
+            None => Evaluated { predicted: of_cells.clone(), of_cells, by_coefficient },
             Some(sampling) => Evaluated {
-                predicted: sampling.average(&of_cells.velocities),
-                by_coefficient: of_cells.by_coefficient.iter().map(|x| sampling.average(x)).collect(),
-                of_cells: of_cells.velocities,
+                predicted: sampling.average(&of_cells),
+                by_coefficient: by_coefficient.iter().map(|x| sampling.average(x)).collect(),
+                of_cells,
             },
         }
     }
@@ -127,6 +140,12 @@ impl<'a> Nudged<'a> {
         model
     }
 
+    /// Velocities of the cells, and as they are measured.
+    pub fn predict(&self, coefficients: &[f64]) -> Predicted {
+        let of_cells = self.velocities(coefficients);
+        Predicted { on_grid: self.sampling.as_ref().map(|sampling| sampling.average(&of_cells)), of_cells }
+    }
+
     /// Velocities of the cells alone.
     pub fn velocities(&self, coefficients: &[f64]) -> Vec<Vector<f64>> {
         velocities(&self.tessellation, &self.positions, &self.acting(coefficients))
@@ -138,13 +157,11 @@ impl<'a> Nudged<'a> {
     }
 
     /// The derivative of what is measured with respect to the positions.
-    pub fn jacobian(&self, coefficients: &[f64], evaluated: &Evaluated) -> BlockMatrix {
+    pub fn jacobian(&self, coefficients: &[f64], velocities: &[Vector<f64>]) -> BlockMatrix {
         let of_cells = self.jacobian_of_cells(coefficients);
         match &self.sampling {
             None => of_cells,
-            Some(sampling) => {
-                sampling.jacobian(&self.tessellation, &self.positions, &evaluated.of_cells, &of_cells)
-            }
+            Some(sampling) => sampling.jacobian(&self.tessellation, &self.positions, velocities, &of_cells),
         }
     }
 }
@@ -250,8 +267,8 @@ impl<'a> Objective<'a> {
     fn parts_of(&self, placed: &[Moving<'_>], parameters: &[f64]) -> Parts {
         let (free, nudges) = self.split(parameters);
         let floor = self.floor() / self.spring();
-        let of_frame = |((frame, nudges), (nudged, evaluated)): ((&Observation, &&[f64]), &Moving<'_>)| {
-            let squares = residuals(frame, &evaluated.predicted)
+        let of_frame = |((frame, nudges), (nudged, predicted)): ((&Observation, &&[f64]), &Moving<'_>)| {
+            let squares = residuals(frame, predicted.as_measured())
                 .into_iter()
                 .map(|(datum, rest)| frame.weight(datum) * rest.norm_squared());
             let unseen = nudges.chunks_exact(2).enumerate().filter(|(cell, _)| !frame.is_seen(*cell));
@@ -301,8 +318,8 @@ impl<'a> Placing for Objective<'a> {
         let coefficients = self.space.coefficients(free);
         let of_frame = |(index, nudges): (usize, &&[f64])| {
             let nudged = self.place_with_own(index, nudges, coefficients.as_slice())?;
-            let evaluated = nudged.evaluate(coefficients.as_slice());
-            Ok((nudged, evaluated))
+            let predicted = nudged.predict(coefficients.as_slice());
+            Ok((nudged, predicted))
         };
         // Of several faults the first is told, whatever thread comes upon it.
         let all: Vec<Result<Moving<'_>, Error>> = nudges.par_iter().enumerate().map(of_frame).collect();

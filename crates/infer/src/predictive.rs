@@ -124,8 +124,11 @@ mod tests {
             for (index, nudges) in nudges.iter().enumerate() {
                 let placed = objective.place(index, nudges).unwrap();
                 let evaluated = placed.evaluate(c.as_slice());
-                let own =
-                    DMatrix::from_row_slice(72, 72, &placed.jacobian(c.as_slice(), &evaluated).to_dense());
+                let own = DMatrix::from_row_slice(
+                    72,
+                    72,
+                    &placed.jacobian(c.as_slice(), &evaluated.of_cells).to_dense(),
+                );
                 let rests = residuals(&frames[index], &evaluated.predicted);
                 let flat = DVector::from_iterator(72, rests.iter().flat_map(|(_, rest)| [rest.x, rest.y]));
                 y.rows_mut(72 * index, 72).copy_from(&(flat + &own * DVector::from_column_slice(nudges)));

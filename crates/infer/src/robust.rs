@@ -107,7 +107,7 @@ fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)
         .map(|(index, ((frame, nudges), linearised))| {
             let nudged = objective.place(index, nudges)?;
             let evaluated = nudged.evaluate(coefficients.as_slice());
-            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
+            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated.of_cells);
             let factor = linearised.factor(objective.spring())?;
             let rests = residuals(frame, &evaluated.predicted);
             let is_sound = |rest: &Vector<f64>| rest.norm_squared() / variance < SOUND;

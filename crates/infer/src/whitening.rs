@@ -38,7 +38,7 @@ pub(crate) fn whitened_residuals(
     for (index, nudges) in nudges(frames, inference).iter().enumerate() {
         let placed = objective.place(index, nudges)?;
         let evaluated = placed.evaluate(coefficients);
-        let jacobian = placed.jacobian(coefficients, &evaluated);
+        let jacobian = placed.jacobian(coefficients, &evaluated.of_cells);
         let off = misplacements(&frames[index], &placed, nudges);
         let (rows, y): (Vec<usize>, Vec<Vector<f64>>) = residuals(&frames[index], &evaluated.predicted)
             .into_iter()

@@ -66,7 +66,7 @@ fn the_score_is_that_of_the_dense_problem() {
     let c = base.inference.coefficients.as_slice();
     let evaluated = placed.evaluate(c);
     let n = 2 * frames[0].positions.len();
-    let j = DMatrix::from_row_slice(n, n, &placed.jacobian(c, &evaluated).to_dense());
+    let j = DMatrix::from_row_slice(n, n, &placed.jacobian(c, &evaluated.of_cells).to_dense());
     let rest = crate::least_squares::residuals(&frames[0], &evaluated.predicted);
     let e = DVector::from_iterator(n, rest.iter().flat_map(|(_, rest)| [rest.x, rest.y]));
     let y = e + &j * DVector::from_column_slice(nudges);

@@ -91,7 +91,7 @@ impl Law<'_> {
     pub fn judge(&self, frame: &Observation) -> Vec<Judged> {
         let nudged = Nudged::as_measured(frame, self.structure);
         let evaluated = nudged.evaluate(self.coefficients);
-        let jacobian = nudged.jacobian(self.coefficients, &evaluated);
+        let jacobian = nudged.jacobian(self.coefficients, &evaluated.of_cells);
         let of_cell = |cell: usize| Some(frame.stiffness(cell)).filter(|m| *m > 0.0).map(f64::recip);
         residuals(frame, &evaluated.predicted)
             .into_iter()

@@ -148,7 +148,7 @@ impl Neighbourhood {
         let nudged =
             Nudged::placed(law.structure, self.environment(beside)?, positions, tessellation, sampling);
         let evaluated = nudged.evaluate(law.coefficients);
-        let jacobian = nudged.jacobian(law.coefficients, &evaluated);
+        let jacobian = nudged.jacobian(law.coefficients, &evaluated.of_cells);
         let own = target.map(|target| (fixed, target));
         let data: Vec<(usize, Vector<f64>)> = self.targets.iter().copied().chain(own).collect();
         let measured: Vec<Option<f64>> =

@@ -79,8 +79,8 @@ impl<'a> Objective<'a> {
         nudges: &[f64],
     ) -> Result<Measurable<'a>, Error> {
         let nudged = self.place_with_own(index, nudges, coefficients)?;
-        let evaluated = nudged.evaluate(coefficients);
-        let placed = (nudged, evaluated);
+        let predicted = nudged.predict(coefficients);
+        let placed = (nudged, predicted);
         let (rows, jacobian) = self.derivatives(index, coefficients, nudges, &placed)?;
         Ok(Measurable { nudged: placed.0, rows, jacobian })
     }
@@ -91,20 +91,18 @@ impl<'a> Objective<'a> {
         index: usize,
         coefficients: &[f64],
         nudges: &[f64],
-        (nudged, evaluated): &Moving<'_>,
+        (nudged, predicted): &Moving<'_>,
     ) -> Result<(Vec<Row>, BlockMatrix), Error> {
         let frame = &self.frames[index];
-        let of_free = match self.own {
+        let evaluated = match self.own {
             // What a cell has of its own does not change with the coefficients.
-            Some(_) => {
-                let alike = self.place(index, nudges)?.evaluate(coefficients);
-                free_rows(frame, &alike.by_coefficient, self.space)
-            }
-            None => free_rows(frame, &evaluated.by_coefficient, self.space),
+            Some(_) => self.place(index, nudges)?.evaluate(coefficients),
+            None => nudged.evaluate(coefficients),
         };
-        let rests = residuals(frame, &evaluated.predicted).into_iter();
+        let of_free = free_rows(frame, &evaluated.by_coefficient, self.space);
+        let rests = residuals(frame, predicted.as_measured()).into_iter();
         let rows = rests.zip(of_free).map(|((datum, rest), x)| (datum, rest, x)).collect();
-        let mut jacobian = nudged.jacobian(coefficients, evaluated);
+        let mut jacobian = nudged.jacobian(coefficients, &predicted.of_cells);
         if !frame.is_free() {
             jacobian = jacobian.only(|cell| !frame.is_held(cell));
         }
@@ -148,12 +146,12 @@ impl<'a> Objective<'a> {
             .map(|(index, ((frame, nudges), placed))| {
                 let (mut rows, mut jacobian) =
                     self.derivatives(index, coefficients.as_slice(), nudges, placed)?;
-                let (nudged, evaluated) = placed;
+                let (nudged, predicted) = placed;
                 for (_, _, x) in &mut rows {
                     *x = std::mem::take(x).resize_horizontally(p, 0.0);
                 }
                 if let (Some(k), Some(sampling)) = (of_width, &nudged.sampling) {
-                    let slopes = sampling.width_slope(&evaluated.of_cells);
+                    let slopes = sampling.width_slope(&predicted.of_cells);
                     let mut slopes: Vec<Vector<f64>> =
                         rows.iter().map(|(datum, ..)| slopes[*datum]).collect();
                     frame.remove_background(&mut slopes);

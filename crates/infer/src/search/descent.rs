@@ -153,7 +153,7 @@ impl Problem<'_> {
         for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
             let nudged = objective.place(index, nudges)?;
             let evaluated = nudged.evaluate(coefficients.as_slice());
-            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated);
+            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated.of_cells);
             let rows = free_rows(frame, &evaluated.by_coefficient, objective.space);
             for ((datum, rest), x) in residuals(frame, &evaluated.predicted).into_iter().zip(rows) {
                 for k in 0..p {

@@ -36,7 +36,7 @@ fn the_criterion_is_that_of_the_dense_form() {
     let differing = Objective { frames: &differing, own: None, ..objective };
     let nudged = differing.place(0, nudges[0]).unwrap();
     let evaluated = nudged.evaluate(c.as_slice());
-    let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated).to_dense());
+    let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated.of_cells).to_dense());
     let x = DMatrix::from_fn(72, 4, |row, term| columns[term][row / 2][row % 2]);
     let rest: Vec<f64> =
         residuals(&frames[0], &evaluated.predicted).iter().flat_map(|(_, rest)| [rest.x, rest.y]).collect();

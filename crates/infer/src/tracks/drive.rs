@@ -19,7 +19,7 @@
 
 use super::alignment::share;
 use super::memory::{Memory, NONE, Polarities, innovation};
-use super::objective::{MovieObjective, Placed};
+use super::objective::{Instant, MovieObjective, Placed};
 use super::row_builder::{IDENTITY, RowBuilder};
 use super::states::{Place, States};
 use crate::Drives;
@@ -148,20 +148,18 @@ impl MovieObjective<'_> {
             },
             responses: Vec::new(),
         };
-        let of_frame = |(frame, (nudged, evaluated)): (usize, &(Nudged<'_>, _))| {
-            let evaluated: &crate::objective::Evaluated = evaluated;
+        let of_frame = |(frame, (nudged, evaluated)): (usize, &Instant<'_>)| {
             let mut fields = Fields { of_cells: [Vec::new(), Vec::new()], jacobians: Vec::new() };
             if drives.contact_inhibition {
                 let environment = self.states.instants[frame].cells.environment().clone();
                 let (positions, tessellation) = (nudged.positions.clone(), nudged.tessellation.clone());
                 let away = Nudged::placed(&contacts, environment, positions, tessellation, None);
-                let own = away.evaluate(&[sign]);
-                fields.jacobians.push(away.jacobian(&[sign * c[0]], &own));
-                fields.of_cells[0] = own.of_cells;
+                fields.jacobians.push(away.jacobian_of_cells(&[sign * c[0]]));
+                fields.of_cells[0] = away.velocities(&[sign]);
             }
             if drives.velocity_alignment {
                 let scaled: Vec<f64> = coefficients.iter().map(|own| own * c[1] * interval).collect();
-                fields.jacobians.push(nudged.jacobian(&scaled, evaluated));
+                fields.jacobians.push(nudged.jacobian_of_cells(&scaled));
                 fields.of_cells[1] = evaluated.of_cells.iter().map(|v| v * interval).collect();
             }
             fields

@@ -2,7 +2,7 @@
 //! information, and go on by the model without noise.
 
 use super::movie::{Movie, Sighting, Track};
-use super::objective::{MovieObjective, Placed};
+use super::objective::{Instant, MovieObjective, Placed};
 use super::passage::Passage;
 use crate::Error;
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ impl<'a> Laid<'a> {
     pub fn new(objective: MovieObjective<'a>, placed: &Placed<'_>, parameters: &[f64]) -> Self {
         let (free, displacements) = objective.split(parameters);
         let coefficients = objective.space.coefficients(free).as_slice().to_vec();
-        let of_frame = |(frame, moving): (usize, &(_, crate::objective::Evaluated))| {
+        let of_frame = |(frame, moving): (usize, &Instant<'_>)| {
             let tracks = objective.states.instants[frame].tracks.iter().copied();
             let positions = objective.positions(frame, displacements);
             tracks.zip(positions.into_iter().zip(moving.1.of_cells.iter().copied())).collect()

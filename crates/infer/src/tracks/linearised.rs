@@ -158,7 +158,7 @@ impl MovieObjective<'_> {
         let of_frames: Vec<BlockMatrix> = match placed.passages.is_empty() {
             true => {
                 let instants = placed.instants.par_iter();
-                instants.map(|(nudged, evaluated)| nudged.jacobian(coefficients, evaluated)).collect()
+                instants.map(|(nudged, _)| nudged.jacobian_of_cells(coefficients)).collect()
             }
             false => Vec::new(),
         };

@@ -17,7 +17,7 @@ use super::passage::Passage;
 use super::rule::Rule;
 use super::states::States;
 use crate::normal_equations::NormalEquations;
-use crate::objective::{Moving, Nudged};
+use crate::objective::{Evaluated, Nudged};
 use crate::placing::Placing;
 use crate::position_rows::squares;
 use crate::robust::{loss, posterior_weight};
@@ -51,9 +51,12 @@ pub(crate) struct MovieObjective<'a> {
     pub memory: Option<Memory>,
 }
 
+/// The cells of a frame, with the velocities that the model gives them and their derivatives by the coefficients.
+pub(crate) type Instant<'a> = (Nudged<'a>, Evaluated);
+
 /// All frames at some places, and how the cells get from one to the next.
 pub(crate) struct Placed<'a> {
-    pub instants: Vec<Moving<'a>>,
+    pub instants: Vec<Instant<'a>>,
     /// One for each interval; none for a rule without steps.
     pub passages: Vec<Passage<'a>>,
 }
@@ -145,10 +148,10 @@ impl<'a> MovieObjective<'a> {
             Ok((nudged, evaluated))
         };
         // Of several faults the first is told, whatever thread comes upon it.
-        let instants: Vec<Result<Moving<'_>, Error>> =
+        let instants: Vec<Result<Instant<'_>, Error>> =
             (0..states.instants.len()).into_par_iter().map(moving).collect();
         let instants = instants.into_iter().collect::<Result<Vec<_>, _>>()?;
-        let passage = |(interval, pair): (usize, &[Moving<'_>])| {
+        let passage = |(interval, pair): (usize, &[Instant<'_>])| {
             let ends = [&pair[0].0.positions[..], &pair[1].0.positions[..]];
             let beside = self.beside(interval, ends, displacements);
             Passage::new(*self, interval, self.rule.steps(), ends[0], &beside, coefficients.as_slice())
@@ -241,7 +244,7 @@ impl<'a> MovieObjective<'a> {
         displacements: &[f64],
         what: impl Fn(usize, &Observation, &Nudged<'_>, &[f64]) -> T + Sync,
     ) -> Vec<T> {
-        let of_frame = |(frame, (nudged, _)): (usize, &Moving<'_>)| {
+        let of_frame = |(frame, (nudged, _)): (usize, &Instant<'_>)| {
             let instant = &self.states.instants[frame];
             let cells = 0..instant.tracks.len();
             let nudges: Vec<f64> = cells

@@ -42,9 +42,9 @@ impl Outset {
         let interval = objective.movie.interval();
         let gamma = objective.gamma(displacements);
         let of_frames: Vec<Option<BlockMatrix>> = (placed.instants.par_iter().enumerate())
-            .map(|(frame, (nudged, evaluated))| {
+            .map(|(frame, (nudged, _))| {
                 let begins = states.polarities.firsts.iter().any(|first| first.frame == frame);
-                begins.then(|| nudged.jacobian(&gamma, evaluated))
+                begins.then(|| nudged.jacobian_of_cells(&gamma))
             })
             .collect();
         let expected = objective.expected_polarities(placed, displacements);
