@@ -25,7 +25,7 @@ pub struct ChannelReport {
     /// Length, along y.
     pub length: f64,
     /// `x` with torque-free walls at both edges; null in a periodic box.
-    #[schemars(extend("enum" = ["x"]))]
+    #[schemars(extend("enum" = ["x", null]))]
     pub walls: Option<&'static str>,
     /// The cell size ℓ₀ at the beginning.
     pub cell_size: f64,

@@ -18,6 +18,14 @@ pub(super) const LEAD: f64 = 6.0;
 /// Lead of the linear problem below which it is refitted to know.
 const UNSURE: f64 = 25.0;
 
+/// Least statistic that fitted coefficients are expected to have, as a share of the one found, which is that of the linear problem without them. A
+/// third of the coefficients has a ninth.
+const BORNE_OUT: f64 = 0.1;
+
+/// Why an effect is taken back whose fit knows nothing of it.
+const NOT_THERE: &str =
+    "what speaks for it in the linear problem is not borne out: fitted with all else, it is hardly there";
+
 /// The effects added.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Selection {
@@ -66,11 +74,11 @@ pub(super) fn without_each(
             all.push(crawling.tested(setting, base, &others));
             continue;
         }
+        let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
         let own_lineup;
         let lineup = if others.is_empty() {
             &base.lineup
         } else if setting.candidates[*candidate].is_linear() {
-            let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
             own_lineup = model.lineup.restored(*candidate, &own);
             &own_lineup
         } else {
@@ -99,10 +107,12 @@ pub(super) fn without_each(
         });
         let member = Member { candidate: *candidate, places, others: &others, statistic: score.statistic };
         let adjusted_p = chance.adjusted(score.p);
+        let is_there = projected.expected(*candidate, &own, &score) >= BORNE_OUT * score.statistic;
         all.push(Tested {
             candidate: *candidate,
             // What is no more than chance need not be looked at.
             weakness: match adjusted_p < setting.level(others.len()) {
+                true if !is_there => Some(NOT_THERE),
                 true => member.weakness(setting, base, model)?,
                 false => None,
             },

@@ -22,8 +22,8 @@ pub(super) const STAGES: [(f64, f64); 4] =
 /// The stage that is the second estimate of the middle of a step.
 pub(super) const MIDDLE: usize = 2;
 
-/// Of how many steps at least derivatives of their middle are as good as those of all stages: these then err by less than a thousandth.
-const MANY_STEPS: usize = 4;
+/// Of how many steps at least derivatives of their middle are as good as those of all stages, beside what is left out of both.
+const MANY_STEPS: usize = 8;
 
 /// What derivatives of a passage are made of.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

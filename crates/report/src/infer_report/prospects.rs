@@ -21,7 +21,7 @@ pub struct ProspectsReport {
     /// What is least certain: the name of a quantity, or of two effects that the data cannot tell apart.
     pub least_certain: Option<String>,
     /// The measurement that makes that most certain.
-    #[schemars(extend("enum" = ["twice_the_frames", "half_the_interval", "half_the_position_noise", "twice_the_field"]))]
+    #[schemars(extend("enum" = ["twice_the_frames", "half_the_interval", "half_the_position_noise", "twice_the_field", null]))]
     pub recommended: Option<String>,
     /// Its standard error then, as a share of the present one.
     pub share: Option<f64>,

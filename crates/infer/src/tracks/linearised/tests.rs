@@ -150,14 +150,14 @@ fn rows_are_the_derivatives_of_the_residuals() {
     {
         let still = misses(0.1, Rule::Trapezoid, crawling);
         assert!(quantile(&still, 1.0) < 1e-6, "{still:?}");
-        for steps in [1, 2, 4] {
+        for steps in [1, 2, 4, 8] {
             let short = misses(0.001, Rule::RungeKutta(steps), crawling);
             assert!(
                 quantile(&short, 0.9) < beyond * 1e-4 && quantile(&short, 1.0) < beyond * 2e-3,
                 "{short:?}"
             );
         }
-        for steps in [2, 4] {
+        for steps in [2, 4, 8] {
             let long = misses(0.1, Rule::RungeKutta(steps), crawling);
             let [middle, high] = [0.5, 0.9].map(|share| quantile(&long, share));
             assert!(middle < most && high < nearly_all, "{crawling:?} {steps}: {middle} {high}");
