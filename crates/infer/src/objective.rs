@@ -74,11 +74,13 @@ impl Predicted {
 /// Cells at some time, with the velocities that the model gives them.
 pub(crate) type Moving<'a> = (Nudged<'a>, Predicted);
 
+/// Datum, residual, and its derivative by the free coefficients (2, p).
+pub(crate) type Row = (usize, Vector<f64>, DMatrix<f64>);
+
 /// One frame at some positions with its residuals and their derivatives.
 pub(crate) struct Measurable<'a> {
     pub nudged: Nudged<'a>,
-    /// Datum, residual, and its derivative by the free coefficients (2, p).
-    pub rows: Vec<(usize, Vector<f64>, DMatrix<f64>)>,
+    pub rows: Vec<Row>,
     /// Derivative of what is measured by the positions.
     pub jacobian: BlockMatrix,
 }

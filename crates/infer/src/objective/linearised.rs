@@ -1,6 +1,6 @@
 //! The objective linearised about a point.
 
-use super::{Measurable, Moving, Objective};
+use super::{Measurable, Moving, Objective, Row};
 use crate::Error;
 use crate::least_squares::{free_rows, residuals};
 use crate::linearisation::{Linearisation, Local};
@@ -10,13 +10,9 @@ use crate::placing::Placing;
 use crate::position_rows::PositionRows;
 use crate::rows::Rows;
 use crate::stiffness::Stiffness;
-use nalgebra::DMatrix;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
-
-/// Datum, residual, and its derivative by the free coefficients (2, p).
-type Row = (usize, Vector<f64>, DMatrix<f64>);
 
 /// The cells of a frame that are not held, where most are.
 #[derive(Debug)]
