@@ -50,6 +50,7 @@ pub struct ChannelReport {
     /// Why the run ended before its time, if it did.
     pub ended: Option<String>,
     /// Exponential decays of the folded profiles, where one fits: `density`, `velocity_x`, `velocity_y`.
+    #[schemars(extend("propertyNames" = {"enum": ["density", "velocity_x", "velocity_y"]}))]
     pub decays: BTreeMap<&'static str, DecayRecord>,
     /// Conservation of cells.
     pub conservation: ConservationRecord,

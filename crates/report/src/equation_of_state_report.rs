@@ -20,16 +20,22 @@ pub struct EquationOfStateReport {
     /// Parameters of the model, by the names of the interface.
     pub parameters: ModelParameters,
     /// The cell size ℓ₀ that `relative_density` refers to.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub cell_size: f64,
     /// Cells of each run.
+    #[schemars(range(min = 1))]
     pub cells: usize,
     /// Runs at each density.
+    #[schemars(range(min = 2))]
     pub replicas: usize,
     /// Time before the averages.
+    #[schemars(range(min = 0.0))]
     pub relaxation: f64,
     /// Time of the averages.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub time: f64,
     /// One for each density.
+    #[schemars(length(min = 3))]
     pub points: Vec<UniformRecord>,
 }
 
@@ -37,8 +43,10 @@ pub struct EquationOfStateReport {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct UniformRecord {
     /// Cells per area ρ.
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: f64,
     /// ρ ℓ₀².
+    #[schemars(extend("exclusiveMinimum" = 0))]
     pub relative_density: f64,
     /// p = −(σ_xx + σ_yy)/2, in 1/time: friction is absorbed.
     pub pressure: Measured,

@@ -22,11 +22,13 @@ pub struct ModuliReport {
     /// Units; moduli and stresses are in 1/time.
     pub units: Units,
     /// Number of cells.
+    #[schemars(range(min = 1))]
     pub cells: usize,
     /// Parameters as used, by the names of the interface.
     pub parameters: ModelParameters,
     /// By how much cells differ, if they do.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "CellSpread")]
     pub cell_spread: Option<CellSpread>,
     /// How it was measured: amounts and times by the names of the options.
     pub settings: BTreeMap<&'static str, f64>,

@@ -26,6 +26,7 @@ pub struct PhaseReport {
     #[serde(flatten)]
     pub run: RunRecord,
     /// Cells of each run.
+    #[schemars(range(min = 1))]
     pub cells: usize,
     /// Duration of each run.
     pub time: f64,
@@ -36,12 +37,14 @@ pub struct PhaseReport {
     /// Least distance between starting positions, in ℓ₀.
     pub least_distance: f64,
     /// Runs at each point.
+    #[schemars(range(min = 1))]
     pub replicas: usize,
     /// Area elasticity K_A in K_P/ℓ₀².
     #[serde(rename = "K_A")]
     pub area_elasticity: f64,
     /// By how much cells differ, if they do.
     #[serde(skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "CellSpread")]
     pub cell_spread: Option<CellSpread>,
     /// Preferred perimeters of the columns.
     #[serde(rename = "P_0")]
@@ -50,6 +53,7 @@ pub struct PhaseReport {
     #[serde(rename = "alpha")]
     pub chiralities: Vec<f64>,
     /// Which part of the points this is, from one, and of how many.
+    #[schemars(inner(range(min = 1)))]
     pub shard: [usize; 2],
     /// Runs made.
     pub runs: usize,

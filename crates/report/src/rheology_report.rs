@@ -19,6 +19,7 @@ pub struct RheologyReport {
     /// Units of the fits.
     pub units: Units,
     /// Cells of each simulated tissue.
+    #[schemars(range(min = 1))]
     pub cells: usize,
     /// Seeds of the starting positions, the same for all fits.
     pub seeds: Vec<u64>,

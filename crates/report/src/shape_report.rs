@@ -53,12 +53,16 @@ pub struct NoteRecord {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SiteRecord {
     /// Root mean square distance of the lines along which cells touch from the bisectors of their centroids.
+    #[schemars(range(min = 0.0))]
     pub misfit_of_centroids: f64,
     /// The same with the sites.
+    #[schemars(range(min = 0.0))]
     pub misfit: f64,
     /// Root mean square distance of the sites from the centroids, over cells that do not touch the border of the image.
+    #[schemars(range(min = 0.0))]
     pub offset: f64,
     /// Median of the standard deviations of coordinates.
+    #[schemars(range(min = 0.0))]
     pub median_error: f64,
 }
 
@@ -143,6 +147,7 @@ pub struct FieldReport {
     /// Cells linked to one of the frame before, over all frames.
     pub linked: usize,
     /// Columns and rows of pixels.
+    #[schemars(inner(range(min = 1)))]
     pub size: [usize; 2],
     /// Length of a pixel.
     pub pixel_size: f64,

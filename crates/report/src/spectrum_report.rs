@@ -33,6 +33,7 @@ pub struct SpectrumReport {
     /// The mean-field theory at these parameters, where the model has no effects and K_P is positive.
     pub mean_field: Option<MeanFieldRecord>,
     /// The spectrum of each frame.
+    #[schemars(length(min = 1))]
     pub frames: Vec<FrameSpectrum>,
     /// The comparison on a lattice, where asked for.
     pub lattice: Option<LatticeRecord>,
@@ -105,10 +106,13 @@ pub struct FrameSpectrum {
     /// Those that oscillate, whatever else they do.
     pub oscillating: usize,
     /// Rates up to this count as zero.
+    #[schemars(range(min = 0.0))]
     pub tolerance: f64,
     /// ⟨ω²⟩ over all modes; null if only some were computed.
+    #[schemars(range(min = 0.0))]
     pub mean_square_frequency: Option<f64>,
     /// The same in units of K_P².
+    #[schemars(range(min = 0.0))]
     pub mean_square_frequency_over_k_p: Option<f64>,
     /// The mode that grows fastest or decays slowest, other than translations.
     pub largest_growth: Option<ModeRecord>,
@@ -138,6 +142,7 @@ pub struct ModeRecord {
     /// Angular frequency.
     pub frequency: f64,
     /// Share of the cells that take part.
+    #[schemars(range(min = 0.0))]
     pub participation: Option<f64>,
     /// Share of the divergence in the gradients.
     #[schemars(range(min = 0.0, max = 1.0))]
@@ -205,6 +210,7 @@ pub struct StripRecord {
     /// Period along the rows.
     pub period: f64,
     /// Largest speed of a cell after coming to rest between walls.
+    #[schemars(range(min = 0.0))]
     pub speed: f64,
     /// Wave numbers in the files.
     pub wave_numbers: usize,

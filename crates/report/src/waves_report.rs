@@ -78,6 +78,7 @@ pub struct LongWavesRecord {
     /// (A − Kᵒ)/ζ.
     pub A_minus_K_o: Measured,
     /// Shells that they are means of.
+    #[schemars(range(min = 1))]
     pub shells: usize,
 }
 
@@ -85,8 +86,10 @@ pub struct LongWavesRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SpectraRecord {
     /// Frames of a segment.
+    #[schemars(range(min = 2))]
     pub segment: usize,
     /// Number of segments, which overlap by half.
+    #[schemars(range(min = 1))]
     pub segments: usize,
     /// Angular frequencies.
     pub frequencies: Vec<f64>,
@@ -98,6 +101,7 @@ pub struct WaveShellRecord {
     /// Mean wave number.
     pub wave_number: f64,
     /// Wave vectors, one of each pair ±q.
+    #[schemars(range(min = 1))]
     pub wave_vectors: usize,
     /// How waves relax, where that can be told.
     pub relaxation: Option<RelaxationRecord>,
@@ -113,6 +117,7 @@ pub struct WaveShellRecord {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RelaxationRecord {
     /// τ in frames.
+    #[schemars(range(min = 1))]
     pub lag: usize,
     /// D(q).
     pub matrix: Rates,
@@ -135,6 +140,7 @@ pub struct RelaxationRecord {
     /// Its 95 % interval.
     pub frequency_ci95: [f64; 2],
     /// Stretches of waves that errors come from.
+    #[schemars(range(min = 1))]
     pub stretches: usize,
     /// Times of the slowest relaxation in the recording.
     pub relaxations: f64,

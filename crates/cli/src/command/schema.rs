@@ -6,6 +6,7 @@ use crate::program::Answer;
 use crate::terminal;
 use clap::Args;
 use schemars::Schema;
+use serde_json::Value;
 use voronudge_report as report;
 use voronudge_report::schema_of;
 
@@ -48,15 +49,23 @@ const DESCRIBED: [Described; 24] = [
     ("merge", schema_of::<report::PhaseReport>),
 ];
 
+/// The schema of what any command writes, for one of them.
+fn of_command(name: &str, mut schema: Schema) -> Schema {
+    schema.insert("title".into(), format!("report.json of voronudge {name}").into());
+    // What has a command line is the record of a run.
+    if schema.pointer("/properties/command_line").is_some()
+        && let Some(Value::Object(command)) = schema.pointer_mut("/properties/command")
+    {
+        command.insert("const".into(), name.split(' ').next().into());
+    }
+    schema
+}
+
 pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
     let wanted = arguments.command.join(" ");
     let names = DESCRIBED.map(|(name, _)| name);
     let printed = match DESCRIBED.iter().find(|(name, _)| *name == wanted) {
-        Some((name, schema)) => {
-            let mut schema = schema();
-            schema.insert("title".into(), format!("report.json of voronudge {name}").into());
-            serde_json::to_string_pretty(&schema)?
-        }
+        Some((name, schema)) => serde_json::to_string_pretty(&of_command(name, schema()))?,
         None if wanted.is_empty() => names.join("\n"),
         None => {
             return Err(Failure::new(format!("{wanted}: no command of this name writes a report.json"))

@@ -7,7 +7,7 @@
 //! Derivatives by the places of cells farther than two rings are left out: what a cell does to others falls off fast.
 
 use super::objective::MovieObjective;
-use super::passage::{Derivatives, MIDDLE, Passage, STAGES, Stage, Step, is_known};
+use super::passage::{Derivatives, Part, Passage, Stage, Step, is_known};
 use super::row_builder::IDENTITY;
 use crate::least_squares::{Columns, combined};
 use nalgebra::DMatrix;
@@ -97,10 +97,7 @@ impl Tangent {
         let by = Derivatives::of(passage.steps.len());
         let mut work = Work { slope: tangent.clone(), next: tangent.clone(), stage: tangent.clone() };
         for (number, step) in passage.steps.iter().enumerate() {
-            match by {
-                Derivatives::OfStages => work.stages(&tangent, step, (coefficients, number), &advance),
-                Derivatives::OfMiddle => work.middle(&tangent, step, (coefficients, number), &advance),
-            }
+            work.step(&tangent, step, by, (coefficients, number), &advance);
             let Work { next, stage, .. } = &mut work;
             for turn in &step.turns {
                 let by_places = turn.added_by_places(&model, by);
@@ -242,47 +239,30 @@ struct Work {
 }
 
 impl Work {
-    /// A step by the method of the passage: with the derivatives of each of its stages.
-    fn stages(
+    /// A step without its transitions.
+    fn step(
         &mut self,
         from: &Tangent,
         step: &Step<'_>,
+        by: Derivatives,
         (coefficients, number): (&[f64], usize),
         advance: &Advance<'_>,
     ) {
         let Self { slope, next, stage } = self;
         next.take(from);
         stage.take(from);
-        for (index, ((_, weight), at)) in STAGES.iter().zip(&step.stages).enumerate() {
-            advance.slope(slope, stage, &Local::at(at, coefficients));
-            next.go_on(slope, weight * advance.length);
-            if let Some((share, _)) = STAGES.get(index + 1) {
-                stage.take(from);
-                stage.go_on(slope, share * advance.length);
-                advance.straight(stage, number as f64 + share);
+        for (index, parts) in by.parts() {
+            let local = Local::at(&step.stages[*index], coefficients);
+            for Part { weight, onwards } in *parts {
+                advance.slope(slope, stage, &local);
+                next.go_on(slope, weight * advance.length);
+                if let Some(share) = onwards {
+                    stage.take(from);
+                    stage.go_on(slope, share * advance.length);
+                    advance.straight(stage, number as f64 + share);
+                }
             }
         }
-    }
-
-    /// A step with the derivatives at its middle, held: to second order.
-    fn middle(
-        &mut self,
-        from: &Tangent,
-        step: &Step<'_>,
-        (coefficients, number): (&[f64], usize),
-        advance: &Advance<'_>,
-    ) {
-        let Self { slope, next, stage } = self;
-        let (middle, share) = (Local::at(&step.stages[MIDDLE], coefficients), STAGES[MIDDLE].0);
-        advance.slope(slope, from, &middle);
-        stage.take(from);
-        stage.go_on(slope, share * advance.length);
-        advance.straight(stage, number as f64 + share);
-        advance.slope(slope, stage, &middle);
-        next.take(from);
-        next.go_on(slope, advance.length);
-        stage.take(next);
-        advance.straight(stage, number as f64 + 1.0);
     }
 }
 

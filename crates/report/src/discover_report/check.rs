@@ -9,6 +9,7 @@ pub struct CheckReport {
     /// Frames of the data set that are compared, the first of them the one from which models go on.
     pub frames: Vec<usize>,
     /// Simulated movies of each model.
+    #[schemars(range(min = 1))]
     pub draws: usize,
     /// Share of all movies, the measured one included, in which something is as unusual as the most unusual of the measured one.
     pub p: ByModel<f64>,

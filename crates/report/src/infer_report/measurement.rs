@@ -33,6 +33,7 @@ pub struct SeenRegion {
     /// Corners of the region as stated, with y as in the files; `null` for the hull, which each frame has of its own.
     pub corners: Option<Vec<[f64; 2]>>,
     /// How far from its border the circumdisks of certain triangles stay, in units of length.
+    #[schemars(range(min = 0.0))]
     pub margin: f64,
 }
 

@@ -48,10 +48,12 @@ pub struct RunRecord {
     /// Seed of all random numbers.
     pub seed: u64,
     /// Number of threads.
+    #[schemars(range(min = 1))]
     pub threads: usize,
     /// Files read.
     pub inputs: Vec<InputFile>,
     /// Wall time in seconds.
+    #[schemars(range(min = 0.0))]
     pub wall_seconds: f64,
     /// What the reader should know before using the numbers.
     pub warnings: Vec<String>,
@@ -145,6 +147,7 @@ pub struct CellCounts {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FlowGrid {
     /// Number of grid points along x and y.
+    #[schemars(inner(range(min = 1)))]
     pub grid_points: [usize; 2],
     /// Distance between grid points along x and y.
     pub spacing: [f64; 2],

@@ -24,6 +24,7 @@ pub struct ProspectsReport {
     #[schemars(extend("enum" = ["twice_the_frames", "half_the_interval", "half_the_position_noise", "twice_the_field", null]))]
     pub recommended: Option<String>,
     /// Its standard error then, as a share of the present one.
+    #[schemars(range(min = 0.0))]
     pub share: Option<f64>,
     /// Parameters that were fitted and coefficients of effects.
     pub quantities: Vec<ProspectOf>,
@@ -39,10 +40,12 @@ pub struct ProspectOf {
     /// Its value.
     pub value: f64,
     /// Its present standard error.
+    #[schemars(range(min = 0.0))]
     pub standard_error: f64,
     /// Unit of both.
     pub unit: String,
     /// Standard errors with other measurements, by name of the measurement.
+    #[schemars(extend("propertyNames" = {"enum": DESIGNS.map(|(name, _)| name)}))]
     pub expected: BTreeMap<String, f64>,
 }
 
@@ -54,8 +57,10 @@ pub struct AmbiguityReport {
     /// The one that could stand in its place.
     pub other: String,
     /// By how many standard errors the first stands out with the other in the model.
+    #[schemars(range(min = 0.0))]
     pub separation: f64,
     /// The same with other measurements, by name of the measurement.
+    #[schemars(extend("propertyNames" = {"enum": DESIGNS.map(|(name, _)| name)}))]
     pub expected: BTreeMap<String, f64>,
 }
 

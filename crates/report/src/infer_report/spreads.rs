@@ -10,6 +10,7 @@ pub struct SpreadReport {
     #[schemars(extend("enum" = ["K_A", "P_0", "A_0", "alpha"]))]
     pub parameter: String,
     /// Standard deviation over cells, relative to the mean parameter.
+    #[schemars(range(min = 0.0))]
     pub relative: f64,
     /// Ends of its 95 % interval; an end that is not finite is not bounded by the data.
     pub ci95: [f64; 2],

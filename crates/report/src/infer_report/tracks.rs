@@ -19,6 +19,7 @@ pub struct TracksReport {
     /// Tracks that end before the last frame.
     pub ended: usize,
     /// Steps of integration from one frame to the next.
+    #[schemars(range(min = 1))]
     pub substeps: usize,
     /// Order of the rule in the length of a step.
     #[schemars(extend("enum" = [2, 4]))]

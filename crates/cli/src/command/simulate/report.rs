@@ -14,6 +14,7 @@ use voronudge_simulate::{Driving, Method, Walls};
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Request {
     /// Number of cells.
+    #[schemars(range(min = 1))]
     pub cells: usize,
     /// Sides of the periodic box.
     #[serde(rename = "box")]
@@ -25,6 +26,7 @@ pub(super) struct Request {
     /// Time step.
     pub dt: f64,
     /// Frames kept.
+    #[schemars(range(min = 1))]
     pub frames: usize,
     /// Method of integration.
     pub method: Method,
