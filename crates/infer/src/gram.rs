@@ -12,26 +12,18 @@ const CHUNK: usize = 256;
 /// No number.
 const NONE: u32 = u32::MAX;
 
-/// Some of the rows of a matrix.
-pub(crate) struct Chosen<'a> {
-    pub matrix: &'a BlockMatrix,
-    pub rows: Vec<usize>,
-}
-
-impl Chosen<'_> {
-    /// These rows alone, their columns ascending.
-    fn sorted(&self) -> BlockMatrix {
-        let mut matrix = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
-        let mut order: Vec<usize> = Vec::new();
-        for &row in &self.rows {
-            order.extend(self.matrix.row_start[row]..self.matrix.row_start[row + 1]);
-            order.sort_unstable_by_key(|at| self.matrix.column[*at]);
-            matrix.column.extend(order.iter().map(|at| self.matrix.column[*at]));
-            matrix.block.extend(order.drain(..).map(|at| self.matrix.block[at]));
-            matrix.row_start.push(matrix.column.len());
-        }
-        matrix
+/// Some of the rows of a matrix, their columns ascending.
+pub(crate) fn chosen(matrix: &BlockMatrix, rows: impl Iterator<Item = usize>) -> BlockMatrix {
+    let mut chosen = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
+    let mut order: Vec<usize> = Vec::new();
+    for row in rows {
+        order.extend(matrix.row_start[row]..matrix.row_start[row + 1]);
+        order.sort_unstable_by_key(|at| matrix.column[*at]);
+        chosen.column.extend(order.iter().map(|at| matrix.column[*at]));
+        chosen.block.extend(order.drain(..).map(|at| matrix.block[at]));
+        chosen.row_start.push(chosen.column.len());
     }
+    chosen
 }
 
 /// Lengths of some columns, their rows, and the values of all matrices there.
@@ -39,37 +31,39 @@ type Part<const N: usize> = (Vec<usize>, Vec<usize>, [Vec<f64>; N]);
 
 /// The same for any number of matrices up to seven.
 pub(crate) fn of_all(
-    chosen: Vec<Chosen<'_>>,
+    matrices: &[&BlockMatrix],
     links: impl Iterator<Item = (usize, usize)>,
     columns: usize,
+    together: impl Fn(usize, usize) -> bool + Sync,
 ) -> Result<Vec<SymmetricMatrix>, Error> {
     fn some<const N: usize>(
-        chosen: Vec<Chosen<'_>>,
+        matrices: &[&BlockMatrix],
         links: impl Iterator<Item = (usize, usize)>,
         columns: usize,
+        together: impl Fn(usize, usize) -> bool + Sync,
     ) -> Result<Vec<SymmetricMatrix>, Error> {
-        let chosen: [Chosen<'_>; N] = chosen.try_into().map_err(|_| Error::Degenerate)?;
-        Ok(grams(chosen, links, columns)?.into())
+        let matrices: [&BlockMatrix; N] = matrices.try_into().map_err(|_| Error::Degenerate)?;
+        Ok(grams(matrices, links, columns, together)?.into())
     }
-    match chosen.len() {
-        2 => some::<2>(chosen, links, columns),
-        3 => some::<3>(chosen, links, columns),
-        6 => some::<6>(chosen, links, columns),
-        _ => some::<7>(chosen, links, columns),
+    match matrices.len() {
+        2 => some::<2>(matrices, links, columns, together),
+        3 => some::<3>(matrices, links, columns, together),
+        6 => some::<6>(matrices, links, columns, together),
+        _ => some::<7>(matrices, links, columns, together),
     }
 }
 
-/// `JᵀJ` over the chosen rows of each of some matrices J with so many block columns: lower triangles with the whole
-/// diagonal, all on the pattern of their sum and of some links between columns, the later one first.
+/// `JᵀJ` of each of some matrices J with so many block columns, those of a row ascending, of pairs of columns that go together: lower triangles with
+/// the whole diagonal, all on the pattern of their sum and of some links between columns, the later one first.
 pub(crate) fn grams<const N: usize>(
-    chosen: [Chosen<'_>; N],
+    matrices: [&BlockMatrix; N],
     links: impl Iterator<Item = (usize, usize)>,
     columns: usize,
+    together: impl Fn(usize, usize) -> bool + Sync,
 ) -> Result<[SymmetricMatrix; N], Error> {
     let mut linked = vec![Vec::new(); columns];
     links.for_each(|(later, earlier)| linked[earlier].push(later as u32));
-    let sorted = chosen.map(|chosen| chosen.sorted());
-    let transposed = sorted.each_ref().map(|matrix| (matrix, Transposed::new(matrix, columns)));
+    let transposed = matrices.map(|matrix| (matrix, Transposed::new(matrix, columns)));
     let parts: Vec<Part<N>> = (0..columns.div_ceil(CHUNK))
         .into_par_iter()
         .map(|chunk| {
@@ -79,7 +73,9 @@ pub(crate) fn grams<const N: usize>(
             let mut sums = [const { Vec::<[f64; 4]>::new() }; N];
             for (column, links) in linked.iter().enumerate().skip(chunk * CHUNK).take(CHUNK) {
                 let mut meet = |other: u32| {
-                    if std::mem::replace(&mut place[other as usize], 0) == NONE {
+                    if together(column, other as usize)
+                        && std::mem::replace(&mut place[other as usize], 0) == NONE
+                    {
                         others.push(other);
                     }
                 };
@@ -98,6 +94,9 @@ pub(crate) fn grams<const N: usize>(
                     for onwards in transposed.onwards(column, matrix) {
                         let own = matrix.block[onwards.start];
                         for (other, b) in matrix.column[onwards.clone()].iter().zip(&matrix.block[onwards]) {
+                            if !together(column, *other as usize) {
+                                continue;
+                            }
                             // bᵀ · own
                             let product = [
                                 b[0] * own[0] + b[2] * own[2],

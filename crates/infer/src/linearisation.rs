@@ -13,17 +13,20 @@
 //! Coordinates without a measured position (of cells that were not seen) have no row in H. They are unknowns of no
 //! distribution, as coefficients are, but for a stiffness that keeps them near where they were put.
 
+mod iterated;
 mod solved;
 
 pub(crate) use solved::Weighting;
 
 use crate::Error;
-use crate::gram::{Chosen, of_all};
+use crate::gram::of_all;
 use crate::rows::{Group, Rows};
 use crate::stiffness::Stiffness;
 use crate::whitened::Whitened;
 use nalgebra::{DMatrix, DVector};
+use std::sync::OnceLock;
 use voronudge_linalg::{DissectedCholesky, DissectedPattern, Dissections, SymmetricMatrix};
+use voronudge_model::BlockMatrix;
 
 /// The linearised problem of one frame.
 #[derive(Debug)]
@@ -33,11 +36,24 @@ pub(crate) struct Linearisation {
     /// Rows of what is known of unknowns beforehand, by kind.
     known: Vec<Group>,
     held: Held,
-    pattern: DissectedPattern,
     /// The nudges ε at which it was linearised.
     nudges: Vec<f64>,
+    /// As in [`Local`].
+    places: Vec<Option<[f64; 3]>>,
+    chains: Vec<u32>,
+    dissections: Dissections,
+    /// Once they are asked for.
+    whole: OnceLock<Whole>,
+    of_chains: OnceLock<Vec<SymmetricMatrix>>,
     /// Places that are held and not among the nudges.
     left_out: usize,
+}
+
+/// JᵀJ of each group, on the pattern of their sum, and the order in which that is eliminated.
+#[derive(Debug)]
+struct Whole {
+    normals: Vec<SymmetricMatrix>,
+    pattern: DissectedPattern,
 }
 
 /// What holds the unknowns beside the data.
@@ -65,6 +81,9 @@ pub(crate) struct Local<'a> {
     pub free: usize,
     /// Where the coordinates belong, two after the other; those of `None` are coupled to all others.
     pub places: Vec<Option<[f64; 3]>>,
+    /// Which blocks go together most, by a number of each: those of one cell at all times. Empty if unknowns are to be eliminated by factors,
+    /// however many they are.
+    pub chains: Vec<u32>,
     /// Orders of elimination that are known.
     pub dissections: &'a Dissections,
     /// Places that are measured but held, and not among the unknowns.
@@ -99,38 +118,45 @@ impl Eliminated {
 }
 
 impl Linearisation {
-    pub fn new<'a>(local: &Local<'a>) -> Result<Self, Error> {
-        let Local { velocities, positions, known, nudges, stiffness, free, places, dissections, left_out } =
-            local;
-        let chosen = |group: &Rows<'a>| Chosen {
-            matrix: group.jacobian,
-            rows: group.rows.iter().map(|row| row.0).collect(),
-        };
-        let (blocks, links) = (nudges.len() / 2, stiffness.links());
-        let group = |rows: &Rows<'_>, normal: SymmetricMatrix| Group::new(rows, normal, nudges, *free);
+    pub fn new(local: Local<'_>) -> Self {
+        let Local { velocities, positions, known, nudges, stiffness, free, places, .. } = local;
+        let group = |rows: &Rows<'_>| Group::new(rows, nudges, free);
         let weights = known.iter().map(|(_, weight)| *weight).collect();
-        let mut all = vec![chosen(velocities), chosen(positions)];
-        all.extend(known.iter().map(|(rows, _)| chosen(rows)));
-        let mut normals = of_all(all, links, blocks)?.into_iter();
-        let (Some(of_velocities), Some(of_positions)) = (normals.next(), normals.next()) else {
-            return Err(Error::Degenerate);
-        };
-        let known = known.iter().zip(normals).map(|((rows, _), own)| group(rows, own)).collect();
-        let pattern = dissections.of(&of_velocities, places)?;
-        Ok(Self {
-            velocities: group(velocities, of_velocities),
-            positions: group(positions, of_positions),
-            held: Held { stiffness: stiffness.clone(), weights },
-            known,
-            pattern,
+        Self {
+            velocities: group(&velocities),
+            positions: group(&positions),
+            known: known.iter().map(|(rows, _)| group(rows)).collect(),
+            held: Held { stiffness, weights },
             nudges: nudges.to_vec(),
-            left_out: *left_out,
-        })
+            places,
+            chains: local.chains,
+            dissections: local.dissections.clone(),
+            whole: OnceLock::new(),
+            of_chains: OnceLock::new(),
+            left_out: local.left_out,
+        }
+    }
+
+    /// JᵀJ of each group, of pairs of blocks that go together.
+    fn normals(&self, together: impl Fn(usize, usize) -> bool + Sync) -> Result<Vec<SymmetricMatrix>, Error> {
+        let groups = [&self.velocities, &self.positions].into_iter().chain(&self.known);
+        let matrices: Vec<&BlockMatrix> = groups.map(|group| &group.jacobian).collect();
+        let links = self.held.stiffness.links().filter(|(later, earlier)| together(*later, *earlier));
+        of_all(&matrices, links, self.order() / 2, &together)
+    }
+
+    fn whole(&self) -> Result<&Whole, Error> {
+        if let Some(known) = self.whole.get() {
+            return Ok(known);
+        }
+        let normals = self.normals(|_, _| true)?;
+        let pattern = self.dissections.of(&normals[0], &self.places)?;
+        Ok(self.whole.get_or_init(|| Whole { normals, pattern }))
     }
 
     /// Whether one factor at a time is enough.
-    pub fn is_large(&self) -> bool {
-        self.pattern.is_large()
+    pub fn is_large(&self) -> Result<bool, Error> {
+        Ok(self.whole()?.pattern.is_large())
     }
 
     /// Holds the unknowns otherwise; what is coupled must be the same.
@@ -161,18 +187,18 @@ impl Linearisation {
 
     /// The trace of JᵀJ.
     pub fn trace(&self) -> f64 {
-        self.velocities.normal.diagonal().sum()
+        self.velocities.diagonal().iter().sum()
     }
 
     /// The trace of HᵀH: the number of coordinates if all are measured alike. Those that are held count as one each.
     pub fn stiffness(&self) -> f64 {
-        self.positions.normal.diagonal().sum::<f64>() + (2 * self.left_out) as f64
+        self.positions.diagonal().iter().sum::<f64>() + (2 * self.left_out) as f64
     }
 
     /// `Σ ‖∂v/∂r_j‖² / m_j` over measured coordinates, m_j the diagonal of HᵀH: what errors of position of unit variance make of
     /// the squared velocities.
     pub fn sensitivity(&self) -> f64 {
-        let pairs = self.velocities.normal.diagonal().zip(self.positions.normal.diagonal());
+        let pairs = self.velocities.diagonal().into_iter().zip(self.positions.diagonal());
         pairs.filter(|(_, m)| *m > 0.0).map(|(slope, m)| slope / m).sum()
     }
 
@@ -187,13 +213,25 @@ impl Linearisation {
     }
 
     fn damped(&self, spring: f64, damping: &[f64], held: &Held) -> Result<DissectedCholesky, Error> {
-        let mut sum: SymmetricMatrix = self.velocities.normal.plus(spring, &self.positions.normal)?;
-        for (known, weight) in self.known.iter().zip(&held.weights) {
-            sum = sum.plus(*weight, &known.normal)?;
-        }
+        let Whole { normals, pattern } = self.whole()?;
+        let mut sum = self.summed(normals, spring, held)?;
         held.stiffness.add_to(&mut sum)?;
         sum.add_to_diagonal(damping.iter().copied());
-        Ok(self.pattern.factor(&sum)?)
+        Ok(pattern.factor(&sum)?)
+    }
+
+    /// The sum of one matrix for each group.
+    fn summed(
+        &self,
+        normals: &[SymmetricMatrix],
+        spring: f64,
+        held: &Held,
+    ) -> Result<SymmetricMatrix, Error> {
+        let mut sum = normals[0].plus(spring, &normals[1])?;
+        for (known, weight) in normals[2..].iter().zip(&held.weights) {
+            sum = sum.plus(*weight, known)?;
+        }
+        Ok(sum)
     }
 
     /// `A⁻¹` for the two unknowns of a block, and what coefficients do to these: `A⁻¹JᵀX` there (2 × p), with A = JᵀJ + kHᵀH and what stiffness there
@@ -235,17 +273,30 @@ impl Linearisation {
     ///
     /// with the residuals s of the positions, their derivative Z by β and a damping λ of each nudge, if any.
     pub fn eliminate(&self, spring: f64, damping: &[f64]) -> Result<Eliminated, Error> {
+        self.eliminate_by(self.are_many(), spring, damping)
+    }
+
+    /// The same, first tried by iteration or not.
+    pub fn eliminate_by(&self, iteration: bool, spring: f64, damping: &[f64]) -> Result<Eliminated, Error> {
         let held = &self.held;
-        let factor = self.damped(spring, damping, held)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mut right = self.sum(spring, held, |group| &group.mixed[..n * p]);
         right.extend(self.sum(spring, held, |group| &group.gradient));
         for (g, pull) in right[n * p..].iter_mut().zip(held.stiffness.times(&self.nudges)) {
             *g -= pull;
         }
-        let mut solved = right.clone();
-        factor.solve(&mut solved);
-        let dot = |a: usize, b: usize| product(&right, &solved, n, a, b);
+        let iterated = if iteration { self.iterated(spring, damping, &right)? } else { None };
+        let (solved, left) = match iterated {
+            Some(found) => found,
+            None => {
+                let mut solved = right.clone();
+                self.damped(spring, damping, held)?.solve(&mut solved);
+                (solved, Vec::new())
+            }
+        };
+        // What is left of a right-hand side adds to the product what makes its error of second order.
+        let of_left = |a, b| if left.is_empty() { 0.0 } else { product(&left, &solved, n, a, b) };
+        let dot = |a: usize, b: usize| product(&right, &solved, n, a, b) + of_left(b, a);
         let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
         for (group, weight) in self.groups(spring, held) {
             free_normal += &group.free_normal * weight;

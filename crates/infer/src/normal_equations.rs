@@ -147,7 +147,10 @@ impl NormalEquations {
         points: &[P],
         of: impl Fn(&P) -> Result<T, Error> + Sync,
     ) -> Result<Vec<T>, Error> {
-        let together = if self.frames.iter().any(Linearisation::is_large) { 1 } else { TOGETHER };
+        let mut together = TOGETHER;
+        for frame in &self.frames {
+            together = if frame.is_large()? { 1 } else { together };
+        }
         let mut all = Vec::with_capacity(points.len());
         for some in points.chunks(together) {
             all.extend(some.par_iter().map(&of).collect::<Result<Vec<T>, Error>>()?);

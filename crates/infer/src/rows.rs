@@ -1,9 +1,28 @@
 //! Linearised data of one kind: rows of residuals with their derivatives, and their products.
 
+use crate::gram::chosen;
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Vector;
-use voronudge_linalg::SymmetricMatrix;
 use voronudge_model::BlockMatrix;
+
+/// The two unknowns of a block, of some vectors that go together.
+pub(crate) type Pair<const L: usize> = [[f64; L]; 2];
+
+/// Vectors of n numbers, one after the other, side by side; lanes beyond are zero.
+pub(crate) fn to_lanes<const L: usize>(vectors: &[f64], n: usize) -> Vec<Pair<L>> {
+    let mut lanes = vec![[[0.0; L]; 2]; n / 2];
+    for (lane, vector) in vectors.chunks_exact(n.max(1)).enumerate() {
+        for (pair, own) in lanes.iter_mut().zip(vector.chunks_exact(2)) {
+            (pair[0][lane], pair[1][lane]) = (own[0], own[1]);
+        }
+    }
+    lanes
+}
+
+/// The first of some vectors, one after the other.
+pub(crate) fn from_lanes<const L: usize>(lanes: &[Pair<L>], vectors: usize) -> Vec<f64> {
+    (0..vectors).flat_map(|lane| lanes.iter().flat_map(move |pair| [pair[0][lane], pair[1][lane]])).collect()
+}
 
 /// Residuals of one kind with their derivatives: by the coordinates, a block column for each place, and by the free
 /// coefficients.
@@ -26,11 +45,24 @@ pub(crate) fn linearised_back(
     })
 }
 
-/// Products of rows.
+/// A row of blocks times vectors, side by side in lanes.
+fn product<const L: usize>(columns: &[u32], blocks: &[[f64; 4]], u: &[Pair<L>]) -> Pair<L> {
+    let [mut p, mut q] = [[0.0; L]; 2];
+    for (column, b) in columns.iter().zip(blocks) {
+        let [x, y] = &u[*column as usize];
+        for lane in 0..L {
+            p[lane] += b[0] * x[lane] + b[1] * y[lane];
+            q[lane] += b[2] * x[lane] + b[3] * y[lane];
+        }
+    }
+    [p, q]
+}
+
+/// Rows and their products.
 #[derive(Debug)]
 pub(crate) struct Group {
-    /// JᵀJ
-    pub normal: SymmetricMatrix,
+    /// J, a row for each datum, its columns ascending.
+    pub jacobian: BlockMatrix,
     /// JᵀX (n × p, by columns), then Jᵀy as the last column.
     pub mixed: Vec<f64>,
     /// Jᵀr
@@ -48,11 +80,11 @@ pub(crate) struct Group {
 }
 
 impl Group {
-    /// The products of rows whose JᵀJ is known, about the nudges ε, for p free coefficients.
-    pub fn new(rows: &Rows<'_>, normal: SymmetricMatrix, nudges: &[f64], p: usize) -> Self {
-        let n = normal.order();
+    /// The products of rows about the nudges ε, for p free coefficients.
+    pub fn new(rows: &Rows<'_>, nudges: &[f64], p: usize) -> Self {
+        let n = nudges.len();
         let mut group = Self {
-            normal,
+            jacobian: chosen(rows.jacobian, rows.rows.iter().map(|row| row.0)),
             mixed: vec![0.0; n * (p + 1)],
             gradient: vec![0.0; n],
             free_normal: DMatrix::zeros(p, p),
@@ -82,5 +114,41 @@ impl Group {
             }
         }
         group
+    }
+
+    /// Adds JᵀJu times a factor to vectors, side by side in lanes.
+    pub fn add_products<const L: usize>(&self, factor: f64, u: &[Pair<L>], to: &mut [Pair<L>]) {
+        let BlockMatrix { row_start, column, block } = &self.jacobian;
+        for row in row_start.windows(2) {
+            let (columns, blocks) = (&column[row[0]..row[1]], &block[row[0]..row[1]]);
+            let [p, q] = product(columns, blocks, u).map(|own| own.map(|own| factor * own));
+            for (column, b) in columns.iter().zip(blocks) {
+                let [x, y] = &mut to[*column as usize];
+                for lane in 0..L {
+                    x[lane] += b[0] * p[lane] + b[2] * q[lane];
+                    y[lane] += b[1] * p[lane] + b[3] * q[lane];
+                }
+            }
+        }
+    }
+
+    /// ‖Ju‖²
+    pub fn square(&self, u: &[Pair<1>]) -> f64 {
+        let BlockMatrix { row_start, column, block } = &self.jacobian;
+        let of_row = |row: &[usize]| {
+            let own = product(&column[row[0]..row[1]], &block[row[0]..row[1]], u);
+            own.iter().flatten().map(|own| own * own).sum::<f64>()
+        };
+        row_start.windows(2).map(of_row).sum()
+    }
+
+    /// The diagonal of JᵀJ.
+    pub fn diagonal(&self) -> Vec<f64> {
+        let mut diagonal = vec![0.0; self.gradient.len()];
+        for (column, b) in self.jacobian.column.iter().zip(&self.jacobian.block) {
+            diagonal[2 * *column as usize] += b[0] * b[0] + b[2] * b[2];
+            diagonal[2 * *column as usize + 1] += b[1] * b[1] + b[3] * b[3];
+        }
+        diagonal
     }
 }

@@ -10,7 +10,7 @@
 //! and the extent e of a line, `∫ g² dl = L [g(middle)² + (n·e)²]` plus what no site changes.
 
 use crate::Error;
-use crate::gram::{Chosen, grams};
+use crate::gram::{chosen, grams};
 use num_dual::DualSVec64;
 use voronudge_geometry::{Interface, Scalar, Vector, dot};
 use voronudge_linalg::Cholesky;
@@ -173,8 +173,9 @@ impl Fit<'_> {
 
     fn factor(&self, jacobian: &BlockMatrix) -> Result<Cholesky, Error> {
         let (lines, rows) = (self.lines.len(), jacobian.row_start.len() - 1);
-        let chosen = [0..lines, lines..rows].map(|rows| Chosen { matrix: jacobian, rows: rows.collect() });
-        let [of_lines, of_springs] = grams(chosen, std::iter::empty(), self.cells.len())?;
+        let parts = [0..lines, lines..rows].map(|rows| chosen(jacobian, rows));
+        let [of_lines, of_springs] =
+            grams(parts.each_ref(), std::iter::empty(), self.cells.len(), |_, _| true)?;
         Ok(Cholesky::new(&of_lines.plus(1.0, &of_springs)?)?)
     }
 

@@ -7,6 +7,7 @@
 //! over blocks b of two unknowns. It is what the prior distribution of unknowns adds to the objective, in units of the variance of a velocity.
 
 use crate::Error;
+use crate::rows::{Pair, from_lanes, to_lanes};
 use voronudge_linalg::SymmetricMatrix;
 
 /// A quadratic form, the same for both unknowns of a block.
@@ -29,6 +30,15 @@ impl Stiffness {
         self.couplings.iter().map(|(later, earlier, _)| (*later as usize, *earlier as usize))
     }
 
+    /// The form without what couples blocks that do not go together.
+    pub fn among(&self, together: impl Fn(usize, usize) -> bool) -> Self {
+        let kept = |link: &&(u32, u32, f64)| together(link.0 as usize, link.1 as usize);
+        Self {
+            of_blocks: self.of_blocks.clone(),
+            couplings: self.couplings.iter().filter(kept).copied().collect(),
+        }
+    }
+
     /// Adds the form to a matrix that has entries for it.
     pub fn add_to(&self, matrix: &mut SymmetricMatrix) -> Result<(), Error> {
         matrix.add_to_diagonal(self.of_blocks.iter().flat_map(|own| [*own; 2]));
@@ -42,18 +52,24 @@ impl Stiffness {
 
     /// The form's matrix times a vector.
     pub fn times(&self, u: &[f64]) -> Vec<f64> {
-        if self.of_blocks.is_empty() {
-            return vec![0.0; u.len()];
-        }
-        let mut product: Vec<f64> = u.iter().enumerate().map(|(k, u)| self.of_blocks[k / 2] * u).collect();
-        for (later, earlier, coupling) in &self.couplings {
-            for axis in 0..2 {
-                let [one, other] = [later, earlier].map(|block| 2 * *block as usize + axis);
-                product[one] -= coupling * u[other];
-                product[other] -= coupling * u[one];
+        let mut product = vec![[[0.0]; 2]; u.len() / 2];
+        self.add_products(&to_lanes::<1>(u, u.len()), &mut product);
+        from_lanes(&product, 1)
+    }
+
+    /// Adds the form's matrix times vectors, side by side in lanes.
+    pub fn add_products<const L: usize>(&self, u: &[Pair<L>], to: &mut [Pair<L>]) {
+        for ((to, u), own) in to.iter_mut().zip(u).zip(&self.of_blocks) {
+            for (to, u) in to.iter_mut().flatten().zip(u.iter().flatten()) {
+                *to += own * u;
             }
         }
-        product
+        for (later, earlier, coupling) in &self.couplings {
+            for (one, other) in [(later, earlier), (earlier, later)] {
+                let to = to[*one as usize].iter_mut().flatten();
+                to.zip(u[*other as usize].iter().flatten()).for_each(|(to, u)| *to -= coupling * u);
+            }
+        }
     }
 
     /// The form's value.

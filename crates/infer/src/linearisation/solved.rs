@@ -14,7 +14,7 @@
 use super::{Held, Linearisation, product};
 use crate::Error;
 use crate::diagnostics::random_signs;
-use crate::rows::Group;
+use crate::rows::{Group, from_lanes, to_lanes};
 use crate::stiffness::Stiffness;
 use crate::whitened::Leftover;
 use nalgebra::{DMatrix, DVector};
@@ -86,38 +86,12 @@ struct Whole {
     free: DVector<f64>,
 }
 
-/// One kind of data that a weight multiplies.
-struct Part<'a> {
-    group: &'a Group,
-    /// JᵀJ: row, column and value of what is not zero in the lower triangle.
-    normal: Vec<(usize, usize, f64)>,
-}
-
-impl Part<'_> {
-    /// JᵀJu
-    fn times(&self, u: &[f64]) -> Vec<f64> {
-        let mut product = vec![0.0; u.len()];
-        for (row, column, value) in &self.normal {
-            product[*row] += value * u[*column];
-            if row != column {
-                product[*column] += value * u[*row];
-            }
-        }
-        product
-    }
-
-    /// ‖Ju‖²
-    fn square(&self, u: &[f64]) -> f64 {
-        let twice = |row, column| if row == column { 1.0 } else { 2.0 };
-        self.normal.iter().map(|(row, column, v)| twice(row, column) * v * u[*row] * u[*column]).sum()
-    }
-}
-
 /// The solution for one weighting.
 pub(crate) struct Solved<'a> {
     frame: &'a Linearisation,
     stiffness: Stiffness,
-    parts: Vec<Part<'a>>,
+    /// The kinds of data that a weight multiplies.
+    parts: Vec<&'a Group>,
     factor: DissectedCholesky,
     /// A⁻¹JᵀX (n × p)
     by_free: Vec<f64>,
@@ -141,8 +115,7 @@ impl Linearisation {
         let free = lower.solve(&whitened.mixed);
         let mut least = Whole { own, free };
         subtract(&mut least.own, &by_free, &least.free);
-        let parts = std::iter::once(&self.positions).chain(&self.known);
-        let parts = parts.map(|group| Part { group, normal: group.normal.entries().collect() }).collect();
+        let parts = std::iter::once(&self.positions).chain(&self.known).collect();
         let (leftover, stiffness) = (whitened.restricted()?, at.held.stiffness.clone());
         Ok(Solved { frame: self, stiffness, parts, factor, by_free, root, least, leftover })
     }
@@ -157,7 +130,7 @@ impl Solved<'_> {
     pub fn rests(&self) -> Form {
         let mut form = self.form(&self.least);
         let (n, p) = (self.order(), self.least.free.len());
-        for (sum, Part { group, .. }) in form.of_groups.iter_mut().zip(&self.parts) {
+        for (sum, group) in form.of_groups.iter_mut().zip(&self.parts) {
             let with_data: f64 = dot(&group.mixed[n * p..], &self.least.own);
             *sum += group.data - 2.0 * (with_data + group.free_data.dot(&self.least.free));
         }
@@ -240,11 +213,13 @@ impl Solved<'_> {
 
     /// The part of A that a direction changes, times a vector.
     fn held_times(&self, direction: &Weighting, u: &[f64]) -> Vec<f64> {
-        let mut sum = direction.held.stiffness.times(u);
-        for (part, weight) in self.parts.iter().zip(direction.of_groups()).filter(|(_, w)| *w != 0.0) {
-            sum.iter_mut().zip(part.times(u)).for_each(|(sum, own)| *sum += weight * own);
+        let u = to_lanes::<1>(u, u.len());
+        let mut sum = vec![[[0.0]; 2]; u.len()];
+        direction.held.stiffness.add_products(&u, &mut sum);
+        for (group, weight) in self.parts.iter().zip(direction.of_groups()).filter(|(_, w)| *w != 0.0) {
+            group.add_products(weight, &u, &mut sum);
         }
-        sum
+        from_lanes(&sum, 1)
     }
 
     /// r of a direction.
@@ -254,7 +229,7 @@ impl Solved<'_> {
         let mut own = self.held_times(direction, u);
         own.iter_mut().for_each(|own| *own = -*own);
         let mut of_free = DVector::zeros(p);
-        for (Part { group, .. }, weight) in self.parts.iter().zip(direction.of_groups()) {
+        for (group, weight) in self.parts.iter().zip(direction.of_groups()) {
             for (k, column) in group.mixed.chunks_exact(n.max(1)).enumerate() {
                 // The last column is that of the data.
                 let factor = if k < p { -free[k] } else { 1.0 };
@@ -271,10 +246,11 @@ impl Solved<'_> {
     /// The sum of squares that some unknowns have without data.
     fn form(&self, at: &Whole) -> Form {
         let (n, p) = (self.order(), at.free.len());
-        let of_group = |part: &Part<'_>| {
-            let Group { mixed, free_normal, .. } = part.group;
+        let own = to_lanes::<1>(&at.own, n);
+        let of_group = |group: &&Group| {
+            let Group { mixed, free_normal, .. } = *group;
             let cross: f64 = (0..p).map(|k| at.free[k] * dot(&mixed[k * n..(k + 1) * n], &at.own)).sum();
-            part.square(&at.own) + 2.0 * cross + at.free.dot(&(free_normal * &at.free))
+            group.square(&own) + 2.0 * cross + at.free.dot(&(free_normal * &at.free))
         };
         let block = |b: u32| [at.own[2 * b as usize], at.own[2 * b as usize + 1]];
         let pair = |b: u32, c: u32| dot(&block(b), &block(c));

@@ -160,7 +160,7 @@ impl<'a> Objective<'a> {
                 let of_cell = |cell| if frame.is_seen(cell) { 0.0 } else { floor };
                 let local =
                     |cells: &[usize], nudges: &[f64], jacobian: &BlockMatrix, positions: &PositionRows| {
-                        Linearisation::new(&Local {
+                        Linearisation::new(Local {
                             velocities: Rows { jacobian, rows: &rows },
                             positions: positions.rows(),
                             known: Vec::new(),
@@ -175,11 +175,12 @@ impl<'a> Objective<'a> {
                                 .map(|cell| frame.positions[*cell])
                                 .map(|r| Some([r[0], r[1], 0.0]))
                                 .collect(),
+                            chains: Vec::new(),
                             dissections: frame.dissections(),
                             left_out: frame.positions.len() - cells.len(),
                         })
                     };
-                match among {
+                Ok(match among {
                     None => {
                         let all: Vec<usize> = (0..frame.positions.len()).collect();
                         local(&all, nudges, &jacobian, &positions)
@@ -189,9 +190,9 @@ impl<'a> Objective<'a> {
                         positions.keep(free);
                         local(&free.cells, &free.of(nudges), &jacobian, &positions)
                     }
-                }
+                })
             })
-            .collect::<Result<Vec<_>, _>>()?;
+            .collect::<Result<Vec<_>, Error>>()?;
         let mut free = free.to_vec();
         free.resize(p, 0.0);
         Ok(NormalEquations::new(&self.space.widened(unknowns.len()), self.levels, &free, frames))

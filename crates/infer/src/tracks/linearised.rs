@@ -115,7 +115,7 @@ impl MovieObjective<'_> {
         let rows: Vec<(usize, Vector<f64>, DMatrix<f64>)> =
             residuals.into_iter().zip(columns).enumerate().map(row).collect();
         let known = std::iter::once(outset.rows()).chain(drives.iter().map(DriveRows::rows));
-        let linearised = Linearisation::new(&Local {
+        let linearised = Linearisation::new(Local {
             velocities: Rows { jacobian: &jacobian, rows: &rows },
             positions: anchors.rows(),
             known: known.zip(self.weights_of_known()).collect(),
@@ -124,8 +124,9 @@ impl MovieObjective<'_> {
             left_out: 0,
             free: p,
             places: self.states.where_and_when(&self.movie.times),
+            chains: self.states.chains(),
             dissections: &self.states.dissections,
-        })?;
+        });
         let mut free = free.to_vec();
         let further = p - free.len();
         free.resize(p, 0.0);

@@ -246,6 +246,24 @@ impl States {
         places
     }
 
+    /// Which blocks belong to the same cell, by a number of each; translations and what drives polarities are by themselves.
+    pub fn chains(&self) -> Vec<u32> {
+        let blocks = self.blocks() as u32;
+        let mut chains: Vec<u32> = (0..blocks).map(|block| u32::MAX - block).collect();
+        for (frame, instant) in self.instants.iter().enumerate() {
+            let polarities = self.polarities.block.get(frame);
+            for (cell, track) in instant.tracks.iter().enumerate() {
+                if let Place::Own(own) = instant.place[cell] {
+                    chains[own as usize] = *track;
+                }
+                if let Some(own) = polarities.map(|of_frame| of_frame[cell]).filter(|block| *block != NONE) {
+                    chains[own as usize] = *track;
+                }
+            }
+        }
+        chains
+    }
+
     /// Which cells of each frame have a motion to or from there that is explained.
     pub fn explained(&self) -> Vec<Vec<bool>> {
         explained(&self.instants, &self.motions)

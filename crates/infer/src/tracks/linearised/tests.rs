@@ -4,10 +4,10 @@ use super::*;
 use crate::tracks::memory::Memory;
 use crate::tracks::own_motion::OwnMotion;
 use crate::tracks::rule::Rule;
-use crate::tracks::sample::Filmed;
+use crate::tracks::sample::{Filmed, followed};
 use crate::tracks::states::States;
 use crate::tracks::{Drift, Movie};
-use crate::{CoefficientSpace, Constraints, NoiseLevels};
+use crate::{Activity, CoefficientSpace, Constraints, NoiseLevels};
 use voronudge_geometry::{Domain, FieldOfView};
 use voronudge_model::Structure;
 
@@ -251,4 +251,31 @@ fn a_jump_of_the_stage_is_no_motion() {
         objective.value(&objective.start(&[0.1, 2.0, 0.5, 1.0]))
     });
     assert!((still - jumped).abs() < 1e-9 * still, "{still} {jumped}");
+}
+
+/// What is left where unknowns are eliminated by iteration is what factors leave: of cells that crawl, and of such that align.
+#[test]
+fn iterations_end_where_factors_do() {
+    for activity in [Activity::None, Activity::Polarity, Activity::Alignment] {
+        let (movie, request, followed) = followed(activity);
+        let space = request.space().unwrap();
+        let objective = followed.objective(&movie, &request.structure, &space);
+        let equations = objective.linearise(&followed.fit.parameters).unwrap();
+        let frame = &equations.frames[0];
+        let spring = objective.levels.spring();
+        for damping in [vec![], vec![0.1 * spring; frame.order()]] {
+            let [factor, iteration] =
+                [false, true].map(|way| frame.eliminate_by(way, spring, &damping).unwrap());
+            let off = (&iteration.schur - &factor.schur).amax() / factor.schur.amax();
+            assert!(off > 0.0 && off < 1e-10, "{activity:?} {off}");
+            let off = (&iteration.gradient - &factor.gradient).amax();
+            assert!(off < 1e-9 * factor.gradient.amax().max(1.0), "{activity:?} {off}");
+            assert!((iteration.gain - factor.gain).abs() < 1e-9 * factor.gain);
+            let free = factor.gradient.map(|_| 0.01);
+            let [factor, iteration] = [factor, iteration].map(|own| own.nudge_step(&free));
+            let size = factor.iter().fold(0.0, |most: f64, own| most.max(own.abs()));
+            let off = factor.iter().zip(&iteration).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+            assert!(off < 1e-5 * size, "{activity:?} {off} of {size}");
+        }
+    }
 }
