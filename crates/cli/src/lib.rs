@@ -10,6 +10,7 @@
 //! | [`geometry`] | plane, periodic boxes, fields of view, Voronoi tessellation | |
 //! | [`model`] | force terms, effects, velocities, stress, exact sparse Jacobian | |
 //! | [`observables`] | motion, shapes, order, contacts, correlations of cells | |
+//! | [`segmentation`] | label images, outlines, extrema of fields, links from frame to frame | |
 //! | [`theory`] | mean-field theory of the honeycomb in closed form | |
 //! | [`simulate`] | integration in time, derivatives of runs, shear, walls, turnover, moduli | `simulate` |
 //! | [`spectrum`] | linear modes, distance from a T1 transition | `spectrum` |
@@ -89,7 +90,7 @@ pub use voronudge_simulate as simulate;
 pub use voronudge_spectrum as spectrum;
 pub use {
     voronudge_geometry as geometry, voronudge_model as model, voronudge_observables as observables,
-    voronudge_theory as theory,
+    voronudge_segmentation as segmentation, voronudge_theory as theory,
 };
 
 pub use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};

@@ -106,16 +106,6 @@ pub enum Error {
         /// The second.
         second: usize,
     },
-    /// Values that do not fill the rows of an image.
-    #[error("{values} values do not fill an image of {columns} columns and {rows} rows")]
-    Raster {
-        /// Number of values given.
-        values: usize,
-        /// Pixels in a row.
-        columns: usize,
-        /// Number of rows.
-        rows: usize,
-    },
     /// More cells than 32-bit indices can address.
     #[error("{cells} cells are more than the {limit} that can be addressed")]
     TooManyCells {
@@ -155,7 +145,6 @@ impl Error {
             Self::RegionCrossing { .. } => {
                 "give the corners in the order in which they follow each other around the region"
             }
-            Self::Raster { .. } => "give one value for each pixel, row after row",
             Self::TooManyCells { .. } => "split the data",
         })
     }

@@ -25,13 +25,11 @@
 //! # Ok::<(), voronudge_geometry::Error>(())
 //! ```
 
-mod agreement;
 mod builder;
 mod by_sides;
 mod centroid;
 mod domain;
 mod error;
-mod extrema;
 mod field_of_view;
 mod gaussian_patch;
 mod grid;
@@ -39,14 +37,10 @@ mod honeycomb;
 mod hull;
 mod interface;
 mod lanes;
-mod linking;
-mod mask;
 mod moving;
-mod outline;
 mod overlap;
 mod plane;
 mod polygon;
-mod raster;
 mod region;
 mod scalar;
 mod side;
@@ -54,27 +48,21 @@ mod tangent;
 mod tessellation;
 mod transition;
 
-pub use agreement::{Agreement, MeasuredShape, agreement, comparable};
 pub use by_sides::{Batch, BySides};
 pub use centroid::centroid_slopes;
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
-pub use extrema::{Extremum, ExtremumKind, ExtremumSearch, extrema};
 pub use field_of_view::{Certainty, Certificate, FieldOfView, Seen, Visibility};
 pub use grid::{Grid, Patch};
 pub use honeycomb::honeycomb;
-pub use interface::{Interface, outline_interfaces};
+pub use interface::Interface;
 pub use lanes::Lanes;
-pub use linking::{link_nearest, link_overlapping};
-pub use mask::{Mask, MaskedCell};
 pub use moving::{MovingTessellation, Renewal};
-pub use outline::{Outline, outline_contacts};
 pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
 pub use plane::{
     Corner, Outer, Vector, circumcentre, cross, dot, quarter_turn, side_direction, side_direction_slope,
 };
 pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons, shape_tensors};
-pub use raster::{Edge, smooth};
 pub use region::Region;
 pub use scalar::{Arithmetic, Scalar, lift};
 pub use side::Side;

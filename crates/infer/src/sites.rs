@@ -278,7 +278,7 @@ mod tests {
     use super::*;
     use rand::{Rng, SeedableRng};
     use rand_pcg::Pcg64;
-    use voronudge_geometry::Mask;
+    use voronudge_segmentation::Mask;
 
     /// Label image of the Voronoi polygons of sites, with membranes of some width.
     fn image(sites: &[Vector<f64>], size: usize, membrane: f64) -> Vec<i64> {

@@ -3,7 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use ndarray::{Array2, Array3, ArrayView2, Axis};
-use voronudge_geometry::{Domain, Edge, ExtremumKind, ExtremumSearch, PeriodicBox, Vector, extrema, smooth};
+use voronudge_geometry::{Domain, PeriodicBox, Vector};
+use voronudge_segmentation::{Edge, ExtremumKind, ExtremumSearch, extrema, smooth};
 
 use crate::dataset::{Boundary, DataSet};
 use crate::error::{Error, ImageFault, SettingFault};
@@ -83,7 +84,7 @@ struct Found {
 
 /// Imports extrema of a field, `.npy` or TIFF of one frame or several, or grey PNG.
 ///
-/// Pixel (row, column) has its centre at (column + ½, row + ½) pixels. See [`extrema`] for what counts and [`voronudge_geometry::link_nearest`] for how cells
+/// Pixel (row, column) has its centre at (column + ½, row + ½) pixels. See [`extrema`] for what counts and [`voronudge_segmentation::link_nearest`] for how cells
 /// are followed.
 ///
 /// # Errors

@@ -4,7 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use ndarray::Axis;
-use voronudge_geometry::{Mask, Vector, link_overlapping};
+use voronudge_geometry::Vector;
+use voronudge_segmentation::{Mask, link_overlapping};
 
 use crate::dataset::Boundary;
 use crate::error::{Error, ImageFault, ShapeFault};

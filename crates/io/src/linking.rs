@@ -1,6 +1,7 @@
 //! Which cell of a frame is which of the frame before, by place alone.
 
-use voronudge_geometry::{Domain, Vector, link_nearest};
+use voronudge_geometry::{Domain, Vector};
+use voronudge_segmentation::link_nearest;
 
 /// How far a cell may move from frame to frame by default, as a share of the mean distance of cells.
 const LINK_LIMIT: f64 = 0.5;

@@ -3,7 +3,8 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use voronudge_geometry::{Outline, Vector, outline_contacts, outline_interfaces};
+use voronudge_geometry::Vector;
+use voronudge_segmentation::{Outline, outline_contacts, outline_interfaces};
 
 use crate::dataset::Boundary;
 use crate::error::{Error, ImageFault};

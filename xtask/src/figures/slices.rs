@@ -3,8 +3,8 @@
 use super::{Figure, Made, Panel, Size, command};
 use serde_json::Value;
 use std::error::Error;
-use voronudge_geometry::{Edge, ExtremumKind, ExtremumSearch, extrema};
 use voronudge_report::figure::{Landscape, LandscapeAxis, landscape};
+use voronudge_segmentation::{Edge, ExtremumKind, ExtremumSearch, extrema};
 
 pub(super) const FIGURES: &[Figure] = &[Figure {
     name: "m0h",

@@ -11,12 +11,13 @@ use crate::program::Answer;
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
-use voronudge_geometry::{Edge, Tessellation};
+use voronudge_geometry::Tessellation;
 use voronudge_io::{FieldImport, FieldOptions, Snapshot, WantedExtrema, import_field_series};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage};
 use voronudge_report::{FieldReport, Units};
+use voronudge_segmentation::Edge;
 
 const GUIDE: &[[&str; 2]] = &[
     [

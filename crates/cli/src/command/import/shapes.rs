@@ -8,15 +8,14 @@ use crate::program::Answer;
 use crate::run::Run;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
-use voronudge_geometry::{
-    Domain, FieldOfView, MeasuredShape, Seen, Tessellation, agreement, areas, comparable, perimeters,
-};
+use voronudge_geometry::{Domain, FieldOfView, Seen, Tessellation, areas, perimeters};
 use voronudge_io::{OutputDirectory, ShapeImport, Snapshot};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
 use voronudge_report::shape_report::{AgreementRecord, FrameAgreement, ShapeReport};
 use voronudge_report::{FrameView, Units};
+use voronudge_segmentation::{MeasuredShape, agreement, comparable};
 
 const GUIDE: &[[&str; 2]] = &[
     [

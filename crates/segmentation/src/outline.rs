@@ -1,7 +1,7 @@
 //! Cells given by the corners of their outlines.
 
-use crate::{Vector, cross};
 use std::collections::{BTreeMap, BTreeSet};
+use voronudge_geometry::{Vector, cross};
 
 /// Measures of a polygon.
 #[derive(Debug, Clone, Copy, PartialEq)]

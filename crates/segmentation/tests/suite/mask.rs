@@ -3,7 +3,8 @@
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::f64::consts::PI;
-use voronudge_geometry::{Error, Mask, Outline, Vector, cross};
+use voronudge_geometry::{Vector, cross};
+use voronudge_segmentation::{Error, Mask, Outline};
 
 const SIDE: usize = 90;
 

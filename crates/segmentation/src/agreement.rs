@@ -1,7 +1,7 @@
 //! How well the Voronoi polygons of the centroids stand for the true outlines.
 
-use crate::{Certificate, Tessellation, Vector, areas, perimeters};
 use std::collections::BTreeSet;
+use voronudge_geometry::{Certificate, Tessellation, Vector, areas, perimeters};
 
 /// The true shape of a cell.
 #[derive(Debug, Clone, Copy, PartialEq)]

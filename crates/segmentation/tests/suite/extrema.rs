@@ -2,9 +2,8 @@
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use voronudge_geometry::{
-    Edge, Error, Extremum, ExtremumKind, ExtremumSearch, PeriodicBox, Vector, extrema, honeycomb,
-};
+use voronudge_geometry::{PeriodicBox, Vector, honeycomb};
+use voronudge_segmentation::{Edge, Error, Extremum, ExtremumKind, ExtremumSearch, extrema};
 
 const SEARCH: ExtremumSearch = ExtremumSearch {
     kind: ExtremumKind::Maximum,

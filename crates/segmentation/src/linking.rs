@@ -1,9 +1,10 @@
 //! Which cell of a frame is which of the next.
 
-use crate::{Domain, Error, Vector};
+use crate::Error;
 use rstar::RTree;
 use rstar::primitives::GeomWithData;
 use std::collections::BTreeMap;
+use voronudge_geometry::{Domain, Vector};
 
 /// For each place of a frame, the index of the same cell among the places of the next, if one is within `limit`.
 ///

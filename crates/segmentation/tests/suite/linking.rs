@@ -2,7 +2,8 @@
 
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use voronudge_geometry::{Domain, PeriodicBox, Vector, honeycomb, link_nearest, link_overlapping};
+use voronudge_geometry::{Domain, PeriodicBox, Vector, honeycomb};
+use voronudge_segmentation::{link_nearest, link_overlapping};
 
 #[test]
 fn cells_are_followed_across_the_box() {

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeSet;
 use voronudge_geometry::{
-    Domain, FieldOfView, MeasuredShape, PeriodicBox, Tessellation, Vector, agreement, areas, honeycomb,
-    perimeters,
+    Domain, FieldOfView, PeriodicBox, Tessellation, Vector, areas, honeycomb, perimeters,
 };
+use voronudge_segmentation::{MeasuredShape, agreement};
 
 /// True shapes that are the Voronoi polygons agree; one contact less and one more are counted as such.
 #[test]

@@ -3,8 +3,9 @@
 mod contacts;
 mod perimeter;
 
-use crate::{Error, Vector};
+use crate::Error;
 use std::collections::BTreeMap;
+use voronudge_geometry::Vector;
 
 /// A label image, row after row. Zero is background; any other number is a cell.
 ///
@@ -106,7 +107,7 @@ impl<'a> Mask<'a> {
     /// to it. A straight side comes out between 1.5 % too short and 1.3 % too long, depending on its direction.
     ///
     /// ```
-    /// use voronudge_geometry::Mask;
+    /// use voronudge_segmentation::Mask;
     /// // A disc of radius 20.
     /// let labels: Vec<i64> = (0..50 * 50)
     ///     .map(|k| ((k % 50 - 25) as f64 + 0.5, (k / 50 - 25) as f64 + 0.5))
@@ -114,7 +115,7 @@ impl<'a> Mask<'a> {
     ///     .collect();
     /// let disc = Mask::new(&labels, [50, 50])?.cells()[0];
     /// assert!((disc.perimeter / (40.0 * std::f64::consts::PI) - 1.0).abs() < 0.01);
-    /// # Ok::<(), voronudge_geometry::Error>(())
+    /// # Ok::<(), voronudge_segmentation::Error>(())
     /// ```
     pub fn cells(&self) -> Vec<MaskedCell> {
         let mut cells: BTreeMap<i64, MaskedCell> = BTreeMap::new();

@@ -1,6 +1,6 @@
 //! Smoothed fields on a raster.
 
-use voronudge_geometry::{Edge, smooth};
+use voronudge_segmentation::{Edge, smooth};
 
 /// A wave is damped by exp(−q²w²/2), and a constant stays, also at an edge.
 #[test]
@@ -14,5 +14,7 @@ fn waves_are_damped_and_constants_stay() {
     assert!(smoothed.iter().zip(&wave).all(|(s, w)| (s - damped * w).abs() < 1e-3));
     let constant = smooth(&[3.0; 32 * 24], size, width, Edge::Open).unwrap();
     assert!(constant.iter().all(|x| (x - 3.0).abs() < 1e-12));
-    assert!(smooth(&wave, [32, 25], width, Edge::Open).is_err());
+    let refused = smooth(&wave, [32, 25], width, Edge::Open).unwrap_err();
+    assert_eq!(refused.to_string(), "768 values do not fill an image of 32 columns and 25 rows");
+    assert!(refused.hint().is_some());
 }

@@ -1,6 +1,7 @@
 //! Outlines of cells.
 
-use voronudge_geometry::{Outline, Vector, outline_contacts, outline_interfaces};
+use voronudge_geometry::Vector;
+use voronudge_segmentation::{Outline, outline_contacts, outline_interfaces};
 
 #[test]
 fn a_rectangle_far_away() {

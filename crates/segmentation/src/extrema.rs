@@ -1,8 +1,9 @@
 //! Maxima and minima of a field on the pixels of an image.
 
+use crate::Error;
 use crate::raster::{Edge, smooth};
-use crate::{Error, Vector};
 use rayon::prelude::*;
+use voronudge_geometry::Vector;
 
 /// Which extrema are looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -50,7 +51,7 @@ pub struct Extremum {
 /// [`Error::Raster`] if there is not one value for each pixel.
 ///
 /// ```
-/// use voronudge_geometry::{Edge, ExtremumKind, ExtremumSearch, extrema};
+/// use voronudge_segmentation::{Edge, ExtremumKind, ExtremumSearch, extrema};
 /// let search = ExtremumSearch {
 ///     kind: ExtremumKind::Maximum, smoothing: 0.0, prominence: 0.1, distance: 0.0, edge: Edge::Open,
 /// };
@@ -58,7 +59,7 @@ pub struct Extremum {
 /// let found = extrema(&(0..900).map(bump).collect::<Vec<_>>(), [30, 30], &search)?;
 /// assert_eq!(found.len(), 1);
 /// assert!((found[0].position.x - 12.3).abs() < 0.01 && (found[0].position.y - 16.8).abs() < 0.01);
-/// # Ok::<(), voronudge_geometry::Error>(())
+/// # Ok::<(), voronudge_segmentation::Error>(())
 /// ```
 pub fn extrema(values: &[f64], size: [usize; 2], search: &ExtremumSearch) -> Result<Vec<Extremum>, Error> {
     let sign = match search.kind {
