@@ -210,7 +210,8 @@ fn in_block(frame: &Observation, fold: usize, blocks: usize) -> Vec<bool> {
     let block = [fold % blocks, fold / blocks];
     let bounds: Vec<(f64, f64)> = (0..2)
         .map(|axis| {
-            let mut at: Vec<f64> = frame.targets().map(|(datum, _)| frame.place(datum)[axis]).collect();
+            let mut at: Vec<f64> =
+                frame.targets().map(|(datum, _)| frame.position_of_datum(datum)[axis]).collect();
             at.sort_unstable_by(f64::total_cmp);
             let quantile = |k: usize| match k {
                 0 => f64::NEG_INFINITY,
@@ -221,7 +222,7 @@ fn in_block(frame: &Observation, fold: usize, blocks: usize) -> Vec<bool> {
         })
         .collect();
     (0..frame.velocities.values().len())
-        .map(|datum| frame.place(datum))
+        .map(|datum| frame.position_of_datum(datum))
         .map(|r| bounds.iter().enumerate().all(|(axis, (low, high))| r[axis] >= *low && r[axis] < *high))
         .collect()
 }

@@ -163,7 +163,8 @@ impl Observation {
     #[must_use]
     pub fn with_background(mut self, degree: Option<u32>) -> Self {
         self.background = degree.map(|degree| {
-            let places: Vec<Vector<f64>> = self.targets().map(|(datum, _)| self.place(datum)).collect();
+            let places: Vec<Vector<f64>> =
+                self.targets().map(|(datum, _)| self.position_of_datum(datum)).collect();
             (degree, Background::new(&places, degree))
         });
         self
@@ -361,7 +362,7 @@ impl Observation {
     }
 
     /// Where a velocity was measured: the cell's centre or the grid point.
-    pub fn place(&self, datum: usize) -> Vector<f64> {
+    pub fn position_of_datum(&self, datum: usize) -> Vector<f64> {
         match &self.velocities {
             Velocities::OfCells(_) => self.positions[datum],
             Velocities::OnGrid(flow) => flow.grid.centre(datum),

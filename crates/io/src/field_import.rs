@@ -137,7 +137,7 @@ pub fn import_field_series(paths: &[PathBuf], options: &FieldOptions) -> Result<
     for (index, frame) in field.axis_iter(Axis(0)).enumerate() {
         let mut found = find(frame, pixel, options);
         if found.len() < FEWEST_CELLS {
-            let (path, frame) = stack.place(index);
+            let (path, frame) = stack.location(index);
             let fault = ImageFault::TooFewCells { frame, found: found.len(), needed: FEWEST_CELLS };
             return Err(image_error(path, fault));
         }

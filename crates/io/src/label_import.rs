@@ -79,7 +79,7 @@ pub fn import_label_series(paths: &[PathBuf], options: &LabelOptions) -> Result<
     let mut before: Option<Vec<i64>> = None;
     let mut tracks = Tracks::default();
     for (index, frame) in stack.pixels.axis_iter(Axis(0)).enumerate() {
-        let (path, page) = stack.place(index);
+        let (path, page) = stack.location(index);
         let pixels: Vec<i64> = frame.iter().copied().collect();
         let mask = Mask::new(&pixels, [columns, rows]).map_err(|_| {
             let found = vec![frames, rows, columns];

@@ -39,7 +39,7 @@ pub(crate) struct Stack<T> {
 
 impl<T> Stack<T> {
     /// The file that a frame is in, and its number there.
-    pub(crate) fn place(&self, frame: usize) -> (&Path, usize) {
+    pub(crate) fn location(&self, frame: usize) -> (&Path, usize) {
         let file = self.starts.partition_point(|&start| start <= frame).saturating_sub(1);
         (&self.inputs[file].path, frame - self.starts[file])
     }

@@ -141,7 +141,7 @@ impl Fronts {
     }
 
     /// Where the entry of a matrix is in a factor; `None` if there is none.
-    pub fn place(&self, i: usize, j: usize) -> Option<usize> {
+    pub fn entry_index(&self, i: usize, j: usize) -> Option<usize> {
         let seat = self.seat(i / self.group, j / self.group)?;
         Some(self.entry(seat, i % self.group, j % self.group).1)
     }

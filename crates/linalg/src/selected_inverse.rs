@@ -36,7 +36,7 @@ impl SelectedInverse {
 
     /// An entry of the inverse; `None` where the factor has none.
     pub fn entry(&self, i: usize, j: usize) -> Option<f64> {
-        self.fronts.place(i, j).map(|place| self.values[place])
+        self.fronts.entry_index(i, j).map(|place| self.values[place])
     }
 }
 

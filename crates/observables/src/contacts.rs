@@ -14,7 +14,7 @@ pub(crate) fn contacts(frame: &Frame) -> Vec<[usize; 2]> {
             frame.tessellation.neighbours(cell).iter().map(of)
         })
         .filter(|[own, other]| own < other)
-        .filter(|[_, other]| frame.place(*other).is_some())
+        .filter(|[_, other]| frame.position_of_track(*other).is_some())
         .collect();
     all.sort_unstable();
     all.dedup();
@@ -23,7 +23,7 @@ pub(crate) fn contacts(frame: &Frame) -> Vec<[usize; 2]> {
 
 /// Whether both cells of a contact count in a frame.
 fn seen(frame: &Frame, pair: &[usize; 2]) -> bool {
-    pair.iter().all(|track| frame.place(*track).is_some())
+    pair.iter().all(|track| frame.position_of_track(*track).is_some())
 }
 
 /// Contacts of two frames that are in one of them only, though all their cells count in both; ascending.
@@ -59,7 +59,7 @@ pub(crate) fn exchange(recording: &Recording, plan: &Plan) -> [Curve; 2] {
         let [from, own] = [&frames[to - 1], &frames[to]];
         let time = own.time - from.time;
         for track in own.in_view().map(|cell| own.tracks[cell]) {
-            if from.place(track).is_some() {
+            if from.position_of_track(track).is_some() {
                 made.add(0, plan.parts[track], 0.0, time);
             }
         }

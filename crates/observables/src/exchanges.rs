@@ -159,7 +159,7 @@ fn waiting(recording: &Recording, plan: &Plan) -> Curve {
     for frame in 0..frames.len() {
         let mut sums = changes[frame].clone();
         (0..recording.tracks())
-            .filter(|track| frames[frame].place(*track).is_none())
+            .filter(|track| frames[frame].position_of_track(*track).is_none())
             .for_each(|track| sums[track][1] += 1);
         if let Some(before) = frame.checked_sub(1) {
             let own = Changes::between((&frames[before], &all[before]), (&frames[frame], &all[frame]));

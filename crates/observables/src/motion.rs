@@ -11,7 +11,7 @@ pub(crate) fn displacement(recording: &Recording, plan: &Plan) -> Curve {
         let (from, to) = (&frames[from], &frames[to]);
         for cell in from.in_view() {
             let track = from.tracks[cell];
-            if let Some(place) = to.place(track) {
+            if let Some(place) = to.position_of_track(track) {
                 let moved = place - from.positions[cell] + from.stage;
                 sums.add(point, plan.parts[track], moved.norm_squared(), 1.0);
             }

@@ -72,7 +72,7 @@ impl Frame {
     }
 
     /// Where a cell is beside the stage, if it counts.
-    pub fn place(&self, track: usize) -> Option<Vector<f64>> {
+    pub fn position_of_track(&self, track: usize) -> Option<Vector<f64>> {
         let cell = self.cell(track).filter(|cell| self.counted[*cell])?;
         Some(self.positions[cell] - self.stage)
     }

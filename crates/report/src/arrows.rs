@@ -106,7 +106,7 @@ impl Arrows {
     /// Adds the arrow of `vector` (y up) at `centre`, on a map.
     pub fn push_on(&mut self, view: &Viewport, centre: [f64; 2], vector: [f64; 2], scale: &ArrowScale) {
         let pixels = scale.stretch * view.scale();
-        self.push(view.place(centre), [vector[0] * pixels, -vector[1] * pixels]);
+        self.push(view.to_pixel(centre), [vector[0] * pixels, -vector[1] * pixels]);
     }
 
     /// Draws them.

@@ -185,7 +185,7 @@ impl Chart {
 
     /// Pixel position of a point in axis coordinates.
     #[must_use]
-    pub fn place(&self, [x, y]: [f64; 2]) -> [f64; 2] {
+    pub fn to_pixel(&self, [x, y]: [f64; 2]) -> [f64; 2] {
         let [[left, top], [right, bottom]] = self.plot;
         [left + self.x.share(x) * (right - left), bottom + self.y.share(y) * (top - bottom)]
     }
@@ -226,7 +226,7 @@ impl Chart {
     /// The path through points in axis coordinates, seen from `corner`, broken where one is not finite.
     fn broken_line(&self, points: &[[f64; 2]], corner: [f64; 2]) -> PathData {
         let mut path = PathData::new();
-        let places = points.iter().map(|&point| self.place(point));
+        let places = points.iter().map(|&point| self.to_pixel(point));
         let places: Vec<[f64; 2]> = places.map(|[x, y]| [x - corner[0], y - corner[1]]).collect();
         for part in places.split(|place| !place.iter().all(|x| x.is_finite())) {
             if part.len() > 1 {
@@ -364,9 +364,9 @@ mod tests {
         let chart = Chart::new(layout([0.0, 10.0])).unwrap();
         let [[left, top], [right, bottom]] = chart.plot();
         let close = |a: f64, b: f64| (a - b).abs() < 1e-9;
-        let corner = chart.place([0.0, 1e-3]);
+        let corner = chart.to_pixel([0.0, 1e-3]);
         assert!(close(corner[0], left) && close(corner[1], bottom));
-        let corner = chart.place([10.0, 1e4]);
+        let corner = chart.to_pixel([10.0, 1e4]);
         assert!(close(corner[0], right) && close(corner[1], top));
         let text = chart.finish();
         assert!(text.contains("distance (µm)") && text.contains("objective"));

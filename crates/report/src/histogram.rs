@@ -73,7 +73,7 @@ impl Histogram {
         let mut bars = PathData::new();
         for (bin, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             let low = (self.first + bin as f64) * self.width;
-            bars.rectangle(chart.place([low, count]), chart.place([low + self.width, 0.0]));
+            bars.rectangle(chart.to_pixel([low, count]), chart.to_pixel([low + self.width, 0.0]));
         }
         chart.svg.path(&bars, r##"fill="#9db4c6" stroke="#fff" stroke-width=".8""##);
     }

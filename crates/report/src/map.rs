@@ -80,7 +80,7 @@ impl Viewport {
 
     /// Place in the picture of a point of the plane.
     #[must_use]
-    pub fn place(&self, point: [f64; 2]) -> [f64; 2] {
+    pub fn to_pixel(&self, point: [f64; 2]) -> [f64; 2] {
         [(point[0] - self.corner[0]) * self.scale, (self.corner[1] - point[1]) * self.scale]
     }
 
@@ -100,7 +100,7 @@ impl Viewport {
     #[must_use]
     pub fn polygon(&self, cell: &CellView) -> Option<Vec<[f64; 2]>> {
         let reach = 4.0 * MAP_WIDTH;
-        let polygon: Vec<[f64; 2]> = cell.polygon.iter().map(|&vertex| self.place(vertex)).collect();
+        let polygon: Vec<[f64; 2]> = cell.polygon.iter().map(|&vertex| self.to_pixel(vertex)).collect();
         let near = polygon.iter().all(|at| at.iter().all(|x| x.abs() < reach));
         (polygon.len() >= 3 && near).then_some(polygon)
     }
@@ -163,7 +163,7 @@ impl Map {
             if let Some(polygon) = self.view.polygon(cell) {
                 polygons.polygon(&polygon);
             }
-            Marker::Circle.push(&mut rings, self.view.place(cell.centre), RING);
+            Marker::Circle.push(&mut rings, self.view.to_pixel(cell.centre), RING);
         }
         self.layer.path(&polygons, &format!(r#"fill="{GREEN}" fill-opacity=".16" stroke="none""#));
         self.layer.path(&rings, &format!(r#"fill="none" stroke="{GREEN}" stroke-width="1.4""#));
@@ -173,12 +173,12 @@ impl Map {
     pub fn boundary(&mut self, frame: &FrameView) {
         if let Some([low, high]) = frame.outline {
             let mut path = PathData::new();
-            path.rectangle(self.view.place(low), self.view.place(high));
+            path.rectangle(self.view.to_pixel(low), self.view.to_pixel(high));
             self.layer.path(&path, r##"fill="none" stroke="#666" stroke-dasharray="4 3""##);
         }
         let mut border = PathData::new();
         for corners in &frame.region {
-            border.polygon(&corners.iter().map(|&at| self.view.place(at)).collect::<Vec<_>>());
+            border.polygon(&corners.iter().map(|&at| self.view.to_pixel(at)).collect::<Vec<_>>());
         }
         self.layer.path(&border, REGION_STYLE);
     }

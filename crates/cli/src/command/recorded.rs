@@ -59,20 +59,20 @@ impl RecordingArguments {
     }
 
     /// The file that faults are told of.
-    pub fn place(&self) -> String {
+    pub fn location(&self) -> String {
         self.data.positions_file().display().to_string()
     }
 
     /// What the page is called.
     pub fn title(&self) -> String {
-        self.data.dataset.as_ref().map_or_else(|| self.place(), |folder| folder.display().to_string())
+        self.data.dataset.as_ref().map_or_else(|| self.location(), |folder| folder.display().to_string())
     }
 
     /// The frames that are asked for, as many as the machine has memory for.
     pub fn frames(&self, data: &DataSet) -> Result<Vec<usize>, Failure> {
         let frames = match &self.frames {
             Some(selection) => {
-                selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(self.place()))?
+                selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(self.location()))?
             }
             None => (0..data.frames()).collect(),
         };
@@ -83,7 +83,7 @@ impl RecordingArguments {
 
     /// The recording of these frames.
     pub fn record(&self, data: &DataSet, frames: &[usize]) -> Result<Recorded, Failure> {
-        let place = self.place();
+        let place = self.location();
         let at = |error: Error| match error {
             Error::Tessellation { frame, source } => {
                 Failure::from(source).at(format!("{place}, frame {}", frames[frame]))

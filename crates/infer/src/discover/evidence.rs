@@ -36,7 +36,7 @@ impl Evidence<'_> {
         };
         let places: Vec<Vec<Vector<f64>>> = frames
             .iter()
-            .map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect())
+            .map(|frame| frame.targets().map(|(datum, _)| frame.position_of_datum(datum)).collect())
             .collect();
         let cells: Vec<Option<Moving>> = frames.iter().map(cell_data).collect();
         // The cells of the last frame of tracks go nowhere.

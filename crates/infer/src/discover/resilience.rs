@@ -194,9 +194,9 @@ impl<'a> Speaking<'a> {
     fn around_one_place(&self) -> Mask {
         let around = |centre: &(f64, usize, usize)| -> (f64, Vec<usize>) {
             let frame = &self.frames[centre.1];
-            let (domain, at) = (frame.tessellation.domain(), frame.place(centre.2));
+            let (domain, at) = (frame.tessellation.domain(), frame.position_of_datum(centre.2));
             let is_near = |own: &&(f64, usize, usize)| {
-                own.1 == centre.1 && domain.shortest(frame.place(own.2) - at).norm() < NEAR
+                own.1 == centre.1 && domain.shortest(frame.position_of_datum(own.2) - at).norm() < NEAR
             };
             let near: Vec<&(f64, usize, usize)> = self.all.iter().filter(is_near).collect();
             (near.iter().map(|own| own.0).sum(), near.iter().map(|own| own.2).collect())
@@ -219,7 +219,7 @@ fn near_unseen(frames: &[Observation]) -> Mask {
             .map(|cell| frame.positions[cell])
             .collect();
         let is_near = |r: Vector<f64>| unseen.iter().any(|own| domain.shortest(r - own).norm() < NEAR);
-        (0..frame.velocities.values().len()).map(|datum| is_near(frame.place(datum))).collect()
+        (0..frame.velocities.values().len()).map(|datum| is_near(frame.position_of_datum(datum))).collect()
     };
     frames.iter().map(of_frame).collect()
 }

@@ -59,8 +59,10 @@ pub(crate) fn examine_residuals(
 
 /// Whether residuals have a structure in space.
 fn is_patterned(frames: &[Observation], residuals: &[Vec<Vector<f64>>], seed: u64) -> Result<bool, Error> {
-    let places: Vec<Vec<Vector<f64>>> =
-        frames.iter().map(|frame| frame.targets().map(|(datum, _)| frame.place(datum)).collect()).collect();
+    let places: Vec<Vec<Vector<f64>>> = frames
+        .iter()
+        .map(|frame| frame.targets().map(|(datum, _)| frame.position_of_datum(datum)).collect())
+        .collect();
     let fields = (0..frames.len())
         .map(|k| ResidualField::new(k, &places[k], &residuals[k], frames[k].tessellation.domain(), 1.0))
         .collect::<Result<Vec<_>, _>>()?;

@@ -109,7 +109,7 @@ impl<'a> Scene<'a> {
             }
         }
         let of = |row: &super::law::Judged| {
-            (self.observation.place(row.datum), row.residual.norm_squared() / row.variance)
+            (self.observation.position_of_datum(row.datum), row.residual.norm_squared() / row.variance)
         };
         self.squares = judged.iter().map(of).collect();
     }

@@ -37,7 +37,7 @@ impl Free {
     }
 
     /// The place of a cell among those that are free.
-    pub fn place(&self, cell: usize) -> Option<usize> {
+    pub fn column_index(&self, cell: usize) -> Option<usize> {
         self.seat.get(cell).filter(|seat| **seat != u32::MAX).map(|seat| *seat as usize)
     }
 

@@ -86,8 +86,8 @@ impl Patch {
     }
 
     /// The place among the free cells of a cell of the frame.
-    pub fn place(&self, cell: usize) -> Option<usize> {
-        self.cells.iter().position(|own| *own == cell).and_then(|own| self.free.place(own))
+    pub fn column_index(&self, cell: usize) -> Option<usize> {
+        self.cells.iter().position(|own| *own == cell).and_then(|own| self.free.column_index(own))
     }
 
     /// Free cells by their index in the frame.

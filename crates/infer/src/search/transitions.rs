@@ -214,7 +214,7 @@ fn trial(
     let factor = local.linearise(&present)?.frames[0].factor(objective.spring())?;
     let mut gradient = vec![0.0; present.len()];
     for (cell, g) in side.cells.iter().zip(side.gradient) {
-        if let Some(own) = patch.place(*cell) {
+        if let Some(own) = patch.column_index(*cell) {
             gradient[2 * own] += g.x;
             gradient[2 * own + 1] += g.y;
         }

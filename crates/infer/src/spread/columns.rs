@@ -166,7 +166,7 @@ fn of_patches(linear: &Linear<'_>, (layout, width): (&Layout, f64), index: usize
     let mut of_cells = DMatrix::zeros(2 * measurable.rows.len(), layout.order());
     for (cell, centre) in frame.positions.iter().enumerate() {
         for (datum, row) in row_of.iter().enumerate().filter(|own| *own.1 != usize::MAX) {
-            let away = domain.shortest(frame.place(datum) - centre).norm_squared();
+            let away = domain.shortest(frame.position_of_datum(datum) - centre).norm_squared();
             let value = (-0.5 * away / (width * width)).exp();
             for (block, start) in [layout.block(0).start, layout.block(1).start].into_iter().enumerate() {
                 of_cells[(2 * row + block, start + layout.of_frames[index][cell])] = value;

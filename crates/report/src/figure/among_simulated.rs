@@ -55,7 +55,7 @@ pub fn among_simulated(
             .filter(|k| fits([band.at[*k], band.low[*k]]) && fits([band.at[*k], band.high[*k]]))
             .collect();
         let along = |values: &[f64]| -> Vec<[f64; 2]> {
-            points.iter().map(|k| chart.place([band.at[*k], values[*k]])).collect()
+            points.iter().map(|k| chart.to_pixel([band.at[*k], values[*k]])).collect()
         };
         let mut outline = along(band.high);
         outline.extend(along(band.low).into_iter().rev());
@@ -67,7 +67,7 @@ pub fn among_simulated(
     }
     let mut marks = PathData::new();
     for at in measured.iter().filter(|at| fits(**at)) {
-        Marker::Circle.push(&mut marks, chart.place(*at), MARK);
+        Marker::Circle.push(&mut marks, chart.to_pixel(*at), MARK);
     }
     chart.svg.path(&marks, &format!(r#"fill="{INK}""#));
     chart.frame();

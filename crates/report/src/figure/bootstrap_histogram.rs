@@ -63,7 +63,7 @@ pub fn bootstrap_histogram(bootstrap: &BootstrapHistogram) -> String {
         .zip([1.21, 1.11])
         .filter_map(|((interval, kind), height)| Some((interval?, kind, height * highest)))
     {
-        let [from, to] = interval.map(|end| chart.place([end, height]));
+        let [from, to] = interval.map(|end| chart.to_pixel([end, height]));
         interval_mark(&mut chart.svg, [from, to], kind);
         let [_, low, high] = with_interval(bootstrap.estimate, interval);
         let label = format!("{} 95 %: {low} to {high} {unit}", kind.name());
@@ -133,7 +133,7 @@ fn interval_mark(svg: &mut Svg, [from, to]: [[f64; 2]; 2], kind: Kind) {
 /// Says at the ends how many estimates lie beyond them, above the low bars there.
 fn note_outside(chart: &mut Chart, bars: &Histogram) {
     let [[left, _], [right, _]] = chart.plot();
-    let y = chart.place([bars.range()[0], 0.97 * bars.highest()])[1];
+    let y = chart.to_pixel([bars.range()[0], 0.97 * bars.highest()])[1];
     let [below, above] = bars.outside;
     let notes = [(below, "◂ ", "", left + 5.0, Anchor::Start), (above, "", " ▸", right - 5.0, Anchor::End)];
     for (count, before, after, x, anchor) in notes.into_iter().filter(|note| note.0 > 0) {

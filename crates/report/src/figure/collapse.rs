@@ -42,7 +42,7 @@ pub fn collapse(title: &str, [x_label, y_label]: [&str; 2], rows: &[CollapseRow]
     ];
     for (row, colour) in rows.iter().zip(row_colours(rows.len())) {
         let place = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
-            points.iter().filter(fits).map(|&point| chart.place(point)).collect()
+            points.iter().filter(fits).map(|&point| chart.to_pixel(point)).collect()
         };
         let (liquid, solid) = (place(&row.liquid), place(&row.solid));
         solid_mark(&mut chart.svg, &solid, &colour);

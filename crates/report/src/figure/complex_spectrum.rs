@@ -85,7 +85,7 @@ fn draw_points(chart: &mut Chart, points: &[&SpectrumPoint]) -> usize {
         let at = [point.rate, point.frequency];
         if chart.contains(at) {
             let few = point.participation.is_some_and(|share| share < LOCALISED);
-            layers[index % LAYERS][usize::from(few)].push(chart.place(at));
+            layers[index % LAYERS][usize::from(few)].push(chart.to_pixel(at));
         } else {
             outside += 1;
         }

@@ -21,7 +21,7 @@ pub(super) fn draw(chart: &mut Chart, components: [Vec<[f64; 2]>; 2]) -> usize {
                 continue;
             }
             let path = &mut layers[index % LAYERS][axis];
-            push_mark(path, axis, chart.place(point));
+            push_mark(path, axis, chart.to_pixel(point));
         }
     }
     for [dots, diamonds] in &layers {

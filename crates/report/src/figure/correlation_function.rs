@@ -106,7 +106,7 @@ pub fn correlation_function(function: &CorrelationFunction) -> String {
             move |point: &CorrelationPoint| [point.distance, point.value + sign * point.standard_error]
         };
         let outline = points.iter().map(edge(1.0)).chain(points.iter().rev().map(edge(-1.0)));
-        let outline: Vec<[f64; 2]> = outline.map(|point| chart.place(point)).collect();
+        let outline: Vec<[f64; 2]> = outline.map(|point| chart.to_pixel(point)).collect();
         let mut band = PathData::new();
         band.polygon(&outline);
         chart.svg.path(&band, &format!(r#"fill="{colour}" opacity=".18""#));

@@ -45,12 +45,12 @@ pub fn defect_map(frame: &FrameView, shapes: &[[f64; 2]], defects: &[DefectMark]
             let end = |sign: f64| {
                 [0, 1].map(|axis| cell.centre[axis] + sign * half * [angle.cos(), angle.sin()][axis])
             };
-            lines.line(&[map.view.place(end(-1.0)), map.view.place(end(1.0))]);
+            lines.line(&[map.view.to_pixel(end(-1.0)), map.view.to_pixel(end(1.0))]);
         }
     }
     map.layer.path(&lines, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.1""#));
     for defect in defects {
-        draw(&mut map.layer, map.view.place(defect.place), defect);
+        draw(&mut map.layer, map.view.to_pixel(defect.place), defect);
     }
     let mut legend = map.with_legend(54.0);
     legend.scale_bar(units);
@@ -113,7 +113,7 @@ pub fn around_defects(around: &AroundDefects<'_>, units: &Units) -> String {
     if let (Some(all), Some(colours)) = (around.tension, &colours) {
         for (point, value) in all.iter().enumerate() {
             if let Some(level) = colours.level(*value) {
-                let corner = |sign: f64| view.place(place(point).map(|x| x + 0.5 * sign * around.square));
+                let corner = |sign: f64| view.to_pixel(place(point).map(|x| x + 0.5 * sign * around.square));
                 let mut square = PathData::new();
                 square.rectangle(corner(-1.0), corner(1.0));
                 let colour = colours.colour(level);
@@ -123,7 +123,7 @@ pub fn around_defects(around: &AroundDefects<'_>, units: &Units) -> String {
     }
     draw(
         &mut map.layer,
-        view.place([0.0; 2]),
+        view.to_pixel([0.0; 2]),
         &DefectMark { place: [0.0; 2], is_plus: around.is_plus, direction: 0.0 },
     );
     let mut arrows = Arrows::default();

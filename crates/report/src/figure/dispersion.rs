@@ -58,7 +58,7 @@ pub fn dispersion(points: &[DispersionPoint], part: DispersionPart, unit: &str) 
         let Some(corner) = point.corner else { continue };
         let line = [[point.distance, low - room], [point.distance, high + room]];
         chart.curve(&line, &format!(r#"stroke="{GREY}" stroke-width=".8""#));
-        let [x, y] = chart.place(line[0]);
+        let [x, y] = chart.to_pixel(line[0]);
         let style = TextStyle { size: 13.0, ..TextStyle::label(Anchor::Middle) };
         chart.svg.text([x, y + 18.0], corner, style);
     }
@@ -77,7 +77,7 @@ pub fn dispersion(points: &[DispersionPoint], part: DispersionPart, unit: &str) 
     let mut marks = PathData::new();
     for point in points.iter().step_by((points.len() / 60).max(1)) {
         for wave in point.exact {
-            circle(&mut marks, chart.place([point.distance, wave[which]]));
+            circle(&mut marks, chart.to_pixel([point.distance, wave[which]]));
         }
     }
     let mark_style = format!(r#"fill="none" stroke="{VERMILLION}" stroke-width="1.1""#);

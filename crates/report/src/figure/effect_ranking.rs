@@ -53,7 +53,7 @@ fn axis_end(ranking: &[RankedEffect]) -> Option<f64> {
 }
 
 fn draw_row(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, f64)) {
-    let y = chart.place([0.0, middle])[1];
+    let y = chart.to_pixel([0.0, middle])[1];
     let left = chart.plot()[0][0];
     let name = effect.effect.replace('_', " ");
     let colour = if effect.status == CandidateStatus::Selected { INK } else { "#555" };
@@ -62,13 +62,15 @@ fn draw_row(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, f64))
     let look = Look::of(effect);
     let is_drawn = look != Look::NotTestable;
     if is_drawn {
-        let [from, to] = [chart.place([0.0, middle + 0.34]), chart.place([reach, middle - 0.34])];
+        let [from, to] = [chart.to_pixel([0.0, middle + 0.34]), chart.to_pixel([reach, middle - 0.34])];
         look.fill(&mut chart.svg, [from, to]);
         draw_interval(chart, effect, (middle, end));
     }
     let limit = effect.detection_limit;
     let mut mark = PathData::new();
-    mark.line(&[[limit.min(end), middle + 0.42], [limit.min(end), middle - 0.42]].map(|at| chart.place(at)));
+    mark.line(
+        &[[limit.min(end), middle + 0.42], [limit.min(end), middle - 0.42]].map(|at| chart.to_pixel(at)),
+    );
     let mut remarks = Vec::new();
     if limit <= end {
         chart.svg.path(&mark, LIMIT);
@@ -88,7 +90,7 @@ fn draw_row(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, f64))
         ends.map_or(0.0, |ends| ends[1]),
     ];
     let far = far.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
-    let [x, y] = [chart.place([far, middle])[0] + 8.0, y + 4.0];
+    let [x, y] = [chart.to_pixel([far, middle])[0] + 8.0, y + 4.0];
     chart.svg.text([x, y], &remarks.join(", "), TextStyle { size: 10.5, ..TextStyle::quiet(Anchor::Start) });
 }
 
@@ -102,7 +104,7 @@ fn draw_interval(chart: &mut Chart, effect: &RankedEffect, (middle, end): (f64, 
     let Some(ends) = interval(effect, end) else {
         return;
     };
-    let places = ends.map(|value| chart.place([value, middle]));
+    let places = ends.map(|value| chart.to_pixel([value, middle]));
     let mut line = PathData::new();
     line.line(&places);
     for [x, y] in places {

@@ -110,18 +110,18 @@ fn draw_bar(chart: &mut Chart, bar: &ErrorBar, (middle, [start, end]): (f64, [f6
         let stem = [[start, middle], [reach, middle]];
         chart.curve(&stem, &format!(r#"stroke="{fill}" stroke-width="1.2" stroke-dasharray="2 3""#));
         let mut point = PathData::new();
-        point.dot(chart.place([reach, middle]));
+        point.dot(chart.to_pixel([reach, middle]));
         chart.svg.path(&point, &format!(r#"stroke="{fill}" stroke-width="11" stroke-linecap="round""#));
     } else {
         let mut path = PathData::new();
-        let [from, to] = [chart.place([0.0, middle + 0.3]), chart.place([reach, middle - 0.3])];
+        let [from, to] = [chart.to_pixel([0.0, middle + 0.3]), chart.to_pixel([reach, middle - 0.3])];
         path.rectangle(from, to);
         chart.svg.path(&path, &format!(r#"fill="{fill}""#));
     }
     if let Some([low, high]) = whisker(bar, [start, end]) {
         chart.curve(&[[low, middle], [high, middle]], r##"stroke="#222" stroke-width="1.4""##);
     }
-    let at = [chart.plot()[0][0] - 9.0, chart.place([start, middle])[1] + 4.0];
+    let at = [chart.plot()[0][0] - 9.0, chart.to_pixel([start, middle])[1] + 4.0];
     chart.svg.text(at, &bar.label, TextStyle::label(Anchor::End));
 }
 
@@ -139,12 +139,12 @@ fn draw_number(chart: &mut Chart, bar: &ErrorBar, (middle, [start, end]): (f64, 
     } else if bar.nmse < start {
         number.insert_str(0, "◂ ");
     }
-    let baseline = chart.place([start, middle])[1] + 4.0;
+    let baseline = chart.to_pixel([start, middle])[1] + 4.0;
     let [[left, _], [right, _]] = chart.plot();
     let width = 6.3 * number.chars().count() as f64;
-    let outside = chart.place([high, middle])[0] + 9.0;
-    let inside = chart.place([low, middle])[0] - 9.0;
-    let one = chart.place([1.0, middle])[0];
+    let outside = chart.to_pixel([high, middle])[0] + 9.0;
+    let inside = chart.to_pixel([low, middle])[0] - 9.0;
+    let one = chart.to_pixel([1.0, middle])[0];
     let is_blocked = outside + width > right || (outside - 4.0..outside + width + 4.0).contains(&one);
     let (x, anchor, colour) = if is_blocked && inside - width > left {
         (inside, Anchor::End, if start > 0.0 { "#222" } else { contrast(bar.emphasis) })

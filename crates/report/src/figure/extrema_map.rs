@@ -43,7 +43,7 @@ pub fn extrema_map(frame: &FrameView, field: &ExtremaMap<'_>, units: &Units) -> 
                 || (top..bottom).flat_map(|row| (left..right).map(move |column| row * columns + column));
             let mean = pixels().map(|k| field.values[k]).sum::<f64>() / pixels().count() as f64;
             let place = |column: usize, row: usize| {
-                map.view.place([
+                map.view.to_pixel([
                     field.corner[0] + column as f64 * field.step[0],
                     field.corner[1] + row as f64 * field.step[1],
                 ])
@@ -59,7 +59,7 @@ pub fn extrema_map(frame: &FrameView, field: &ExtremaMap<'_>, units: &Units) -> 
     }
     let [mut polygons, mut dots] = [PathData::new(), PathData::new()];
     for cell in &frame.cells {
-        dots.dot(map.view.place(cell.centre));
+        dots.dot(map.view.to_pixel(cell.centre));
         if let Some(polygon) = map.view.polygon(cell) {
             polygons.polygon(&polygon);
         }

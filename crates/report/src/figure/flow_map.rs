@@ -127,7 +127,7 @@ pub(super) fn draw_flow(
         match velocity {
             Some(velocity) => arrows.push_on(&map.view, place, velocity, scale),
             None => {
-                Marker::Cross.push(&mut crosses, map.view.place(place), CROSS);
+                Marker::Cross.push(&mut crosses, map.view.to_pixel(place), CROSS);
                 missing += 1;
             }
         }

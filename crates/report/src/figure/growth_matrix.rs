@@ -70,9 +70,9 @@ pub fn growth_matrix(points: &[GrowthPoint], curve: &[GrowthCurve], units: &Unit
             let (value, error) = (point.matrix[row][column], point.errors[row][column]);
             let clamp = |y: f64| y.clamp(low - room, high + room);
             if error.is_finite() && chart.contains([point.square, value]) {
-                let ends = [value - error, value + error].map(|y| chart.place([point.square, clamp(y)]));
+                let ends = [value - error, value + error].map(|y| chart.to_pixel([point.square, clamp(y)]));
                 bars.line(&ends);
-                marker.push(&mut marks, chart.place([point.square, value]), 3.0);
+                marker.push(&mut marks, chart.to_pixel([point.square, value]), 3.0);
             }
         }
         chart.svg.path(&bars, &format!(r#"fill="none" stroke="{colour}" stroke-width="1""#));

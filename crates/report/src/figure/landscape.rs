@@ -83,7 +83,7 @@ pub fn landscape(landscape: &Landscape) -> String {
     let truth = landscape.truth.map(|truth| (truth, Marker::Circle));
     for (at, marker) in truth.into_iter().chain([(landscape.best, Marker::Cross)]) {
         if chart.contains(at) {
-            let at = chart.place(at);
+            let at = chart.to_pixel(at);
             draw_mark(&mut chart.svg, marker, at);
         }
     }
@@ -117,7 +117,7 @@ fn no_fit_sample(svg: &mut Svg, _middle: [f64; 2]) {
 
 /// Draws the contour lines and their labels; those without room for a label get an entry.
 fn draw_contours(chart: &mut Chart, grid: &Grid, landscape: &Landscape) -> Vec<KeyEntry> {
-    let marks = landscape.truth.into_iter().chain([landscape.best]).map(|mark| chart.place(mark));
+    let marks = landscape.truth.into_iter().chain([landscape.best]).map(|mark| chart.to_pixel(mark));
     let mut taken: Vec<[f64; 2]> = marks.filter(|&mark| is_finite(mark)).collect();
     let mut entries = Vec::new();
     let mut labels = Vec::new();
@@ -282,7 +282,7 @@ impl Grid {
             for run in levels.chunk_by(|a, b| a == b) {
                 let corner = |column: usize, row: usize| {
                     let [x, y] = [column, row].map(|index| index as f64 - 0.5);
-                    chart.place([self.x.at(x), self.y.at(y)])
+                    chart.to_pixel([self.x.at(x), self.y.at(y)])
                 };
                 let [from, to] = [corner(first, row), corner(first + run.len(), row + 1)];
                 match run[0] {
@@ -308,7 +308,7 @@ impl Grid {
 
     /// The lines at one level, in pixels.
     fn contour(&self, chart: &Chart, level: f64) -> Vec<Vec<[f64; 2]>> {
-        let place = |[x, y]: [f64; 2]| chart.place([self.x.at(x), self.y.at(y)]);
+        let place = |[x, y]: [f64; 2]| chart.to_pixel([self.x.at(x), self.y.at(y)]);
         let lines = contour_lines(&self.heights, self.x.values.len(), spread(level));
         lines.into_iter().map(|line| line.into_iter().map(place).collect()).collect()
     }

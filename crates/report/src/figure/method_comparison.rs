@@ -177,7 +177,7 @@ fn label_conditions(chart: &mut Chart, conditions: &[f64]) {
     let bottom = chart.plot()[1][1];
     let mut ticks = PathData::new();
     for (index, &condition) in conditions.iter().enumerate() {
-        let x = chart.place([index as f64, f64::NAN])[0];
+        let x = chart.to_pixel([index as f64, f64::NAN])[0];
         ticks.line(&[[x, bottom], [x, bottom + 4.0]]);
         let style = TextStyle { size: 11.0, ..TextStyle::label(Anchor::Middle) };
         chart.svg.text([x, bottom + 16.0], &as_given(condition), style);
@@ -199,7 +199,7 @@ fn label_target(chart: &mut Chart, (target, name): (f64, &str), comparison: &Met
         return;
     }
     let conditions = conditions(comparison);
-    let height = |value: f64| chart.place([low, value])[1];
+    let height = |value: f64| chart.to_pixel([low, value])[1];
     let clearance = |condition: Option<&f64>| {
         let points = (0..comparison.methods.len()).flat_map(|index| drawable(comparison, index));
         let near = points.filter(|point| condition == Some(&point.0));
@@ -207,7 +207,7 @@ fn label_target(chart: &mut Chart, (target, name): (f64, &str), comparison: &Met
     };
     let is_right = clearance(conditions.last()) > clearance(conditions.first());
     let top = chart.plot()[0][1];
-    let [x, y] = chart.place([if is_right { high } else { low }, target]);
+    let [x, y] = chart.to_pixel([if is_right { high } else { low }, target]);
     let y = if y - top < 18.0 { y + 13.0 } else { y - 5.0 };
     let (x, anchor) = if is_right { (x - 6.0, Anchor::End) } else { (x + 6.0, Anchor::Start) };
     chart.svg.text_with_rim([x, y], name, TextStyle::label(anchor), "#fff");
@@ -216,7 +216,7 @@ fn label_target(chart: &mut Chart, (target, name): (f64, &str), comparison: &Met
 fn draw_series(chart: &mut Chart, points: &[Point], (style, aside): (Style, f64)) {
     let lowest = chart.axes()[1].range[0];
     let place = |chart: &Chart, x: f64, y: f64| {
-        let [x, y] = chart.place([x, y.max(lowest)]);
+        let [x, y] = chart.to_pixel([x, y.max(lowest)]);
         [x + aside, y]
     };
     let mut line = PathData::new();

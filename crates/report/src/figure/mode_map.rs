@@ -47,7 +47,7 @@ pub fn mode_map(frame: &FrameView, mode: &DrawnMode, units: &Units) -> String {
         let mut arrows = Arrows::default();
         for (cell, [real, _]) in frame.cells.iter().zip(&mode.displacements) {
             let drawn = [2.0 * stretch * real[0], -2.0 * stretch * real[1]];
-            arrows.push(map.view.place(cell.centre), drawn);
+            arrows.push(map.view.to_pixel(cell.centre), drawn);
         }
         arrows.draw(&mut map.layer, INK);
     } else {
@@ -91,7 +91,7 @@ fn draw_orbits(map: &mut Map, frame: &FrameView, mode: &DrawnMode, stretch: f64)
     let moves = frame.cells.len() <= MOST_ANIMATED;
     for (cell, parts) in frame.cells.iter().zip(&mode.displacements) {
         let Some(orbit) = Orbit::new(parts, mode.frequency.signum(), stretch) else { continue };
-        let centre = map.view.place(cell.centre);
+        let centre = map.view.to_pixel(cell.centre);
         let at: Vec<[f64; 2]> = orbit.places.iter().map(|[x, y]| [centre[0] + x, centre[1] + y]).collect();
         ellipses[usize::from(orbit.counter_clockwise)].polygon(&at);
         let colour = if orbit.counter_clockwise { BLUE } else { VERMILLION };

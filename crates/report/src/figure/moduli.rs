@@ -48,22 +48,22 @@ pub fn moduli(records: &[ModulusRecord], unit: &str) -> String {
     let (mut each, mut mean, mut affine) = (PathData::new(), PathData::new(), PathData::new());
     for (row, record) in records.iter().enumerate() {
         let middle = rows - row as f64 - 0.5;
-        let [x, y] = chart.place([low - room, middle]);
+        let [x, y] = chart.to_pixel([low - room, middle]);
         let style = TextStyle { size: 15.0, ..TextStyle::label(Anchor::End) };
         chart.svg.text([x - 12.0, y + 5.0], record.symbol, style);
         for value in record.replicas.iter().filter(|value| chart.contains([**value, middle])) {
-            Marker::Circle.push(&mut each, chart.place([*value, middle - 0.27]), 2.0);
+            Marker::Circle.push(&mut each, chart.to_pixel([*value, middle - 0.27]), 2.0);
         }
         if let Some(value) = record.mean_field {
             chart.curve(&[[value, middle - 0.4], [value, middle + 0.4]], &theory_style);
         }
         if let Some(value) = record.affine {
-            Marker::Diamond.push(&mut affine, chart.place([value, middle + 0.27]), 3.6);
+            Marker::Diamond.push(&mut affine, chart.to_pixel([value, middle + 0.27]), 3.6);
         }
         if record.value.is_finite() {
             let ends = [record.value - record.error, record.value + record.error].map(|x| [x, middle]);
             chart.curve(&ends, &bar_style);
-            Marker::Circle.push(&mut mean, chart.place([record.value, middle]), 4.0);
+            Marker::Circle.push(&mut mean, chart.to_pixel([record.value, middle]), 4.0);
         }
     }
     let styles = [

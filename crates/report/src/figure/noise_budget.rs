@@ -38,7 +38,7 @@ pub fn noise_budget(bars: &[(&str, NoiseBudget)]) -> String {
     };
     for (row, (label, budget)) in bars.iter().enumerate() {
         let middle = count - row as f64 - 0.5;
-        let at = [chart.plot()[0][0] - 9.0, chart.place([0.0, middle])[1] + 4.0];
+        let at = [chart.plot()[0][0] - 9.0, chart.to_pixel([0.0, middle])[1] + 4.0];
         chart.svg.text(at, label, TextStyle::label(Anchor::End));
         draw_bar(&mut chart, budget, middle);
     }
@@ -51,11 +51,11 @@ fn draw_bar(chart: &mut Chart, budget: &NoiseBudget, middle: f64) {
     let mut start = 0.0;
     for part in Part::ALL {
         let share = 100.0 * part.share(budget);
-        let corners = [chart.place([start, middle + 0.3]), chart.place([start + share, middle - 0.3])];
+        let corners = [chart.to_pixel([start, middle + 0.3]), chart.to_pixel([start + share, middle - 0.3])];
         part.fill(&mut chart.svg, corners);
         let width = corners[1][0] - corners[0][0];
         if width >= LEGIBLE {
-            let at = [(corners[0][0] + corners[1][0]) / 2.0, chart.place([0.0, middle])[1] + 4.0];
+            let at = [(corners[0][0] + corners[1][0]) / 2.0, chart.to_pixel([0.0, middle])[1] + 4.0];
             let (colour, rim) = part.ink();
             let style = TextStyle { colour, ..TextStyle::label(Anchor::Middle) };
             chart.svg.text_with_rim(at, &format!("{} %", significant(share, 2)), style, rim);

@@ -58,7 +58,7 @@ pub fn nudge_map(frame: &FrameView, scale: Option<&ArrowScale>, units: &Units) -
 fn draw_edges(map: &mut Map, edges: &[Segment], (colour, style): (&str, &str)) {
     let mut path = PathData::new();
     for edge in edges {
-        path.line(&edge.map(|end| map.view.place(end)));
+        path.line(&edge.map(|end| map.view.to_pixel(end)));
     }
     map.layer.path(&path, &format!(r#"fill="none" stroke="{colour}" opacity=".8" {style}"#));
 }

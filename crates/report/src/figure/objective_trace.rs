@@ -51,7 +51,7 @@ pub fn objective_trace(trace: &ObjectiveTrace<'_>) -> String {
     if let Some(expected) = expected {
         let ends = [[-0.02 * last, expected], [1.02 * last, expected]];
         chart.curve(&ends, &format!(r#"stroke="{GREY}" stroke-width="1.2" stroke-dasharray="5 3""#));
-        let at = [left + 8.0, chart.place([0.0, expected])[1] - 5.0];
+        let at = [left + 8.0, chart.to_pixel([0.0, expected])[1] - 5.0];
         let label = format!("expected {}", significant(expected, 3));
         chart.svg.text(at, &label, TextStyle::quiet(Anchor::Start));
     }
@@ -59,7 +59,7 @@ pub fn objective_trace(trace: &ObjectiveTrace<'_>) -> String {
     if points.len() <= 60 {
         let mut dots = PathData::new();
         for &point in &points {
-            dots.dot(chart.place(point));
+            dots.dot(chart.to_pixel(point));
         }
         let style = r#"fill="none" stroke-width="4.5" stroke-linecap="round""#;
         chart.svg.path(&dots, &format!(r#"stroke="{BLUE}" {style}"#));

@@ -68,7 +68,7 @@ pub fn outlier_map(frame: &FrameView, outliers: &[Outlier], units: &Units) -> St
             if let Some(polygon) = map.view.polygon(cell) {
                 tint.polygon(&polygon);
             }
-            suspicion.look().0.push(&mut marks, map.view.place(cell.centre), MARK);
+            suspicion.look().0.push(&mut marks, map.view.to_pixel(cell.centre), MARK);
             *count += 1;
         }
         let colour = suspicion.look().1;

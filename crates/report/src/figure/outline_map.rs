@@ -16,13 +16,13 @@ pub fn outline_map(frame: &FrameView, outlines: &[Segment], units: &Units) -> St
     };
     let [mut used, mut left_out, mut dots, mut truth] = std::array::from_fn(|_| PathData::new());
     for cell in &frame.cells {
-        dots.dot(map.view.place(cell.centre));
+        dots.dot(map.view.to_pixel(cell.centre));
         if let Some(polygon) = map.view.polygon(cell) {
             if cell.is_used() { &mut used } else { &mut left_out }.polygon(&polygon);
         }
     }
     for segment in outlines {
-        truth.line(&segment.map(|end| map.view.place(end)));
+        truth.line(&segment.map(|end| map.view.to_pixel(end)));
     }
     let blue = format!(r#"stroke="{BLUE}" stroke-width="1" stroke-linejoin="round""#);
     let red = format!(r#"fill="none" stroke="{VERMILLION}" stroke-width=".8" stroke-linecap="square""#);

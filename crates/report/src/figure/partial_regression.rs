@@ -104,7 +104,7 @@ fn draw_slope(chart: &mut Chart, plot: &PartialRegression, [from, to]: [f64; 2])
             for x in [from, to] {
                 let places =
                     [[0.0, 0.0], [x, (ends[0] * x).clamp(low, high)], [x, (ends[1] * x).clamp(low, high)]];
-                wedges.polygon(&places.map(|at| chart.place(at)));
+                wedges.polygon(&places.map(|at| chart.to_pixel(at)));
             }
             chart.svg.path(&wedges, INTERVAL);
             let [slope, low, high] = with_interval(plot.slope, ends);
@@ -142,8 +142,8 @@ fn draw_groups(chart: &mut Chart, groups: &[Group]) {
     let [mut bars, mut marks] = [PathData::new(), PathData::new()];
     for Group { mean: [x, y], error } in groups {
         if chart.contains([*x, *y]) {
-            bars.line(&[[*x, y - error], [*x, y + error]].map(|at| chart.place(at)));
-            Marker::Square.push(&mut marks, chart.place([*x, *y]), 4.0);
+            bars.line(&[[*x, y - error], [*x, y + error]].map(|at| chart.to_pixel(at)));
+            Marker::Square.push(&mut marks, chart.to_pixel([*x, *y]), 4.0);
         }
     }
     chart.svg.path(&bars, &format!(r#"fill="none" stroke="{INK}" stroke-width="1.6""#));

@@ -163,8 +163,8 @@ fn draw_cells(chart: &mut Chart, (columns, rows): (&[f64], &[f64]), values: &[f6
     let [mut missing, mut hatching] = [PathData::new(), PathData::new()];
     for (row, values) in values.chunks(columns.len() - 1).enumerate() {
         for (column, &value) in values.iter().enumerate() {
-            let from = chart.place([columns[column], rows[row]]);
-            let to = chart.place([columns[column + 1], rows[row + 1]]);
+            let from = chart.to_pixel([columns[column], rows[row]]);
+            let to = chart.to_pixel([columns[column + 1], rows[row + 1]]);
             match colours.level(value) {
                 Some(level) => classes[level].rectangle(from, to),
                 None => {

@@ -155,12 +155,12 @@ fn draw_points(chart: &mut Chart, figure: &PointsAndCurves<'_>, series: &PointSe
                     let mut at = point.at;
                     let [low, high] = chart.axes()[axis].range;
                     at[axis] = (at[axis] + sign * error).clamp(low, high);
-                    chart.place(at)
+                    chart.to_pixel(at)
                 };
                 bars.line(&[end(-1.0), end(1.0)]);
             }
         }
-        series.marker.push(&mut marks, chart.place(point.at), MARK);
+        series.marker.push(&mut marks, chart.to_pixel(point.at), MARK);
     }
     chart
         .svg

@@ -93,11 +93,11 @@ fn shade(chart: &mut Chart, interval: [Option<f64>; 2]) -> [f64; 2] {
     let [from, to] = [from, to].map(|end| if end.is_finite() { end.clamp(low, high) } else { f64::NAN });
     let top = chart.axes()[1].range[1];
     let mut area = PathData::new();
-    area.rectangle(chart.place([from, 0.0]), chart.place([to, top]));
+    area.rectangle(chart.to_pixel([from, 0.0]), chart.to_pixel([to, top]));
     chart.svg.path(&area, SHADE);
     let mut edges = PathData::new();
     for end in interval.into_iter().flatten().filter(|end| (low..=high).contains(end)) {
-        edges.line(&[chart.place([end, 0.0]), chart.place([end, RISE_95])]);
+        edges.line(&[chart.to_pixel([end, 0.0]), chart.to_pixel([end, RISE_95])]);
     }
     chart.svg.path(&edges, r##"fill="none" stroke="#5b7f99" stroke-width="1""##);
     [from, to]
@@ -107,12 +107,12 @@ fn shade(chart: &mut Chart, interval: [Option<f64>; 2]) -> [f64; 2] {
 fn mark_points(chart: &mut Chart, points: &[[f64; 2]], best: f64) {
     let mut dots = PathData::new();
     for &point in points.iter().filter(|&&point| chart.contains(point)) {
-        dots.dot(chart.place(point));
+        dots.dot(chart.to_pixel(point));
     }
     let style = r#"fill="none" stroke-width="5" stroke-linecap="round""#;
     chart.svg.path(&dots, &format!(r#"stroke="{BLUE}" {style}"#));
     if chart.contains([best, 0.0]) {
-        let [x, y] = chart.place([best, 0.0]);
+        let [x, y] = chart.to_pixel([best, 0.0]);
         let mut mark = PathData::new();
         mark.polygon(&[[x, y - 1.0], [x - 5.0, y - 11.0], [x + 5.0, y - 11.0]]);
         chart.svg.path(&mark, &format!(r##"fill="{INK}" stroke="#fff" stroke-width=".8""##));
@@ -126,7 +126,7 @@ fn draw_limit(chart: &mut Chart, shaded: [f64; 2]) {
     chart.curve(&[[low, RISE_95], [high, RISE_95]], &format!(r#"stroke="{INK}" stroke-width="1.1""#));
     let middle = (shaded[0] + shaded[1]) / 2.0;
     let [[left, _], [right, _]] = chart.plot();
-    let [x, y] = chart.place([if middle.is_finite() { middle } else { (low + high) / 2.0 }, RISE_95]);
+    let [x, y] = chart.to_pixel([if middle.is_finite() { middle } else { (low + high) / 2.0 }, RISE_95]);
     let at = [x.clamp(left + 20.0, right - 20.0), y - 5.0];
     chart.svg.text_with_rim(at, "95 %", TextStyle::label(Anchor::Middle), "#fff");
 }

@@ -47,7 +47,7 @@ pub fn shape_scatter(pairs: &[[f64; 2]], measure: ShapeMeasure, correlation: f64
     let (mut marks, mut outside) = (PathData::new(), 0);
     for &pair in pairs.iter().filter(|pair| pair.iter().all(|x| x.is_finite())) {
         if chart.contains(pair) {
-            marks.dot(chart.place(pair));
+            marks.dot(chart.to_pixel(pair));
         } else {
             outside += 1;
         }

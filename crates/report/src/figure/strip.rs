@@ -124,7 +124,7 @@ pub fn strip_bands(
         return no_data(title);
     };
     let mut dots = PathData::new();
-    bulk.iter().for_each(|&place| dots.dot(chart.place(place)));
+    bulk.iter().for_each(|&place| dots.dot(chart.to_pixel(place)));
     chart.svg.path(&dots, BULK);
     draw(&mut chart, own.iter().copied());
     chart.frame();
@@ -166,7 +166,7 @@ fn colour(side: StripSide) -> &'static str {
 fn draw(chart: &mut Chart, points: impl Iterator<Item = ([f64; 2], StripPoint)> + Clone) {
     for (side, of_edge, _) in KINDS {
         let own = points.clone().filter(|(_, point)| point.side == side && point.of_edge == of_edge);
-        let places: Vec<[f64; 2]> = own.map(|(place, _)| chart.place(place)).collect();
+        let places: Vec<[f64; 2]> = own.map(|(place, _)| chart.to_pixel(place)).collect();
         mark(&mut chart.svg, (side, of_edge), &places);
     }
 }
@@ -223,7 +223,7 @@ fn shaded(chart: &Chart, grid: &WindingGrid, positive: bool) -> PathData {
                 let low = [grid.real[first] - wide, imaginary - high];
                 let top = [grid.real[column - 1] + wide, imaginary + high];
                 if chart.contains(low) && chart.contains(top) {
-                    area.rectangle(chart.place(low), chart.place(top));
+                    area.rectangle(chart.to_pixel(low), chart.to_pixel(top));
                 }
             }
             column += 1;

@@ -49,7 +49,7 @@ impl Deformation {
     }
 
     /// Where a point comes to, in the frame of the box.
-    pub fn place(&self, r: Vector<f64>) -> Vector<f64> {
+    pub fn displaced(&self, r: Vector<f64>) -> Vector<f64> {
         let [[xx, xy], [_, yy]] = self.gradient;
         Vector::new(xx * r.x + xy * r.y, yy * r.y)
     }

@@ -303,7 +303,7 @@ fn deformed(base: &Simulation, deformation: &Deformation) -> Result<Simulation, 
     let Domain::Periodic(cell_box) = base.tessellation().domain() else {
         return Err(Error::OpenDomain);
     };
-    let positions = base.positions().iter().map(|r| deformation.place(*r)).collect();
+    let positions = base.positions().iter().map(|r| deformation.displaced(*r)).collect();
     let cell_box = deformation
         .cell_box(&cell_box)
         .map_err(|source| Error::Tessellation { time: base.time(), source })?;

@@ -116,7 +116,7 @@ fn the_box_has_the_strain_up_to_its_turn() {
         let deformation = Deformation::new(strain, amount);
         let [c, n] = deformation.turn();
         for r in [Vector::new(1.0, 0.0), Vector::new(0.0, 1.0)] {
-            let placed = deformation.place(r);
+            let placed = deformation.displaced(r);
             let turned = Vector::new(c * placed.x - n * placed.y, n * placed.x + c * placed.y);
             let expected = Vector::new(
                 stretch[0][0] * r.x + stretch[0][1] * r.y,
@@ -126,7 +126,7 @@ fn the_box_has_the_strain_up_to_its_turn() {
         }
         let cell_box = PeriodicBox::sheared([3.0, 2.0], 0.4).unwrap();
         let deformed = deformation.cell_box(&cell_box).unwrap();
-        let corner = deformation.place(cell_box.translation([1, 1]));
+        let corner = deformation.displaced(cell_box.translation([1, 1]));
         assert!((corner - deformed.translation([1, 1])).norm() < 1e-15);
     }
 }

@@ -67,7 +67,7 @@ fn distributions(name: &str, colour: &str, rows: &[&Errors], height: f64) -> Opt
     let (mut dots, mut boxes, mut medians) = (PathData::new(), PathData::new(), PathData::new());
     for (row, errors) in rows.iter().enumerate() {
         let place = |error: f64, offset: f64| {
-            let [x, y] = chart.place([(100.0 * error).clamp(-reach, reach), -(row as f64)]);
+            let [x, y] = chart.to_pixel([(100.0 * error).clamp(-reach, reach), -(row as f64)]);
             [x, y + offset]
         };
         let [low, median, high] = quartiles(errors.all.clone());
@@ -96,10 +96,10 @@ fn coverage(name: &str, colour: &str, rows: &[&Errors], height: f64) -> Option<C
     let mut chart = panel(&format!("covers {name}"), [0.0, 1.0], [NARROW, height], rows.len())?;
     let ends = chart.axes()[1].range;
     let mut band = PathData::new();
-    band.rectangle(chart.place([WANTED[0], ends[0]]), chart.place([WANTED[1], ends[1]]));
+    band.rectangle(chart.to_pixel([WANTED[0], ends[0]]), chart.to_pixel([WANTED[1], ends[1]]));
     let (mut bars, mut dots) = (PathData::new(), PathData::new());
     for (row, Errors { covered, .. }) in rows.iter().enumerate() {
-        let place = |share: f64| chart.place([share, -(row as f64)]);
+        let place = |share: f64| chart.to_pixel([share, -(row as f64)]);
         let [low, high] = covered.interval();
         bars.line(&[place(low), place(high)]);
         dots.dot(place(covered.share()));
@@ -122,7 +122,7 @@ fn panel(label: &str, range: [f64; 2], size: [f64; 2], rows: usize) -> Option<Ch
 /// The names of the classes beside their rows of a panel.
 fn label_rows(svg: &mut Svg, panel: &Chart, shown: &[&Summary]) {
     for (row, own) in shown.iter().enumerate() {
-        let [_, y] = panel.place([0.0, -(row as f64)]);
+        let [_, y] = panel.to_pixel([0.0, -(row as f64)]);
         svg.text([NAMES + 12.0, y + 4.0], own.class.name, TextStyle::label(Anchor::End));
     }
 }

@@ -6,7 +6,7 @@ use super::material::Searched;
 use super::onward::{self, Rivals};
 use super::sentences::probability;
 use crate::command::fit::measured::measured;
-use crate::command::fit::place;
+use crate::command::fit::with_location;
 use crate::failure::Failure;
 use crate::problem::Problem;
 use crate::progress::Progress;
@@ -94,7 +94,9 @@ impl CheckArguments {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
         match check(&ahead, &rivals.models(), &mut observe) {
             Ok(found) => Ok(Some(Compared::new(&found, &frames, (prepared, units)))),
-            Err(Error::Interrupted) => Err(place(prepared, Error::Interrupted, &asked.arguments.snapshots)),
+            Err(Error::Interrupted) => {
+                Err(with_location(prepared, Error::Interrupted, &asked.arguments.snapshots))
+            }
             Err(error) => {
                 run.warn(format!("there is no comparison with simulations: {error}"));
                 Ok(None)

@@ -4,7 +4,7 @@ use super::Asked;
 use super::material::Searched;
 use super::onward::{self, Rivals};
 use crate::command::fit::measured::{frames, measured};
-use crate::command::fit::{SnapshotArguments, place};
+use crate::command::fit::{SnapshotArguments, with_location};
 use crate::failure::Failure;
 use crate::problem::{Measured, Problem};
 use crate::progress::Progress;
@@ -117,7 +117,9 @@ impl Coming {
         let mut observe = |state: voronudge_infer::Progress<'_>| progress.tell(state);
         match forecast(&ahead, &rivals.models(), &mut observe) {
             Ok(found) => Ok(Some(self.report(&found, rivals.count(), &frames, (data, prepared, units)))),
-            Err(Error::Interrupted) => Err(place(prepared, Error::Interrupted, &asked.arguments.snapshots)),
+            Err(Error::Interrupted) => {
+                Err(with_location(prepared, Error::Interrupted, &asked.arguments.snapshots))
+            }
             Err(error) => {
                 run.warn(format!("there is no forecast: {error}"));
                 Ok(None)

@@ -3,7 +3,7 @@
 use super::Asked;
 use super::history::History;
 use super::surroundings::{self, ExternalMap};
-use crate::command::fit::place;
+use crate::command::fit::with_location;
 use crate::command::replicates::Kept;
 use crate::failure::Failure;
 use crate::problem::Problem;
@@ -60,7 +60,7 @@ impl Asked<'_> {
         kept: &mut Kept,
         progress: &mut Progress,
     ) -> Result<Searched, Failure> {
-        let placed = |error: Error| place(&raw.prepared, error, &self.arguments.snapshots);
+        let placed = |error: Error| with_location(&raw.prepared, error, &self.arguments.snapshots);
         let base = &raw.prepared.request.structure;
         let understood = self.understood(raw, base, progress).map_err(placed)?;
         let found = self.search(raw, self.surrounded(raw, data, understood)?, kept, progress)?;
@@ -117,7 +117,8 @@ impl Asked<'_> {
     ) -> Result<Searched, Failure> {
         let search = self.arguments.options.search(self.candidates.to_vec(), prepared.search());
         let searched = prepared.discover(&search, kept, &mut |state| progress.tell(state));
-        let discovery = searched.map_err(|error| place(&raw.prepared, error, &self.arguments.snapshots))?;
+        let discovery =
+            searched.map_err(|error| with_location(&raw.prepared, error, &self.arguments.snapshots))?;
         Ok(Searched { prepared, search, discovery })
     }
 }

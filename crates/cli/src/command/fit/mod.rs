@@ -30,5 +30,5 @@ pub(crate) mod words;
 
 pub(crate) use arguments::{MeanToRemove, SnapshotArguments, Stated, check_largest_area};
 pub(crate) use constraints::{ConstraintArguments, quantity};
-pub(crate) use prepare::{Inquiry, place, place_of_data};
+pub(crate) use prepare::{Inquiry, place_of_data, with_location};
 pub(crate) use search::SearchArguments;

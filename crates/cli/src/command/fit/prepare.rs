@@ -69,7 +69,7 @@ impl Inquiry<'_> {
 }
 
 /// Says in which file and frame a fault lies, with the cell as the file numbers it.
-pub(crate) fn place(problem: &Problem, error: Error, arguments: &SnapshotArguments) -> Failure {
+pub(crate) fn with_location(problem: &Problem, error: Error, arguments: &SnapshotArguments) -> Failure {
     Place::new(arguments, &problem.velocities, &problem.frames).of_fit(error)
 }
 

@@ -61,7 +61,7 @@ pub(super) fn finish(
     let (sites, centroids) = place_at_sites(&mut import)?;
     let compared = compare_all(&import, source.file)?;
     if source.positions == Positions::Centroids {
-        centroids.place(&mut import.dataset);
+        centroids.apply_to(&mut import.dataset);
     }
     let import = &import;
     let all = pooled(&compared);

@@ -28,7 +28,7 @@ pub(super) struct Centroids {
 impl Centroids {
     /// Puts positions at the centroids. Cells whose centroid is not known, or whose Voronoi polygon may be another because of cells beyond the image,
     /// stay at their sites: a fit has nothing to compare a centroid with there.
-    pub fn place(&self, dataset: &mut DataSet) {
+    pub fn apply_to(&self, dataset: &mut DataSet) {
         let of_centroids = DataSet { positions: self.positions.clone(), ..dataset.clone() };
         let certain = [&*dataset, &of_centroids].map(certain_cells);
         for (at, error) in self.errors.indexed_iter().filter(|(_, error)| error.is_finite()) {

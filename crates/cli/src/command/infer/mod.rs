@@ -13,8 +13,8 @@ mod verdict;
 
 use super::fit::measured::{frames, measured};
 use super::fit::{
-    ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, export, latent, measurement, place,
-    tracks, views, words,
+    ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, export, latent, measurement, tracks,
+    views, with_location, words,
 };
 use super::replicates::{Course, Kept, ReplicateArguments};
 use crate::arguments::{CommonArguments, ExportArguments, MovieArguments};
@@ -175,7 +175,7 @@ fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
         Ok((result, tracked, answers))
     });
     progress.finish();
-    let answered = answered.map_err(|error| place(&prepared, error, &arguments.snapshots));
+    let answered = answered.map_err(|error| with_location(&prepared, error, &arguments.snapshots));
     if kept.is_part() {
         return kept.finish_part(answered.map(|_| ()), (&mut run, out), &progress);
     }

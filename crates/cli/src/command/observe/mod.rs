@@ -39,7 +39,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     arguments.avalanches.check()?;
     let model = arguments.nematic.model()?;
     let data = arguments.recording.data.load()?;
-    let place = arguments.recording.place();
+    let place = arguments.recording.location();
     let frames = arguments.recording.frames(&data)?;
     let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.nematic.parameters_file());
     let out = arguments.common.reserve(inputs)?;

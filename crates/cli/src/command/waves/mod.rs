@@ -85,7 +85,7 @@ pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let request = arguments.request()?;
     let parameters = arguments.parameters.is_given().then(|| arguments.parameters.resolve()).transpose()?;
     let data = arguments.recording.data.load()?;
-    let place = arguments.recording.place();
+    let place = arguments.recording.location();
     let frames = arguments.recording.frames(&data)?;
     let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file());
     let out = arguments.common.reserve(inputs)?;
