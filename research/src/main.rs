@@ -66,3 +66,15 @@ fn described() -> clap::Command {
         all.mut_subcommand(name, |command| command.about(about))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_command_line_is_sound_and_all_of_it_is_handed_on() {
+        let commands = described();
+        assert_eq!(commands.get_subcommands().count(), research::COMMANDS.len());
+        commands.debug_assert();
+    }
+}
