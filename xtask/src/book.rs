@@ -1,10 +1,11 @@
 //! The pages as a site with search, by mdBook, with the reference of the crates and of the Python package.
 
 use crate::Outcome;
-use crate::check::pages::{CONTENTS, Pages};
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
+use xtask::pages::{CONTENTS, Pages};
 
 /// What is said where mdBook is not there.
 const INSTALL: &str = "mdbook cannot be run; cargo install mdbook --no-default-features --features search";
@@ -58,7 +59,7 @@ fn build(root: &Path, source: &Path, site: &Path, references: &[Reference]) -> O
 fn references(root: &Path) -> Result<Vec<Reference>, Box<dyn std::error::Error>> {
     let mut cargo = Command::new("cargo");
     cargo.current_dir(root).args(["doc", "--quiet", "--workspace", "--no-deps", "--lib"]);
-    if !cargo.args(["--exclude", "claims"]).status()?.success() {
+    if !cargo.args(["--exclude", "claims", "--exclude", "xtask"]).status()?.success() {
         return Err("cargo doc failed".into());
     }
     let made = root.join("target/doc");

@@ -1,13 +1,13 @@
 //! The checks that every change must pass.
 
 mod layers;
-pub mod pages;
 mod tidy;
 
 use crate::Outcome;
 use clap::ValueEnum;
 use std::path::Path;
 use std::process::Command;
+use xtask::pages;
 
 /// One of the checks, in the order in which they run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

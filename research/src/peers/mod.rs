@@ -40,7 +40,7 @@ pub struct Arguments {
 /// Compares all methods and prints tables.
 pub fn run(root: &Path, arguments: &Arguments) -> Outcome {
     let folder = arguments.out.clone().unwrap_or_else(|| root.join("target/peers"));
-    let script = root.join("xtask/src/peers/stochastic_force_inference.py");
+    let script = root.join("research/src/peers/stochastic_force_inference.py");
     let has_rival = Command::new(&arguments.python).args(["-c", "import SFI"]).output();
     let has_rival = has_rival.is_ok_and(|output| output.status.success());
     if !has_rival {

@@ -6,10 +6,10 @@ use super::found::Left;
 use super::list::{self, List, Relation, Run};
 use super::page::{self, Typed};
 use super::scratch::{self, Printed, Ran, Scratch};
-use crate::check::pages::Pages;
 use serde_json::Value;
 use std::error::Error;
 use std::path::Path;
+use xtask::pages::Pages;
 
 /// What came of quotes.
 #[derive(Debug, Default)]

@@ -11,13 +11,13 @@ mod scratch;
 mod tally;
 
 use crate::Outcome;
-use crate::check::pages::Pages;
 use list::List;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, PoisonError};
 use tally::{Tally, Work};
+use xtask::pages::Pages;
 
 /// Letters of a job that are shown in the course of the work.
 const WIDTH: usize = 120;

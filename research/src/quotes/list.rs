@@ -3,10 +3,10 @@
 use super::expression;
 use super::number::{self, Printed};
 use super::page;
-use crate::check::pages::Pages;
 use serde::Deserialize;
 use std::error::Error;
 use std::path::{Path, PathBuf};
+use xtask::pages::Pages;
 
 /// Where it stands, from the root.
 pub const PATH: &str = "docs/quotes.toml";

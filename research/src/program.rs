@@ -7,7 +7,7 @@ use std::process::Command;
 /// The tool, built with this program or by it.
 pub fn path() -> Result<PathBuf, Box<dyn Error>> {
     let own = std::env::current_exe()?;
-    // target/release/xtask, or target/release/deps/xtask-… of the tests.
+    // target/release/research, or target/release/deps/research-… of the tests.
     let beside = own.ancestors().skip(1).take(2).map(|folder| folder.join("voronudge"));
     if let Some(found) = beside.into_iter().find(|path| path.is_file()) {
         return Ok(found);

@@ -28,15 +28,18 @@ pub fn violations(root: &Path) -> Result<Vec<String>, Box<dyn std::error::Error>
 /// The text of each page by its path from the root.
 pub struct Pages {
     root: PathBuf,
+    /// By path from the root.
     pub texts: BTreeMap<PathBuf, String>,
 }
 
 /// A link from one file to another.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Link {
+    /// Where it stands, counted from 1.
     pub line: usize,
-    /// From the root.
+    /// Where it leads, from the root.
     pub page: PathBuf,
+    /// By the name that links have for it.
     pub heading: Option<String>,
 }
 

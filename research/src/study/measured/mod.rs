@@ -21,6 +21,7 @@ pub(crate) use trial::Program;
 /// How the study of data as they are measured is made.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Study of data as they are measured")]
+#[group(id = "measured")]
 pub struct Arguments {
     /// Classes of data, by name.
     #[arg(long, value_delimiter = ',', value_parser = class)]
