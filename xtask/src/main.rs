@@ -3,6 +3,7 @@
 mod bench;
 mod book;
 mod check;
+mod fields;
 mod figures;
 mod fixtures;
 mod fuzz;
@@ -37,6 +38,8 @@ enum Command {
         #[arg(long, value_delimiter = ',', value_enum)]
         only: Vec<check::Check>,
     },
+    /// Write the tables of the fields of reports into the pages, from the types.
+    Fields,
     /// Make figures of the paper anew, and the page of them.
     Figures(figures::Arguments),
     /// Feed readers of files with inputs that are changed by a fuzzer.
@@ -66,6 +69,7 @@ fn main() -> ExitCode {
         Command::Bench(arguments) => bench::run(&root, &arguments),
         Command::Book => book::run(&root),
         Command::Check { only } => check::run(&root, &only),
+        Command::Fields => fields::run(&root),
         Command::Figures(arguments) => figures::run(&root, &arguments),
         Command::Fuzz(arguments) => fuzz::run(&root, &arguments),
         Command::Peers(arguments) => peers::run(&root, &arguments),

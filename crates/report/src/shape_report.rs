@@ -42,7 +42,7 @@ pub struct ShapeReport {
 /// Something that was understood of a file that does not say everything about itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct NoteRecord {
-    /// `read`, `guessed` or `doubtful`.
+    /// How it is known.
     #[schemars(extend("enum" = ["read", "guessed", "doubtful"]))]
     pub kind: String,
     /// What it is, for people.

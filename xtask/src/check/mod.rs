@@ -4,7 +4,7 @@ mod layers;
 pub mod pages;
 mod tidy;
 
-use crate::Outcome;
+use crate::{Outcome, fields};
 use clap::ValueEnum;
 use std::path::Path;
 use std::process::Command;
@@ -26,6 +26,8 @@ pub enum Check {
     Library,
     /// All tests.
     Test,
+    /// Tables of the fields of reports in pages, against the types; with the program as the tests built it.
+    Fields,
     /// Documentation, where a warning is an error.
     Doc,
 }
@@ -58,6 +60,7 @@ impl Check {
                 &[],
             ),
             Self::Test => cargo(root, "test --workspace --release", &[]),
+            Self::Fields => report(&fields::violations(root)?),
             Self::Doc => {
                 cargo(root, "doc --release --workspace --no-deps", &[("RUSTDOCFLAGS", "-D warnings")])
             }
