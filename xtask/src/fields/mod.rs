@@ -10,7 +10,7 @@ mod table;
 use crate::check::pages::{Pages, anchor};
 use crate::{Outcome, program};
 use serde_json::{Map, Value};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -31,19 +31,22 @@ pub fn run(root: &Path) -> Outcome {
     Ok(())
 }
 
-/// Pages whose tables are not what the types say.
+/// Pages whose tables are not what the types say, and reports without a table.
 pub fn violations(root: &Path) -> Result<Vec<String>, Box<dyn Error>> {
-    let Declared { changed } = Declared::read(root)?;
+    let Declared { changed, missing } = Declared::read(root)?;
     let page = |page: &PathBuf| {
         format!("{}: tables of fields are not what the types say; cargo xtask fields", page.display())
     };
-    Ok(changed.keys().map(page).collect())
+    let command = |name: &String| format!("no page has the fields of {name}: `{BEGIN}{name} -->`, `{END}`");
+    Ok(changed.keys().map(page).chain(missing.iter().map(command)).collect())
 }
 
 /// Pages as they should be.
 struct Declared {
     /// Those that differ.
     changed: BTreeMap<PathBuf, String>,
+    /// Commands without a table.
+    missing: BTreeSet<String>,
 }
 
 impl Declared {
@@ -76,7 +79,8 @@ impl Declared {
                 changed.insert(page.clone(), new);
             }
         }
-        Ok(Self { changed })
+        let missing = schemas.of.keys().filter(|name| !homes.contains_key(*name)).cloned();
+        Ok(Self { changed, missing: missing.collect() })
     }
 }
 
@@ -245,7 +249,7 @@ mod tests {
                 "| `first` | list of objects as `second` | Errors. |",
                 "| `third` | objects as `second` by name | By name. |",
                 "| `how` | text or object | How. `well`: Without a fault. |",
-                "| `how.ill` | one of `a`, `b` | With one. |",
+                "| `how.ill` | one of `a`, `b`, may be missing | With one. |",
                 "| `at` | 2 whole numbers, may be missing | Where. |",
             ]
         );

@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 /// The rows of a table as they are found.
 pub(super) struct Table<'a> {
     pub definitions: &'a Value,
-    /// Definitions whose fields have rows, and where.
+    /// Definitions that are described, and where.
     pub shown: BTreeMap<String, String>,
     rows: Vec<String>,
 }
@@ -62,7 +62,8 @@ impl<'a> Table<'a> {
         let Kind { one, values, may_be_null, below, .. } = self.kind(path, field);
         let null = if may_be_null { " or `null`" } else { "" };
         let missing = if may_be_missing { ", may be missing" } else { "" };
-        let words = std::iter::once(described(field)).chain(values).collect::<Vec<_>>().join(" ");
+        let told = [described(field)].into_iter().filter(|text| !text.is_empty());
+        let words = told.chain(values).collect::<Vec<_>>().join(" ");
         self.rows.push(format!("| `{path}` | {one}{null}{missing} | {} |\n", words.replace('|', "\\|")));
         if let Some((after, schema)) = below {
             self.fields(&format!("{path}{after}"), &schema);
@@ -86,7 +87,7 @@ impl<'a> Table<'a> {
             _ if listed.len() == 1 => Kind::new(listed.concat(), listed.concat()),
             _ if !listed.is_empty() => {
                 let listed = listed.join(", ");
-                Kind::new(format!("one of {listed}"), format!("of {listed}"))
+                Kind::new(format!("one of {listed}"), listed)
             }
             Some("number") => Kind::new("number", "numbers"),
             Some("integer") => Kind::new("whole number", "whole numbers"),
@@ -101,13 +102,16 @@ impl<'a> Table<'a> {
         kind
     }
 
-    /// What has a name of its own has its rows where it is met first.
+    /// What has a name of its own is described where it is met first.
     fn definition(&mut self, path: &str, name: &str) -> Kind {
         let schema = self.definitions[name].clone();
+        let is_object = schema["properties"].is_object();
         if let Some(place) = self.shown.get(name) {
-            return Kind::new(format!("object as {place}"), format!("objects as {place}"));
+            let (one, many) = if is_object { ("object", "objects") } else { ("text", "texts") };
+            return Kind::new(format!("{one} as {place}"), format!("{many} as {place}"));
         }
-        if schema["properties"].is_object() {
+        let choices = schema["oneOf"].as_array();
+        if is_object || choices.is_some_and(|all| all.iter().all(|choice| choice["const"].is_string())) {
             self.shown.insert(name.to_owned(), format!("`{path}`"));
         }
         self.kind(path, &schema)
@@ -165,15 +169,15 @@ impl<'a> Table<'a> {
                 kind.one += " or object";
                 kind.many += " or objects";
             }
-            kind.below = Some((String::new(), joined(&objects)));
+            kind.below = Some((String::new(), joined(&objects, rest.is_empty())));
         }
         kind.may_be_null |= !nulls.is_empty();
         kind
     }
 }
 
-/// The fields of objects of which there is one.
-fn joined(objects: &[&Value]) -> Value {
+/// The fields of objects of which there is one, always or now and then.
+fn joined(objects: &[&Value], always: bool) -> Value {
     let mut fields = Map::new();
     for object in objects {
         let own = object["properties"].as_object();
@@ -194,7 +198,8 @@ fn joined(objects: &[&Value]) -> Value {
             }
         }
     }
-    let in_all = |name: &&String| objects.iter().all(|object| object["properties"].get(name).is_some());
+    let in_all =
+        |name: &&String| always && objects.iter().all(|object| object["properties"].get(name).is_some());
     let required: Vec<&String> = fields.keys().filter(in_all).collect();
     json!({ "required": required, "properties": fields })
 }
