@@ -1,6 +1,7 @@
 //! What is made with the program and its libraries: studies, figures, fixtures, comparisons. `cargo xtask <command>` leads here.
 
 mod bench;
+mod fields;
 mod figures;
 mod fixtures;
 mod oracle;
@@ -27,6 +28,7 @@ struct Arguments {
 #[derive(Subcommand)]
 enum Command {
     Bench(bench::Arguments),
+    Fields,
     Figures(figures::Arguments),
     Fixtures {
         /// Folder to write to.
@@ -44,6 +46,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::from_arg_matches(&described().get_matches());
     let outcome = match arguments.unwrap_or_else(|error| error.exit()).command {
         Command::Bench(arguments) => bench::run(&root, &arguments),
+        Command::Fields => fields::run(&root),
         Command::Figures(arguments) => figures::run(&root, &arguments),
         Command::Fixtures { out } => fixtures::make(&out.unwrap_or_else(|| root.join("fixtures"))),
         Command::Peers(arguments) => peers::run(&root, &arguments),

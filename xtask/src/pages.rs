@@ -170,7 +170,7 @@ fn anchors(text: &str) -> BTreeSet<String> {
 }
 
 /// The name of a heading: small letters, digits, - and _, with - for blanks.
-fn anchor(heading: &str) -> String {
+pub fn anchor(heading: &str) -> String {
     // Of a link its text counts.
     let mut text = String::new();
     let mut rest = heading;

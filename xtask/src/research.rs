@@ -6,11 +6,12 @@ use std::path::Path;
 use std::process::{Command, ExitCode};
 
 /// Their names, and what they do.
-pub const COMMANDS: [(&str, &str); 7] = [
+pub const COMMANDS: [(&str, &str); 8] = [
     (
         "bench",
         "Time hot formulas against the number of cells and of threads, with memory, and compare with the record",
     ),
+    ("fields", "Write the tables of the fields of reports into the pages, from the types"),
     ("figures", "Make figures of the paper anew, and the page of them"),
     ("fixtures", "Make everything in fixtures/ from recorded seeds; twice gives the same bytes"),
     ("peers", "Compare the program with what else one might use on the same movies, and print tables"),

@@ -7,9 +7,9 @@ use serde::Serialize;
 /// was added the two are equal.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct BeforeAfter<T> {
-    /// Of the base model.
+    /// With the base model.
     pub before: T,
-    /// Of the base model with the selected effects, everything fitted again.
+    /// With the selected effects, everything fitted again; equal to `before` if none was selected.
     pub after: T,
 }
 

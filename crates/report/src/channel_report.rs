@@ -20,16 +20,16 @@ pub struct ChannelReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Width, across x.
+    /// Width, across x, in units of length.
     pub width: f64,
-    /// Length, along y.
+    /// Length, along y, in units of length.
     pub length: f64,
-    /// `x` with torque-free walls at both edges; null in a periodic box.
+    /// `x` with torque-free walls at both edges; `null` in a periodic box.
     #[schemars(extend("enum" = ["x", null]))]
     pub walls: Option<&'static str>,
     /// The cell size ℓ₀ at the beginning.
     pub cell_size: f64,
-    /// Parameters of the model, by the names of the interface.
+    /// Parameters of the model, by the names of the interface, in the units above.
     pub parameters: ModelParameters,
     /// Extrusion and proliferation.
     pub turnover: TurnoverRecord,
@@ -37,55 +37,55 @@ pub struct ChannelReport {
     pub relaxation: f64,
     /// Time of the averages asked for.
     pub time: f64,
-    /// Time step.
+    /// Largest time step.
     pub dt: f64,
-    /// Samples averaged.
+    /// Samples averaged, equal pieces of the time.
     pub samples: usize,
-    /// Bins across the channel.
+    /// Strips across the channel.
     pub bins: usize,
     /// Steps made.
     pub steps: usize,
     /// How many cells there were.
     pub cells: CellNumbers,
-    /// Why the run ended before its time, if it did.
+    /// Why the run ended before its time; `null` if it did not.
     pub ended: Option<String>,
-    /// Exponential decays of the folded profiles, where one fits: `density`, `velocity_x`, `velocity_y`.
+    /// Exponential decays of the folded profiles, for each profile that one fits.
     #[schemars(extend("propertyNames" = {"enum": ["density", "velocity_x", "velocity_y"]}))]
     pub decays: BTreeMap<&'static str, DecayRecord>,
     /// Conservation of cells.
     pub conservation: ConservationRecord,
     /// Balance of forces along the channel.
     pub momentum: MomentumRecord,
-    /// The continuum theory with the moduli of the honeycomb, where it has a steady state.
+    /// The continuum theory with the moduli of the honeycomb; `null` where it has no steady state.
     pub continuum: Option<ContinuumRecord>,
-    /// The continuum theory with a measured equation of state, where one was given.
+    /// The continuum theory with a measured equation of state; `null` if none was given.
     pub liquid: Option<LiquidRecord>,
-    /// The chirality that the slope of v_y against v_x implies.
+    /// The chirality that the slope of v_y against v_x implies; `null` if the velocities tell no slope.
     pub chirality_from_flow: Option<SlopeRecord>,
-    /// How much a birth changes velocities at once, by either way of injection, at the end of the run.
+    /// How much a birth changes velocities at once, by either way of injection, at the end of the run, in units of velocity.
     pub birth_disturbance: Option<DisturbanceRecord>,
 }
 
 /// How cells are extruded and born.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TurnoverRecord {
-    /// Rate of extrusion at the edge.
+    /// Rate of extrusion at the edge k₀, in 1/time.
     pub extrusion_rate: f64,
-    /// Its decay length; null if it is the same everywhere.
+    /// Its decay length d_extr; `null` if it is the same everywhere.
     pub extrusion_length: f64,
-    /// `replacing` or `independent`.
+    /// Whether births replace extrusions, or have a rate of their own.
     #[schemars(extend("enum" = ["replacing", "independent"]))]
     pub proliferation: &'static str,
-    /// Rate of proliferation at the edge, if it is independent.
+    /// Rate of proliferation at the edge k₁, in 1/time; `null` if births replace extrusions.
     pub proliferation_rate: Option<f64>,
-    /// Its decay length.
+    /// Its decay length d_prolif.
     pub proliferation_length: f64,
-    /// `vertex`, `division` or `cycle`.
+    /// Where new cells appear.
     #[schemars(extend("enum" = ["vertex", "division", "cycle"]))]
     pub injection: &'static str,
-    /// Distance of a daughter from her mother, if cells divide, or of two daughters, if it was given.
+    /// Distance of a daughter from her mother, if cells divide, or of two daughters, if it was given; `null` otherwise.
     pub division_distance: Option<f64>,
-    /// Growth and division, if cells have cycles.
+    /// Growth and division; `null` if cells have no cycles.
     pub cycle: Option<CycleRecord>,
 }
 
@@ -96,7 +96,7 @@ pub struct CycleRecord {
     pub variation: f64,
     /// Preferred area at division over that of the model.
     pub size_at_division: f64,
-    /// `long` or `random`.
+    /// The line on which daughters lie: the long axis of the mother, or any.
     #[schemars(extend("enum" = ["long", "random"]))]
     pub axis: &'static str,
     /// Preferred area over that of the model, mean over cells and time.
@@ -131,7 +131,7 @@ pub struct CellNumbers {
 pub struct DecayRecord {
     /// Decay length.
     pub length: f64,
-    /// Its 95 % interval; an end that is not bounded is null.
+    /// Its 95 % interval; an end that is `null` is not bounded.
     pub length_ci95: [Option<f64>; 2],
     /// Amplitude, extrapolated to the edge.
     pub amplitude: f64,
@@ -150,11 +150,11 @@ pub struct DecayRecord {
 pub struct ConservationRecord {
     /// Places between bins, from the edge to the middle.
     pub faces: usize,
-    /// Largest difference.
+    /// Largest difference of the two, in 1/time.
     pub largest_difference: f64,
     /// Largest difference in its standard errors.
     pub largest_in_errors: f64,
-    /// Largest size of k_prolif − k_extr.
+    /// Largest size of k_prolif − k_extr, in 1/time.
     pub largest_rate: f64,
 }
 
@@ -163,22 +163,22 @@ pub struct ConservationRecord {
 pub struct MomentumRecord {
     /// Distance from the edge, next to where the decays are fitted from.
     pub distance: f64,
-    /// ∫ ρ v_y dx from there to the middle.
+    /// ∫ ρ v_y dx from there to the middle, with its standard error.
     pub transport: (f64, Option<f64>),
-    /// σ_yx at the middle less σ_yx there: equal to it in the steady state.
+    /// σ_yx at the middle less σ_yx there, with its standard error: equal to `transport` in the steady state.
     pub shear_stress: (f64, Option<f64>),
-    /// ½ (τ − τ at the middle): the part of the stress that is due to torques of the cells.
+    /// ½ (τ − τ at the middle), with its standard error: the part of the stress that is due to torques of the cells.
     pub torque: (f64, Option<f64>),
 }
 
 /// The theory beside the simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct ContinuumRecord {
-    /// B + μ
+    /// B + μ, in 1/time.
     pub longitudinal: f64,
-    /// A − Kᵒ
+    /// A − Kᵒ, in 1/time.
     pub transverse: f64,
-    /// v_y/v_x
+    /// v_y/v_x.
     pub ratio: f64,
     /// Root mean square difference of v_x, in units of its largest value in the theory.
     pub velocity_x_difference: f64,
@@ -189,7 +189,7 @@ pub struct ContinuumRecord {
 /// The theory of a liquid with an equation of state beside the simulation.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct LiquidRecord {
-    /// Lowest and highest density of the equation of state.
+    /// Lowest and highest density of the equation of state, cells per area.
     pub density_range: [f64; 2],
     /// Strips whose simulated density is beyond them.
     pub places_beyond: usize,
@@ -208,7 +208,7 @@ pub struct LiquidRecord {
 pub struct SlopeRecord {
     /// Points.
     pub points: usize,
-    /// Distances from the edge that counted: from, to; an end that was not given is null.
+    /// Distances from the edge that counted: from, to; an end that was not given is `null`.
     pub range: [Option<f64>; 2],
     /// Slope v_y/v_x.
     pub slope: f64,
@@ -216,13 +216,13 @@ pub struct SlopeRecord {
     pub slope_ci95: [f64; 2],
     /// Intercept of the line; zero if it was held there.
     pub intercept: f64,
-    /// χ² per degree of freedom; null if no errors are known.
+    /// χ² per degree of freedom; `null` if no errors are known.
     pub reduced_chi_square: Option<f64>,
-    /// Preferred perimeter in cell sizes P₀/ℓ₀, where known.
+    /// Preferred perimeter in cell sizes P₀/ℓ₀; `null` where it is not known.
     pub shape_index: Option<f64>,
-    /// α = slope (3 − a P₀/ℓ₀), where P₀/ℓ₀ is known and there are no walls.
+    /// α = slope (3 − a P₀/ℓ₀); `null` where P₀/ℓ₀ is not known and between walls.
     pub alpha: Option<f64>,
-    /// Its 95 % interval, the slope's alone.
+    /// Its 95 % interval, the slope's alone; `null` where `alpha` is.
     pub alpha_ci95: Option<[f64; 2]>,
     /// The rule of thumb α = slope/0.5.
     pub alpha_rule_of_thumb: f64,
@@ -233,15 +233,15 @@ pub struct SlopeRecord {
 /// Largest change of a velocity at a birth.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct DisturbanceRecord {
-    /// Places tried.
+    /// Births tried, at random places.
     pub draws: usize,
     /// Distance of a daughter from her mother.
     pub division_distance: f64,
-    /// Mean for births on vertices.
+    /// Mean over births on vertices.
     pub vertex_mean: f64,
-    /// Mean for births beside a mother.
+    /// Mean over births beside a mother.
     pub division_mean: f64,
-    /// Mean for divisions in two, if cells have cycles.
+    /// Mean over divisions in two; `null` if cells have no cycles.
     pub cycle_mean: Option<f64>,
 }
 
@@ -254,7 +254,7 @@ pub struct ChiralityReport {
     /// The line and what it implies.
     #[serde(flatten)]
     pub line: SlopeRecord,
-    /// Whether the line was held at the origin: `zero` or `free`.
+    /// Whether the line was held at the origin.
     #[schemars(extend("enum" = ["zero", "free"]))]
     pub intercept_kind: &'static str,
 }

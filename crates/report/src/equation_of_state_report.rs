@@ -17,7 +17,7 @@ pub struct EquationOfStateReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Parameters of the model, by the names of the interface.
+    /// Parameters of the model, by the names of the interface, in the units above.
     pub parameters: ModelParameters,
     /// The cell size ℓ₀ that `relative_density` refers to.
     #[schemars(extend("exclusiveMinimum" = 0))]
@@ -34,7 +34,7 @@ pub struct EquationOfStateReport {
     /// Time of the averages.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub time: f64,
-    /// One for each density.
+    /// Each density, ascending.
     #[schemars(length(min = 3))]
     pub points: Vec<UniformRecord>,
 }
@@ -48,19 +48,19 @@ pub struct UniformRecord {
     /// ρ ℓ₀².
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub relative_density: f64,
-    /// p = −(σ_xx + σ_yy)/2, in 1/time: friction is absorbed.
+    /// p = −(σ_xx + σ_yy)/2, in 1/time: friction is absorbed, here and below.
     pub pressure: Measured,
     /// τ = σ_xy − σ_yx, in 1/time.
     pub torque: Measured,
     /// ⟨P/√A⟩.
     pub shape_index: Measured,
-    /// ⟨v²⟩.
+    /// ⟨v²⟩, (length/time)².
     pub mean_square_velocity: Measured,
-    /// B = ρ dp/dρ, from the parabola through neighbouring densities.
+    /// B = ρ dp/dρ, in 1/time, from the parabola through neighbouring densities.
     pub bulk_modulus: Measured,
-    /// A = ½ ρ dτ/dρ.
+    /// A = ½ ρ dτ/dρ, likewise.
     pub odd_bulk_modulus: Measured,
-    /// The honeycomb of this density in mean-field theory, where there is one.
+    /// The honeycomb of this density in mean-field theory; `null` where it has none.
     pub honeycomb: Option<Honeycomb>,
 }
 
@@ -76,12 +76,12 @@ pub struct Measured {
 /// Stress and moduli of a honeycomb.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Honeycomb {
-    /// p.
+    /// p, in 1/time.
     pub pressure: f64,
-    /// τ.
+    /// τ, in 1/time.
     pub torque: f64,
-    /// B.
+    /// B, in 1/time.
     pub bulk_modulus: f64,
-    /// A.
+    /// A, in 1/time.
     pub odd_bulk_modulus: f64,
 }

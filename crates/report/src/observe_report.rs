@@ -7,7 +7,6 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The JSON Schema of [`ObserveReport`].
 /// Everything `observe` reports.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObserveReport {
@@ -24,14 +23,14 @@ pub struct ObserveReport {
     pub counted: Vec<usize>,
     /// The cell size: root of the mean area of the cells that count.
     pub length_scale: Quantity,
-    /// `given`, `from_positions`, or `none`.
+    /// Whether velocities were given, or are displacements.
     #[schemars(extend("enum" = ["given", "from_positions", "none"]))]
     pub velocities: &'static str,
     /// Whether the median motion of the cells is taken for one of the stage.
     pub common_motion_removed: bool,
     /// Shapes as a nematic.
     pub nematic: ObservedNematic,
-    /// Avalanches of T1 transitions, if there are any.
+    /// Avalanches of T1 transitions; `null` if there are no transitions.
     pub avalanches: Option<ObservedAvalanches>,
     /// Single numbers, by name.
     pub numbers: BTreeMap<&'static str, ObservedNumber>,
@@ -44,11 +43,11 @@ pub struct ObserveReport {
 pub struct ObservedNematic {
     /// Standard deviation of the Gaussian over which shapes are smoothed.
     pub smoothing_width: Quantity,
-    /// Defects of +½ in the frames whose configurations are measured.
+    /// Defects of +½ in the frames that are measured.
     pub plus: usize,
     /// Those of −½.
     pub minus: usize,
-    /// Parameters of the model whose stresses are averaged around defects, if they are.
+    /// Parameters of the model whose stresses are averaged around defects; `null` if none are.
     pub stress_of: Option<ModelParameters>,
 }
 
@@ -68,7 +67,7 @@ pub struct ObservedAvalanches {
 pub struct ObservedNumber {
     /// Value.
     pub value: f64,
-    /// Standard error, where it can be told.
+    /// Standard error; `null` where it cannot be told.
     pub standard_error: f64,
     /// Unit.
     pub unit: String,
@@ -89,7 +88,7 @@ pub struct ObservedCurve {
     pub at: Vec<f64>,
     /// Values.
     pub value: Vec<f64>,
-    /// Standard errors, where they can be told.
+    /// Standard errors; `null` where they cannot be told.
     pub standard_error: Vec<f64>,
     /// Cells, pairs, displacements or wave vectors that each rests on.
     pub count: Vec<usize>,

@@ -22,20 +22,20 @@ pub struct PhaseDiffusionReport {
     pub cells: usize,
     /// The cell size ℓ₀, ℓ₀² = area of the box per cell.
     pub length_scale: Quantity,
-    /// `given` if the places without displacement were given, `free` if a constant displacement was fitted.
+    /// Whether the places without displacement were given, or a constant displacement was fitted (`free`).
     #[schemars(extend("enum" = ["given", "free"]))]
     pub reference: &'static str,
-    /// `measurement` or `driving`: what the residuals are taken for.
+    /// What the residuals are taken for.
     #[schemars(extend("enum" = ["measurement", "driving"]))]
     pub fluctuations: &'static str,
-    /// `second` or `fourth`: the highest power of the wave vector in the rates.
+    /// The highest power of the wave vector in the rates.
     #[schemars(extend("enum" = ["second", "fourth"]))]
     pub order: &'static str,
     /// Phase diffusivities of the paper's equation, ε_xy = +1.
     pub diffusivities: Diffusivities,
-    /// Moduli over friction that they imply.
+    /// Moduli over the friction of a cell that they imply: rates.
     pub moduli: ImpliedModuli,
-    /// The cross diffusivities together in standard errors.
+    /// √χ² of both cross diffusivities together, two degrees of freedom: their distance from none in standard errors.
     pub chirality_significance: f64,
     /// Root mean square of the residuals of the displacement amplitudes, in units of length.
     pub residual: f64,
@@ -91,12 +91,12 @@ pub struct ImpliedModuli {
 /// One wave vector.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WaveVectorRecord {
-    /// Its components.
+    /// Its components, in 1/length.
     pub q: [f64; 2],
-    /// Root mean square amplitude of the displacement over the frames.
+    /// Root mean square amplitude of the displacement over the frames, in units of length.
     pub amplitude: f64,
-    /// D(q) fitted to this wave vector alone, in components along q and a quarter turn ahead.
+    /// D(q) of this wave vector alone, in components along q and a quarter turn ahead; `null` where it is not determined.
     pub matrix: Option<[[f64; 2]; 2]>,
-    /// Standard errors of its entries.
+    /// Standard errors of its entries, likewise.
     pub standard_errors: Option<[[f64; 2]; 2]>,
 }

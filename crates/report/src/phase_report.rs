@@ -28,25 +28,25 @@ pub struct PhaseReport {
     /// Cells of each run.
     #[schemars(range(min = 1))]
     pub cells: usize,
-    /// Duration of each run.
+    /// Duration of each run, in 1/K_P.
     pub time: f64,
-    /// The time step asked for; null if each point has the one advised for it.
+    /// The time step asked for, in 1/K_P; `null` if each point has the one advised for it.
     pub dt: Option<f64>,
-    /// Smallest and largest time step used.
+    /// Smallest and largest time step used, in 1/K_P.
     pub steps: [f64; 2],
     /// Least distance between starting positions, in ℓ₀.
     pub least_distance: f64,
     /// Runs at each point.
     #[schemars(range(min = 1))]
     pub replicas: usize,
-    /// Area elasticity K_A in K_P/ℓ₀².
+    /// Area elasticity, in K_P/ℓ₀².
     #[serde(rename = "K_A")]
     pub area_elasticity: f64,
     /// By how much cells differ, if they do.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "CellSpread")]
     pub cell_spread: Option<CellSpread>,
-    /// Preferred perimeters of the columns.
+    /// Preferred perimeters of the columns, in ℓ₀.
     #[serde(rename = "P_0")]
     pub preferred_perimeters: Vec<f64>,
     /// Chiralities of the rows.
@@ -57,24 +57,24 @@ pub struct PhaseReport {
     pub shard: [usize; 2],
     /// Runs made.
     pub runs: usize,
-    /// What the quantities range over.
+    /// What the quantities range over, in ℓ₀ and 1/K_P.
     pub quantities: BTreeMap<&'static str, QuantityRecord>,
-    /// Runs that ended with an error.
+    /// Runs that ended with an error, and why.
     pub failed: Vec<FailedRun>,
     /// Lines to compare with.
     pub lines: PhaseLines,
-    /// The scaling of ⟨v²⟩ about the transition, where there are points for it.
+    /// The scaling of ⟨v²⟩ about the transition; `null` where there are no points for it.
     pub collapse: Option<CollapseRecord>,
-    /// Why there is none.
+    /// Why there is none; `null` if there is one.
     pub no_collapse: Option<String>,
 }
 
 /// The values of a quantity over the diagram.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct QuantityRecord {
-    /// The least, with its P_0 and α.
+    /// The least; `null` if no point has a value.
     pub least: Option<Extreme>,
-    /// The largest.
+    /// The largest, likewise.
     pub largest: Option<Extreme>,
     /// Points without a value.
     pub unknown: usize,
@@ -143,7 +143,7 @@ pub struct GivenExponents {
     pub beta: f64,
     /// The power of |ΔP| in the argument.
     pub phi: f64,
-    /// Root mean square distance from one curve in ln ⟨v²⟩; null if the curves do not overlap.
+    /// Root mean square distance from one curve in ln ⟨v²⟩; `null` if the curves do not overlap.
     pub scatter: Option<f64>,
 }
 

@@ -37,7 +37,7 @@ pub struct FittedRheology {
     pub path: String,
     /// Where it stands: time or frame.
     pub at: f64,
-    /// Parameters as fitted, in units of the data.
+    /// Parameters as fitted, in units of the data, by the names of the interface.
     pub parameters: BTreeMap<&'static str, f64>,
     /// The cell size ℓ₀, in units of the data.
     pub length_scale: f64,
@@ -49,14 +49,14 @@ pub struct FittedRheology {
     pub axes: usize,
     /// `B`, `A`, `μ`, `Kᵒ` in 1/time; where asked for, `η` and `ηᵒ` in units of the friction of a cell.
     pub moduli: Vec<RheologyQuantity>,
-    /// Storage and loss moduli at each frequency, where asked for.
+    /// Storage and loss moduli at each of `--frequencies`; empty if not asked for.
     pub dynamic: Vec<RheologyFrequency>,
 }
 
 /// Storage and loss moduli at one frequency.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RheologyFrequency {
-    /// Angular frequency, in 1/time of the data.
+    /// Angular frequency ω, in 1/time of the data.
     pub frequency: f64,
     /// μ′, μ″, Kᵒ′, Kᵒ″, and those of B and A where the tissues are at rest.
     pub moduli: Vec<RheologyQuantity>,
@@ -79,6 +79,6 @@ pub struct RheologyQuantity {
     pub simulation_error: f64,
     /// Standard deviation from one tissue of this size to another.
     pub scatter: f64,
-    /// The value of the honeycomb at the fitted parameters in mean-field theory, where there is one.
+    /// The value of the honeycomb at the fitted parameters in mean-field theory; `null` where there is none.
     pub mean_field: Option<f64>,
 }

@@ -42,7 +42,7 @@ pub struct ShapeReport {
 /// Something that was understood of a file that does not say everything about itself.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct NoteRecord {
-    /// `read`, `guessed` or `doubtful`.
+    /// How it is known.
     #[schemars(extend("enum" = ["read", "guessed", "doubtful"]))]
     pub kind: String,
     /// What it is, for people.
@@ -52,7 +52,7 @@ pub struct NoteRecord {
 /// Sites whose Voronoi polygons follow outlines best.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SiteRecord {
-    /// Root mean square distance of the lines along which cells touch from the bisectors of their centroids.
+    /// Root mean square distance of the lines along which cells touch from the bisectors of their centroids, in units of length; so below.
     #[schemars(range(min = 0.0))]
     pub misfit_of_centroids: f64,
     /// The same with the sites.
@@ -149,7 +149,7 @@ pub struct FieldReport {
     /// Columns and rows of pixels.
     #[schemars(inner(range(min = 1)))]
     pub size: [usize; 2],
-    /// Length of a pixel.
+    /// Length of a pixel, in units of length.
     pub pixel_size: f64,
     /// The least prominence of an extremum taken.
     pub smallest_prominence: f64,

@@ -22,7 +22,7 @@ pub struct SpectrumReport {
     pub units: Units,
     /// Which modes were asked for.
     pub selection: SelectionRecord,
-    /// Parameters as used, by the names of the interface.
+    /// Parameters as used, by the names of the interface, in units of the data.
     pub parameters: ModelParameters,
     /// Values of parameters in which cells differ, by name, one for each cell of the data; of types by the labels in the first frame.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
@@ -30,14 +30,14 @@ pub struct SpectrumReport {
     /// Effects beyond the base model with their coefficients.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub effects: BTreeMap<String, Vec<f64>>,
-    /// The mean-field theory at these parameters, where the model has no effects and K_P is positive.
+    /// The mean-field theory at these parameters; `null` with effects or where K_P is not positive.
     pub mean_field: Option<MeanFieldRecord>,
     /// The spectrum of each frame.
     #[schemars(length(min = 1))]
     pub frames: Vec<FrameSpectrum>,
-    /// The comparison on a lattice, where asked for.
+    /// The comparison on a lattice; `null` where it was not asked for.
     pub lattice: Option<LatticeRecord>,
-    /// The modes of a strip of the lattice, where it has ends.
+    /// The modes of a strip of the lattice, with `--ends`; `null` otherwise.
     pub strip: Option<StripRecord>,
 }
 
@@ -49,21 +49,21 @@ pub enum SelectionRecord {
     All,
     /// Those that grow fastest.
     Largest {
-        /// How many.
+        /// How many modes.
         count: usize,
     },
     /// Those nearest to a point.
     Near {
-        /// Its real and imaginary part.
+        /// Real and imaginary part of the point.
         shift: [f64; 2],
-        /// How many.
+        /// How many modes.
         count: usize,
     },
     /// Those of a band of frequencies.
     Band {
-        /// Its ends.
+        /// Ends of the band of angular frequencies.
         frequencies: [f64; 2],
-        /// How many were looked at.
+        /// How many modes were looked at.
         count: usize,
     },
 }
@@ -71,14 +71,14 @@ pub enum SelectionRecord {
 /// What the theory of the honeycomb says.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeanFieldRecord {
-    /// `solid`, `odd_elastic_solid` or `unstable`.
+    /// Its phase.
     #[schemars(extend("enum" = ["solid", "odd_elastic_solid", "unstable"]))]
     pub phase: &'static str,
-    /// The P_0 at which the honeycomb becomes unstable.
+    /// The P_0 at which the honeycomb becomes unstable, in units of length.
     pub stability_limit: f64,
     /// The |α| beyond which the mode at q* oscillates.
     pub exceptional_chirality: f64,
-    /// ⟨ω²⟩ over the modes of the honeycomb.
+    /// ⟨ω²⟩ over the modes of the honeycomb, in 1/time².
     pub mean_square_frequency: f64,
 }
 
@@ -105,10 +105,10 @@ pub struct FrameSpectrum {
     pub zero: usize,
     /// Those that oscillate, whatever else they do.
     pub oscillating: usize,
-    /// Rates up to this count as zero.
+    /// Rates up to this count as zero: 1e-10 of the largest row sum of J.
     #[schemars(range(min = 0.0))]
     pub tolerance: f64,
-    /// ⟨ω²⟩ over all modes; null if only some were computed.
+    /// ⟨ω²⟩ = (1/2n) Σ (Im λ)² over all modes, in 1/time²; `null` if only some were computed.
     #[schemars(range(min = 0.0))]
     pub mean_square_frequency: Option<f64>,
     /// The same in units of K_P².
@@ -120,15 +120,15 @@ pub struct FrameSpectrum {
     pub fastest_oscillation: Option<ModeRecord>,
     /// The mode with the largest condition number.
     pub exceptional: Option<ModeRecord>,
-    /// Where the matrix was factorised, if it was.
+    /// Real and imaginary part at which the matrix was factorised; `null` if all modes were computed.
     pub shift: Option<[f64; 2]>,
-    /// Distance from there up to which nothing should be missing.
+    /// Distance from there up to which nothing should be missing; `null` where that is not told.
     pub reach: Option<f64>,
-    /// Largest ‖J u − λ u‖/‖J‖ of the modes that were searched for.
+    /// Largest ‖J u − λ u‖/‖J‖ of the modes that were searched for; `null` if all were computed.
     pub largest_residual: Option<f64>,
-    /// How near the snapshot is to a T1 transition.
+    /// How near the snapshot is to a T1 transition; `null` where that cannot be told.
     pub transition: Option<TransitionRecord>,
-    /// Where between walls the modes are, if there are walls and vectors.
+    /// Where between walls the modes are; `null` without walls or vectors.
     pub walls: Option<WallsRecord>,
 }
 
@@ -137,11 +137,11 @@ pub struct FrameSpectrum {
 pub struct ModeRecord {
     /// Row in `eigenvalues.npy`.
     pub index: usize,
-    /// Rate of growth.
+    /// Rate of growth, in 1/time.
     pub rate: f64,
-    /// Angular frequency.
+    /// Angular frequency, in 1/time.
     pub frequency: f64,
-    /// Share of the cells that take part.
+    /// Share of the cells that take part; `null` without vectors, and so below.
     #[schemars(range(min = 0.0))]
     pub participation: Option<f64>,
     /// Share of the divergence in the gradients.
@@ -175,14 +175,14 @@ pub struct LatticeRecord {
     pub size: [usize; 2],
     /// Points on the path Γ–K–M–Γ.
     pub points: usize,
-    /// Largest difference of the dynamical matrices, relative to the largest entry on the path; null with effects.
+    /// Largest difference of the dynamical matrices, relative to the largest entry on the path; `null` with effects.
     pub largest_difference: Option<f64>,
 }
 
 /// Where between walls the modes are.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WallsRecord {
-    /// `x` or `both`.
+    /// Which sides of the box are walls.
     #[schemars(extend("enum" = ["x", "both"]))]
     pub sides: &'static str,
     /// Share of the cells within two rows of a wall.
@@ -198,7 +198,7 @@ pub struct WallsRecord {
 /// The modes of a strip of the honeycomb at one wave number along it.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StripRecord {
-    /// `periodic`, `held` or `walls`.
+    /// What is at the ends.
     #[schemars(extend("enum" = ["periodic", "held", "walls"]))]
     pub ends: &'static str,
     /// Rows.
@@ -228,8 +228,8 @@ pub struct StripRecord {
     pub of_edges: usize,
     /// Modes around whose value the spectrum of the periodic tissue winds.
     pub winding: usize,
-    /// Largest rate of growth across the strip of modes that are not of an edge (1/length), if it is more than a factor e; the shortest localisation length is its inverse.
+    /// Largest rate of growth across the strip of modes that are not of an edge (1/length), if it is more than a factor e; the shortest localisation length is its inverse. `null` otherwise.
     pub largest_growth: Option<f64>,
-    /// Root mean square difference of the growth from that of the generalised Brillouin zone, over the root mean square of the latter.
+    /// Root mean square difference of the growth from that of the generalised Brillouin zone, over the root mean square of the latter; `null` where there is none.
     pub difference_from_zone: Option<f64>,
 }

@@ -5,7 +5,6 @@ use crate::infer_report::{Quantity, RunRecord};
 use crate::units::Units;
 use schemars::JsonSchema;
 use serde::Serialize;
-/// The JSON Schema of [`WavesReport`].
 /// Rows of D(q), in components along the wave vector and a quarter turn ahead.
 pub type Rates = [[f64; 2]; 2];
 
@@ -25,32 +24,32 @@ pub struct WavesReport {
     pub seen: Vec<usize>,
     /// The cell size: root of the mean area of the cells that count.
     pub length_scale: Quantity,
-    /// `given`, `from_positions`, or `none`.
+    /// Whether velocities were given, or are displacements.
     #[schemars(extend("enum" = ["given", "from_positions", "none"]))]
     pub velocities: &'static str,
     /// Whether the median motion of the cells is taken for one of the stage.
     pub common_motion_removed: bool,
-    /// `displacements` or `velocities`: what was resolved into waves.
+    /// What was resolved into waves.
     #[schemars(extend("enum" = ["displacements", "velocities"]))]
     pub field: &'static str,
-    /// τ_0 in frames.
+    /// Lag τ₀ in frames, from which covariances are used.
     pub first_lag: usize,
-    /// Parameters of the model whose D(q) stands beside, if they are given.
+    /// Parameters of the model whose D(q) stands beside, in units of the data; `null` if none are given.
     pub parameters: Option<ModelParameters>,
-    /// Probability of differences of D from τ and 2τ that are as large if waves relax linearly and without memory, of all shells together.
+    /// Probability of differences of D from τ and 2τ that are as large if waves relax linearly and without memory, of all reliable shells together; `null` where that cannot be told.
     pub linear: Option<f64>,
-    /// `linear`, `not_linear` or `unknown`.
+    /// What that says: `not_linear` below 0.01.
     #[schemars(extend("enum" = ["linear", "not_linear", "unknown"]))]
     pub verdict: &'static str,
-    /// Probability of entries off the diagonal that are as large without chirality, of all shells together.
+    /// Probability of entries off the diagonal that are as large without chirality, of all reliable shells together; `null` where that cannot be told.
     pub achiral: Option<f64>,
-    /// σ_r of errors of localisation without memory, where displacements were resolved.
+    /// σ_r of errors of localisation without memory; `null` if velocities were resolved or it cannot be told.
     pub localisation: Option<Measured>,
-    /// Moduli over friction of long waves.
+    /// Moduli over friction, from waves longer than 2π spacings of a periodic box; `null` where there are none.
     pub long_waves: Option<LongWavesRecord>,
-    /// Segments of the dynamic structure factors.
+    /// Segments of the dynamic structure factors; `null` where there are none.
     pub spectra: Option<SpectraRecord>,
-    /// Shells of wave numbers.
+    /// Shells of wave numbers, ascending.
     pub shells: Vec<WaveShellRecord>,
 }
 
@@ -91,51 +90,51 @@ pub struct SpectraRecord {
     /// Number of segments, which overlap by half.
     #[schemars(range(min = 1))]
     pub segments: usize,
-    /// Angular frequencies.
+    /// Angular frequencies, in 1/time.
     pub frequencies: Vec<f64>,
 }
 
 /// One shell.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WaveShellRecord {
-    /// Mean wave number.
+    /// Mean wave number, in 1/length.
     pub wave_number: f64,
     /// Wave vectors, one of each pair ±q.
     #[schemars(range(min = 1))]
     pub wave_vectors: usize,
-    /// How waves relax, where that can be told.
+    /// How waves relax; `null` where that cannot be told.
     pub relaxation: Option<RelaxationRecord>,
-    /// D(q) of the Jacobian, a wave being put on all cells alike.
+    /// D(q) of the Jacobian, a wave being put on all cells alike; `null` without a model.
     pub jacobian: Option<Rates>,
-    /// The inverse of the compliance to waves of forces.
+    /// The inverse of the compliance to waves of forces, likewise.
     pub jacobian_relaxed: Option<Rates>,
-    /// D(q) of the honeycomb, averaged over directions.
+    /// D(q) of the honeycomb, averaged over directions; `null` without a model, or where there is none.
     pub mean_field: Option<Rates>,
 }
 
 /// How the waves of a shell relax.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RelaxationRecord {
-    /// τ in frames.
+    /// Lag τ in frames.
     #[schemars(range(min = 1))]
     pub lag: usize,
-    /// D(q).
+    /// D(q), in 1/time, in components along q and a quarter turn ahead.
     pub matrix: Rates,
-    /// Standard errors.
+    /// Standard errors of its entries.
     pub standard_errors: Rates,
     /// D(q) from 2τ.
     pub matrix_at_twice_the_lag: Rates,
-    /// D(q) from lag zero on.
+    /// D(q) from lag zero on, with the errors of localisation in it.
     pub uncorrected: Rates,
     /// Probability of the difference between τ and 2τ if waves relax linearly.
     pub linear: f64,
     /// Probability of the entries off the diagonal without chirality.
     pub achiral: f64,
-    /// Decay rates, the slower first.
+    /// Decay rates, the slower first, in 1/time.
     pub decay_rates: [f64; 2],
     /// Their standard errors.
     pub decay_errors: [f64; 2],
-    /// Angular frequency.
+    /// Angular frequency, in 1/time.
     pub frequency: f64,
     /// Its 95 % interval.
     pub frequency_ci95: [f64; 2],
@@ -144,6 +143,6 @@ pub struct RelaxationRecord {
     pub stretches: usize,
     /// Times of the slowest relaxation in the recording.
     pub relaxations: f64,
-    /// Whether these are eight or more, and there are errors.
+    /// Whether these are eight or more and the stretches six or more; else the shell is left out of `long_waves`, `linear` and `achiral`.
     pub reliable: bool,
 }

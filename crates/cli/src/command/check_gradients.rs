@@ -50,17 +50,17 @@ pub(crate) struct Report {
 
 #[derive(Serialize, JsonSchema)]
 struct Check {
-    /// The cells.
+    /// The cells: file and frame, or those that are made.
     configuration: String,
-    /// The term of the model.
+    /// The force term, the effect, the whole model, or `geometry`.
     term: String,
-    /// What is differentiated, and by what.
+    /// What is compared with what.
     quantity: String,
-    /// The largest difference, as a share of the largest derivative.
+    /// The largest error, relative to the largest magnitude compared.
     worst: f64,
     /// Where that is.
     place: String,
-    /// The largest that passes.
+    /// The largest that passes: 1e-10, or 1e-6 for central differences in positions.
     tolerance: f64,
     /// Whether it passes.
     passed: bool,

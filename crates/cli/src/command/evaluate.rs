@@ -59,19 +59,19 @@ pub(crate) struct Report {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
-    /// Numbers of cells.
+    /// Numbers of cells, one for each frame.
     cells: Cells,
-    /// Parameters as used.
+    /// Parameters as used, in the units of the data.
     parameters: ModelParameters,
-    /// Values of parameters in which cells differ, one for each cell.
+    /// Values (N) of the parameters in which cells differ, with `--cell-parameter` or `--label-parameter`.
     #[serde(skip_serializing_if = "OfCells::is_empty")]
     cell_parameters: OfCells,
-    /// Effects beyond the base model with their coefficients.
+    /// Effects beyond the base model, by name: their coefficients.
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     effects: ChosenEffects,
-    /// Mean stress of each frame, force index first.
+    /// Mean stress of each frame, 1/time, force index first; in an open field over the cells that count.
     stress: Vec<[[f64; 2]; 2]>,
-    /// Mean square velocity of each frame, over the cells that count.
+    /// Mean square velocity of each frame, (length/time)², over the cells with a velocity; in an open field over those that count.
     mean_square_velocity: Vec<f64>,
 }
 
@@ -79,11 +79,11 @@ pub(crate) struct Report {
 struct Cells {
     /// Frames evaluated, zero-based.
     frames: Vec<usize>,
-    /// Cells that are present, of each.
+    /// Cells that are present.
     present: Vec<usize>,
     /// Cells with a velocity.
     with_velocity: Vec<usize>,
-    /// Cells that count in sums.
+    /// Cells that count in sums: in an open field those whose polygon and those of their neighbours are certain.
     counted: Vec<usize>,
 }
 

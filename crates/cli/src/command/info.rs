@@ -30,36 +30,36 @@ pub(crate) struct Arguments {
 pub(crate) struct Record {
     /// Path as given.
     path: String,
-    /// What it is, in words.
+    /// What it is taken for, in words.
     kind: String,
     /// Shape of an array or of an image.
     shape: Option<Vec<usize>>,
     /// Number of frames.
     frames: Option<usize>,
-    /// Number of cells, or of tracks.
+    /// Number of cells, the axis of cells, or of different labels.
     cells: Option<usize>,
     /// Cells that are present in each frame.
     present: Vec<usize>,
-    /// Least x and y and greatest x and y, in units of the data.
+    /// Least x and y and greatest x and y of cells, in units of the data.
     extent: Option<[f64; 4]>,
-    /// Length of a pixel.
+    /// Length of a pixel, in units of length.
     pixel_size: Option<f64>,
     /// Unit of length.
     length_unit: Option<String>,
-    /// Time between frames.
+    /// Time between frames, in units of time.
     frame_interval: Option<f64>,
     /// Unit of time.
     time_unit: Option<String>,
-    /// Which way y grows.
+    /// Which way y grows: `up` or `down`.
     y_axis: Option<String>,
-    /// Sides of the periodic box.
+    /// Sides of the box of a periodic data set.
     #[serde(rename = "box")]
     cell_box: Option<[f64; 2]>,
-    /// The files that belong to it.
+    /// The files that were read.
     files: Vec<String>,
     /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,
-    /// The command that reads it.
+    /// The command that takes it.
     command: String,
     /// Words of the command before the path.
     arguments: Vec<&'static str>,

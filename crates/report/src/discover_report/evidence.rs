@@ -9,7 +9,7 @@ use super::ranking::Gain;
 /// What remains after the last fit.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Unexplained {
-    /// Share of the squared velocities that neither model nor noise explains.
+    /// Share of Σ‖v‖² that neither model nor noise explains.
     pub share: f64,
     /// Distance over which the residual stays correlated, in units of length.
     pub correlation_length: f64,
@@ -36,7 +36,7 @@ pub struct StructureTest {
 /// What the squared velocities are made of, in shares of their sum.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct NoiseBudget {
-    /// The sum Σ‖v‖² over the cells used, in units of length² per time².
+    /// The sum Σ‖v‖² over the cells used, in length²/time².
     pub total: f64,
     /// Share that noise of the positions explains.
     pub position_noise: f64,
@@ -65,7 +65,7 @@ impl NoiseBudget {
 pub struct Predictors {
     /// The earlier interval, in words.
     pub interval: String,
-    /// Statement on the overlap of the two intervals.
+    /// How it overlaps the interval that is explained.
     pub overlap: String,
 }
 
@@ -101,7 +101,7 @@ pub struct Prediction {
     pub dataset: String,
     /// Velocities predicted.
     pub velocities: usize,
-    /// Error of the base model, over frames.
+    /// Error of the base model; its folds are frames.
     pub before: HeldOutError,
     /// Error with the effects.
     pub after: HeldOutError,

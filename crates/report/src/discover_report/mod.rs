@@ -43,7 +43,7 @@ pub struct DiscoverReport {
     pub cells: CellCounts,
     /// How they were measured.
     pub measurement: Measurement,
-    /// The grid, where velocities were measured on one.
+    /// The grid of a flow field; `null` for velocities of cells.
     pub flow: Option<FlowGrid>,
     /// What was said of the parameters before the fits.
     pub constraints: GivenConstraints,
@@ -60,7 +60,7 @@ pub struct DiscoverReport {
     /// The base model and the model with the selected effects, at the top level of the file.
     #[serde(flatten)]
     pub models: BeforeAfter<ModelFit>,
-    /// The base model with a generic description of what it leaves unexplained, where it was fitted.
+    /// The base model with a generic description of what it leaves unexplained, no mechanism; `null` where it was not fitted.
     pub description: Option<DescriptionFit>,
     /// The effects that were added, in the order of their selection.
     pub selected: Vec<SelectedEffect>,
@@ -70,19 +70,19 @@ pub struct DiscoverReport {
     pub unexplained: Unexplained,
     /// What the squared velocities are made of.
     pub noise_budget: BeforeAfter<NoiseBudget>,
-    /// What effects with a memory were predicted from, where any was tried.
+    /// What effects with a memory were predicted from; `null` if none was tried.
     pub predictors: Option<Predictors>,
-    /// Other data sets that were predicted.
+    /// Data sets of `--predict`; empty without.
     pub predictions: Vec<Prediction>,
-    /// What the cells do next, said before; `null` if that was not asked for.
+    /// What the cells do next, said before, with `--forecast`; `null` otherwise.
     pub forecast: Option<ForecastReport>,
-    /// Whether simulated movies of the models are like the measured one; `null` if that was not asked for.
+    /// Whether simulated movies of the models are like the measured one, with `--check`; `null` otherwise.
     pub check: Option<CheckReport>,
-    /// By how much the added effects lower −2 log p of velocities held out, given all others.
+    /// By how much the added effects lower −2 log p of velocities held out, given all others, over all folds; `null` where that is not known.
     pub likelihood_gain: Option<Gain>,
-    /// The synthetic data without an effect to which the search was put.
+    /// The synthetic data without an effect that were fitted in the same way.
     pub null_sets: NullSets,
-    /// How the search behaved on them.
+    /// How the search behaved on them; `null` if there are none.
     pub calibration: Option<Calibration>,
 }
 

@@ -13,7 +13,7 @@ pub struct ModelFit {
     /// Normalised errors.
     pub nmse: ModelNmse,
     /// What measurement noise alone makes of `nmse.un_nudged` and of the held-out error if the model
-    /// is right.
+    /// is right; `null` where positions are not those of sites.
     pub noise_floor_nmse: f64,
     /// Measurement noise; where it is estimated, an upper bound as long as something is missing.
     pub noise: Noise,
@@ -23,7 +23,7 @@ pub struct ModelFit {
     pub identifiability: Vec<EigenDirection>,
     /// Penalised χ² over its degrees of freedom; one if model and noise levels are right.
     pub chi_square_per_dof: f64,
-    /// Course of the fit, where it is kept.
+    /// Course of the fit; `null` where it is not kept.
     pub fit: Option<Fit>,
 }
 
@@ -32,17 +32,17 @@ pub struct ModelFit {
 pub struct ModelNmse {
     /// Parameters by least squares at the measured positions.
     pub naive: f64,
-    /// Nudged parameters at the nudged positions (the fit's own data); no valid measure of success.
+    /// Nudged parameters at the nudged positions (the fit's own data). It falls with every effect, needed or not: no measure of success.
     pub nudged: f64,
     /// Nudged parameters at the measured positions.
     pub un_nudged: f64,
-    /// Blocks of cells predicted from fits that did not see their velocities.
+    /// Blocks of cells predicted from fits that did not see their velocities; `null` if not computed.
     pub cross_validated: Option<HeldOutError>,
-    /// Frames predicted from fits that did not see them.
+    /// Frames predicted from fits that did not see them; `null` if not computed.
     pub held_out_frames: Option<HeldOutError>,
-    /// Whether a mean velocity was removed from the data.
+    /// Which mean velocity was removed from the data.
     pub mean_removed: MeanRemoved,
-    /// Degree of the polynomials of the position that are no concern of the model, if a background
+    /// Degree of the polynomials of the position that are no concern of the model; `null` if no background
     /// is allowed.
     pub background: Option<u32>,
 }

@@ -13,7 +13,7 @@ pub struct RankedEffect {
     /// Number of coefficients that the data determine.
     pub dimension: usize,
     /// Score statistic against the base model, χ² with `dimension` degrees of freedom if nothing is
-    /// missing. Of cells that were put in or taken away: by how much −2 log likelihood falls, beyond what they cost.
+    /// missing; `null`, as all numbers are, of what is not testable. Of cells that were put in or taken away: by how much −2 log likelihood falls, beyond what they cost.
     pub statistic: f64,
     /// Probability of so large a statistic if nothing is missing.
     #[schemars(range(min = 0.0, max = 1.0))]
@@ -25,9 +25,9 @@ pub struct RankedEffect {
     pub detection_limit: f64,
     /// Estimated size when added alone, in percent of the velocity (rms).
     pub size: f64,
-    /// 95 % interval of the size.
+    /// 95 % interval of the size; `null` where it is not known.
     pub size_ci95: Option<[f64; 2]>,
-    /// By how much the held-out error falls when it is added alone, where that was computed.
+    /// By how much the held-out error falls when it is added alone; `null` unless it is the one effect that was selected.
     pub gain: Option<Gain>,
     /// What became of it.
     pub status: CandidateStatus,

@@ -19,14 +19,14 @@ pub struct SelectedEffect {
     pub meaning: String,
     /// The family it belongs to.
     pub kind: EffectKind,
-    /// Its fitted coefficients.
+    /// Its fitted coefficients, in the units of the data.
     pub coefficients: Vec<EffectCoefficient>,
-    /// 95 % interval of each coefficient; an end that is infinite (`null`) is not bounded by the data.
+    /// 95 % interval of each coefficient; an end that is `null` is not bounded by the data.
     pub ci95: Vec<[f64; 2]>,
     /// Probability of so large a statistic of any candidate if nothing is missing.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub p_adjusted: f64,
-    /// Share of what the base model lacks beyond noise that the effect explains.
+    /// Share of what the base model leaves beyond noise that the effect explains.
     pub share_of_excess: f64,
     /// Effects that these data cannot tell from it, without itself.
     pub class: Vec<String>,

@@ -10,15 +10,15 @@ use std::collections::BTreeMap;
 pub struct KindReport {
     /// The label.
     pub label: i64,
-    /// Cells that have it, in all frames together.
+    /// Cells that have it, in all frames.
     pub cells: usize,
-    /// Whether their parameters are those of the model, which others are compared with.
+    /// Whether it is the label that others are compared with, whose parameters are those of the model.
     pub is_reference: bool,
-    /// Their parameters.
+    /// Parameters of its cells.
     pub parameters: Parameters,
-    /// By how much these exceed those of the reference, by name.
+    /// By how much these exceed those of the reference, by name, to first order.
     pub differences: BTreeMap<String, KindDifference>,
-    /// Probability of so large differences if there are none.
+    /// Probability of so large differences if there are none (χ² of all coefficients of the label).
     pub p: f64,
     /// The same for the largest of as many labels as are compared.
     pub p_adjusted: f64,

@@ -49,7 +49,7 @@ pub enum MeasurementSource {
 pub struct MeasuredWindow {
     /// The kind of average.
     pub kind: FlowWindow,
-    /// Side of a square, standard deviation of a Gaussian.
+    /// Side of a square, standard deviation of a Gaussian, in units of length.
     pub width: f64,
     /// 95 % interval of the width; `null` where it was declared.
     pub ci95: Option<[f64; 2]>,

@@ -15,9 +15,9 @@ pub struct Measurement {
     pub uncertain: usize,
     /// Cells outside the field of view, over all frames.
     pub outside: usize,
-    /// What was wrong with detections; `null` if that was not looked for.
+    /// Cells that were not detected, and the like; `null` with `--complete false`.
     pub latent: Option<LatentCells>,
-    /// The tracks, where these were fitted themselves.
+    /// The tracks; `null` where velocities were fitted.
     pub tracks: Option<TracksReport>,
     /// What of a cell its position is.
     pub positions: MeasuredPositions,

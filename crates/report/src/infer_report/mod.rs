@@ -77,47 +77,47 @@ pub struct InferReport {
     pub run: RunRecord,
     /// What the fit says, in a word and in a sentence.
     pub verdict: Verdict,
-    /// Units of all numbers that are not dimensionless.
+    /// Units of the data. The `unit` of a number is a product of powers of these, such as `µm⁻² min⁻¹`.
     pub units: Units,
     /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
     pub length_scale: Quantity,
-    /// The time that rates are measured in, in units of the data: that of `identifiability` together with the cell size.
+    /// The time that coefficients of `identifiability` are counted in, with ℓ₀ as the length.
     pub time_scale: Quantity,
     /// Which cells were used.
     pub cells: CellCounts,
-    /// How they were measured.
+    /// How the cells were measured.
     pub measurement: Measurement,
-    /// The grid, where velocities were measured on one.
+    /// The grid of a flow field; `null` for velocities of cells.
     pub flow: Option<FlowGrid>,
     /// What was said of the parameters before the fit.
     pub constraints: GivenConstraints,
-    /// The nudged estimate.
+    /// The nudged estimate, in the units of the data.
     pub parameters: Parameters,
-    /// Polarity of the cells, where it was asked for.
+    /// Polarity of the cells, with `--active`; `null` otherwise.
     pub activity: Option<ActivityReport>,
-    /// How much cells differ, where it was asked for.
+    /// How much cells differ, one for each parameter of `--vary`; empty without.
     pub spreads: Vec<SpreadReport>,
-    /// The cells of each label, where it was asked for; the first are those that others are compared with.
+    /// The cells of each label, with `--by-label`, first those that others are compared with; empty without.
     pub by_label: Vec<KindReport>,
-    /// Moduli and phase diffusivities that the parameters imply by the mean-field theory; `null` where it has none.
+    /// Moduli over the friction γ of a cell, and phase diffusivities, that the parameters imply by the mean-field theory; `null` where it has none: if K_P is not positive.
     pub implied_moduli: Option<ImpliedByMeanField>,
-    /// The estimate at the measured positions.
+    /// The same parameters by least squares at the measured positions.
     pub naive: NaiveParameters,
-    /// Normalised errors.
+    /// Normalised errors Σ‖v − v̂‖²/Σ‖v‖² of velocities, or of mean velocities between frames where tracks were fitted.
     pub nmse: Nmse,
-    /// Measurement noise.
+    /// Measurement noise per component.
     pub noise: Noise,
     /// The nudges.
     pub nudge: Nudge,
-    /// Principal axes of the covariance of the coefficients, stiffest first.
+    /// Principal axes of the covariance of (K_A, K_P P₀/3.722, K_P, K_P α), in units of ℓ₀ and the time scale, best determined first.
     pub identifiability: Vec<EigenDirection>,
     /// What would be known if more, or better, had been measured; `null` where that is not computed.
     pub prospects: Option<ProspectsReport>,
-    /// Profile likelihoods, where asked for.
+    /// Profile likelihoods, with `--profile`; empty without.
     pub profiles: Vec<ProfileResult>,
-    /// Slices of the landscape, where asked for.
+    /// Slices of the landscape, with `--landscape`; empty without.
     pub landscapes: Vec<LandscapeResult>,
-    /// The parametric bootstrap, where asked for.
+    /// The parametric bootstrap, with `--bootstrap`; `null` otherwise.
     pub bootstrap: Option<BootstrapResult>,
     /// Course of the fit.
     pub fit: Fit,
@@ -139,7 +139,7 @@ pub struct CellCounts {
     pub frames: Vec<usize>,
     /// Cells (or grid points) used, over all frames.
     pub used: usize,
-    /// Cells (or grid points) left out, over all frames, by reason.
+    /// Cells (or grid points) left out, over all frames, by reason: `outside_field_of_view`, `polygon_not_closed`, `polygon_uncertain` (a cell that was not seen could change it), `polygon_too_large` (a hole), `next_to_uncertain`, `no_velocity`; of grid points `missing`, `window_not_filled`.
     pub left_out: BTreeMap<String, usize>,
 }
 
@@ -149,11 +149,11 @@ pub struct FlowGrid {
     /// Number of grid points along x and y.
     #[schemars(inner(range(min = 1)))]
     pub grid_points: [usize; 2],
-    /// Distance between grid points along x and y.
+    /// Distance between grid points along x and y, in units of length.
     pub spacing: [f64; 2],
     /// The average over cells that a grid point stands for.
     pub window: FlowWindow,
-    /// Side of a square window, standard deviation of a Gaussian one.
+    /// Side of a square window, standard deviation of a Gaussian one, in units of length.
     pub width: f64,
 }
 
@@ -174,8 +174,7 @@ pub enum FlowWindow {
 pub struct Parameter {
     /// Value.
     pub value: f64,
-    /// 95 % interval; `null` for a parameter held fixed. An end that is infinite (`null`) is not
-    /// bounded by the data.
+    /// 95 % interval; `null` for a parameter held fixed. An end that is `null` is not bounded by the data.
     pub ci95: Option<[f64; 2]>,
     /// Whether it was held fixed.
     pub fixed: bool,
@@ -206,7 +205,7 @@ pub struct Parameters {
     pub K_P: Parameter,
     /// Preferred perimeter.
     pub P_0: Parameter,
-    /// Preferred area; never fitted, no velocity depends on it.
+    /// Preferred area: ℓ₀², and never fitted, since no velocity depends on it.
     pub A_0: Parameter,
     /// Chirality.
     pub alpha: Parameter,
@@ -243,15 +242,15 @@ pub struct Nmse {
     pub nudged: f64,
     /// Nudged parameters at the measured positions.
     pub un_nudged: f64,
-    /// What measurement noise alone makes of `un_nudged` and of the held-out error if the model is right.
+    /// What measurement noise alone makes of `un_nudged` and of the held-out error if the model and the noise levels are right; of tracks, what errors of positions make of the mean velocities; `null` if a noise level was estimated from the same fit.
     pub noise_floor: f64,
-    /// Cells predicted from a fit that did not see their velocities.
+    /// Cells predicted from a fit that did not see their velocities; `null` with too few cells.
     pub cross_validated: Option<f64>,
-    /// Standard error of `cross_validated` over its folds.
+    /// Standard error of `cross_validated` over its folds; `null` likewise.
     pub cross_validated_standard_error: Option<f64>,
-    /// Whether a mean velocity was removed from the data.
+    /// Which mean velocity was removed from the data.
     pub mean_removed: MeanRemoved,
-    /// Degree of the polynomials of the position that are no concern of the model, if a background is allowed. Velocities
+    /// Degree of the polynomials of the position that are no concern of the model; `null` if no background is allowed. Velocities
     /// and residuals are then those without it.
     pub background: Option<u32>,
 }
@@ -275,7 +274,7 @@ pub struct Noise {
     pub sigma_r: f64,
     /// Standard deviation of the velocities, in units of length per time.
     pub sigma_v: f64,
-    /// Where the numbers come from.
+    /// Where the levels come from.
     pub source: NoiseSource,
 }
 
@@ -287,7 +286,7 @@ pub enum NoiseSource {
     Given,
     /// Stated by the data set.
     DataSet,
-    /// Estimated from these data.
+    /// Estimated from these data, at least one of the two.
     Estimated,
     /// Assumed for want of anything better.
     Assumed,
@@ -300,11 +299,11 @@ pub struct Nudge {
     pub k: f64,
     /// Root mean square of the length of a nudge, in units of length.
     pub rms: f64,
-    /// Effective number of parameters that the nudges use up.
+    /// Effective number of parameters that the nudges use up, df.
     pub degrees_of_freedom: f64,
     /// What nudges contribute to the objective per contribution of velocities.
     pub contribution_ratio: f64,
-    /// What that ratio is expected to be if the noise levels are right.
+    /// What that ratio is expected to be if the noise levels are right: df/(2·used − df − p) with p free coefficients.
     pub expected_contribution_ratio: f64,
     /// Contacts between neighbours that the nudges changed (lost plus gained).
     pub edges_changed: usize,
@@ -326,7 +325,7 @@ pub struct Fit {
     pub doubts: Vec<String>,
     /// Number of iterations.
     pub iterations: usize,
-    /// Velocities that count less than half, because nothing explains them.
+    /// Velocities, or in tracks motions, that count less than half, because nothing explains them.
     pub downweighted: usize,
     /// Penalised objective at the end, in units of the noise variance.
     pub objective: f64,

@@ -18,17 +18,17 @@ pub const DESIGNS: [(&str, &str); 4] = [
 pub struct ProspectsReport {
     /// What to measure next, in a sentence; empty if there is nothing to advise.
     pub words: String,
-    /// What is least certain: the name of a quantity, or of two effects that the data cannot tell apart.
+    /// What is least certain: the name of a quantity, or of two effects that the data cannot tell apart; `null` if nothing is.
     pub least_certain: Option<String>,
-    /// The measurement that makes that most certain.
+    /// The measurement that makes that most certain; `null` if none does.
     #[schemars(extend("enum" = ["twice_the_frames", "half_the_interval", "half_the_position_noise", "twice_the_field", null]))]
     pub recommended: Option<String>,
-    /// Its standard error then, as a share of the present one.
+    /// Its standard error then, as a share of the present one; `null` likewise.
     #[schemars(range(min = 0.0))]
     pub share: Option<f64>,
-    /// Parameters that were fitted and coefficients of effects.
+    /// Parameters that were fitted and coefficients of effects, by their names, such as `drift along x`.
     pub quantities: Vec<ProspectOf>,
-    /// Effects that the data cannot tell apart.
+    /// Effects that the data cannot tell apart, of `discover`.
     pub ambiguities: Vec<AmbiguityReport>,
 }
 

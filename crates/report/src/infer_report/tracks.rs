@@ -21,7 +21,7 @@ pub struct TracksReport {
     /// Steps of integration from one frame to the next.
     #[schemars(range(min = 1))]
     pub substeps: usize,
-    /// Order of the rule in the length of a step.
+    /// Order of the rule of integration in the length of a step.
     #[schemars(extend("enum" = [2, 4]))]
     pub order: usize,
     /// By how much a finer rule would change the coefficients: the largest change, in standard errors.

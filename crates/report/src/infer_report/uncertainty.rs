@@ -49,8 +49,8 @@ pub struct BootstrapResult {
     pub replicates: usize,
     /// Number of data sets that could not be fitted.
     pub failed: usize,
-    /// The central 95 % of the estimates of each parameter; `null` with fewer than 40.
+    /// Central 95 % of the estimates of each free parameter; `null` with fewer than 40 data sets.
     pub intervals: BTreeMap<String, Option<[f64; 2]>>,
-    /// Standard deviation of the estimates of each parameter.
+    /// Standard deviation of the estimates of each free parameter.
     pub standard_deviations: BTreeMap<String, f64>,
 }

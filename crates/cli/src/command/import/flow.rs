@@ -59,17 +59,17 @@ pub(crate) struct Report {
     run: RunRecord,
     /// Number of frames.
     frames: usize,
-    /// Number of the first in the files.
+    /// Number of the first frame in a table with a column of frames, else 0.
     first_frame: i64,
     /// Grid points along y.
     rows: usize,
     /// Grid points along x.
     columns: usize,
-    /// Distances of grid points along x and y.
+    /// Distances of grid points along x and y, in units of length.
     spacing: [f64; 2],
-    /// Grid points without a vector, over all frames.
+    /// Grid points without a vector, summed over frames.
     missing_points: usize,
-    /// Number of cells, where their positions were given.
+    /// Number of cells; `null` without their positions.
     cells: Option<usize>,
     /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,

@@ -34,7 +34,7 @@ pub(crate) struct Report {
     run: RunRecord,
     /// Number of frames.
     frames: usize,
-    /// Number of the first in the table.
+    /// Number of the first frame in the table.
     first_frame: i64,
     /// Frames without a cell.
     empty_frames: usize,
@@ -46,7 +46,7 @@ pub(crate) struct Report {
     left_out_untracked: usize,
     /// Places left out because a track has another in the same frame.
     left_out_duplicate: usize,
-    /// Numbers of the tracks in the table.
+    /// The track in the table of each entry of the axis of cells.
     track_ids: Vec<i64>,
     /// What was read, guessed and doubted.
     notes: Vec<NoteRecord>,

@@ -16,14 +16,14 @@ pub(super) struct Request {
     /// Number of cells.
     #[schemars(range(min = 1))]
     pub cells: usize,
-    /// Sides of the periodic box.
+    /// Sides of the periodic box, in units of length.
     #[serde(rename = "box")]
     pub box_lengths: [f64; 2],
     /// Where the positions come from.
     pub start: Origin,
-    /// Duration.
+    /// Duration, in units of time.
     pub time: f64,
-    /// Time step.
+    /// Time step, in units of time.
     pub dt: f64,
     /// Frames kept.
     #[schemars(range(min = 1))]
@@ -32,19 +32,19 @@ pub(super) struct Request {
     pub method: Method,
     /// Parameters of the model.
     pub parameters: ModelParameters,
-    /// Values of parameters in which cells differ, one for each cell.
+    /// Values (N) of the parameters in which cells differ, in the order of the cells.
     #[serde(rename = "cell_parameters", skip_serializing_if = "OfCells::is_empty")]
     pub of_cells: OfCells,
-    /// Spreads of parameters over cells as asked.
+    /// By how much parameters differ from cell to cell, as asked.
     #[serde(rename = "cell_spread", skip_serializing_if = "Spreads::is_empty")]
     pub spreads: Spreads,
     /// Labels of the cells, which are in a file of their own.
     #[serde(skip)]
     pub labels: Option<Vec<Option<i64>>>,
-    /// Effects beyond the base model with their coefficients.
+    /// Effects beyond the base model, by name: their coefficients.
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     pub effects: ChosenEffects,
-    /// Walls between which the cells are.
+    /// Sides of the box that are walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walls: Option<Walls>,
     /// What moves cells besides the model.
@@ -60,33 +60,33 @@ pub(crate) struct Report {
     /// What it was asked for, likewise.
     #[serde(flatten)]
     pub(super) request: Request,
-    /// Mean over cells and over the steps in the second half.
+    /// ⟨v²⟩ over cells and over the steps in the second half of the run, in (length/time)²; `null` where it was not measured.
     pub(super) mean_square_velocity: Option<f64>,
-    /// Its standard error.
+    /// Its standard error, which knows of correlations in time; `null` where it cannot be told.
     pub(super) mean_square_velocity_error: Option<f64>,
-    /// T1 transitions per cell and time in the second half.
+    /// T1 transitions per cell and time in the second half of the run; `null` where they were not counted.
     pub(super) t1_rate: Option<f64>,
-    /// Modulus of the mean of psi_i at the end.
+    /// Ψ₆ = |(1/N) Σ_i (1/z_i) Σ_j exp(6iθ_ij)| at the end of the run: 1 on a triangular lattice.
     pub(super) hexatic_order: f64,
-    /// Mean of the moduli of psi_i at the end.
+    /// Mean over cells of the modulus of the same, blind to the orientation of grains.
     pub(super) hexatic_mean_modulus: f64,
-    /// Mean stress at the end, force index first.
+    /// Mean stress at the end of the run, in 1/time, force index first.
     pub(super) stress: [[f64; 2]; 2],
-    /// Areas of the cells at the end.
+    /// Areas A_i of the cells at the end of the run, in length².
     pub(super) area: Spread,
-    /// Perimeter over root of area of the cells at the end.
+    /// P_i/√A_i of the cells at the end of the run.
     pub(super) shape_index: Spread,
     /// Mean square displacement, in short.
     pub(super) displacement: Displacement,
     /// Structure factor of the density, in short.
     pub(super) structure: Structure,
-    /// Largest Lyapunov exponent; null if not asked for.
+    /// Largest Lyapunov exponent λ, in 1/time; `null` if it was not asked for.
     pub(super) lyapunov: Option<Exponent>,
-    /// Derivatives of the run at its end by what --sensitivity names, in short; empty if nothing.
+    /// Derivatives of the run at its end, for each name of `--sensitivity`; empty without.
     pub(super) sensitivity: Vec<Sensitive>,
     /// Steps made.
     pub(super) steps: usize,
-    /// Steps per second of wall time.
+    /// Steps per second of wall time, of the part since `--resume`.
     pub(super) steps_per_second: f64,
 }
 
@@ -103,9 +103,9 @@ impl Report {
 pub(super) struct Displacement {
     /// Frames between which displacements were taken.
     pub frames: usize,
-    /// The longest lag; null for a single frame.
+    /// The longest lag; `null` for a single frame.
     pub longest_lag: Option<f64>,
-    /// Mean square displacement at that lag.
+    /// Mean square displacement at that lag, in length²; `null` likewise.
     pub mean_square: Option<f64>,
 }
 
@@ -131,9 +131,9 @@ pub(super) struct Peak {
 /// Derivatives by one parameter or starting coordinate at the end of the run, in short.
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Sensitive {
-    /// Its name.
+    /// Name of the parameter or starting coordinate.
     pub by: String,
-    /// Of positions, over the cells.
+    /// Root mean square over the cells of the derivatives of positions.
     pub root_mean_square: f64,
     /// Derivative of the mean square velocity.
     pub mean_square_velocity: f64,
@@ -141,9 +141,9 @@ pub(super) struct Sensitive {
     pub stress: [[f64; 2]; 2],
     /// By how much the runs differ that derivatives are compared with, to either side.
     pub aside: f64,
-    /// By which share derivatives of positions miss the difference of these, at the end.
+    /// Share by which derivatives of positions miss the difference of these, at the end; `null` where there is none.
     pub missed: Option<f64>,
-    /// Time of the last frame up to which that is at most a tenth.
+    /// Time of the last frame up to which that is at most a tenth; `null` if there is none.
     pub agrees_until: Option<f64>,
 }
 
@@ -173,7 +173,7 @@ pub(super) struct Spread {
     pub mean: f64,
     /// Standard deviation over cells.
     pub standard_deviation: f64,
-    /// Number of cells in each bin; null if no value is finite.
+    /// Number of cells in each bin; `null` if no value is finite.
     pub histogram: Option<Counts>,
 }
 
