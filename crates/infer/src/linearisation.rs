@@ -43,7 +43,7 @@ pub(crate) struct Linearisation {
     chains: Vec<u32>,
     dissections: Dissections,
     /// Once they are asked for.
-    whole: OnceLock<Whole>,
+    normals: OnceLock<Normals>,
     of_chains: OnceLock<Vec<SymmetricMatrix>>,
     /// Places that are held and not among the nudges.
     left_out: usize,
@@ -51,8 +51,8 @@ pub(crate) struct Linearisation {
 
 /// JᵀJ of each group, on the pattern of their sum, and the order in which that is eliminated.
 #[derive(Debug)]
-struct Whole {
-    normals: Vec<SymmetricMatrix>,
+struct Normals {
+    of_groups: Vec<SymmetricMatrix>,
     pattern: DissectedPattern,
 }
 
@@ -131,32 +131,35 @@ impl Linearisation {
             places,
             chains: local.chains,
             dissections: local.dissections.clone(),
-            whole: OnceLock::new(),
+            normals: OnceLock::new(),
             of_chains: OnceLock::new(),
             left_out: local.left_out,
         }
     }
 
     /// JᵀJ of each group, of pairs of blocks that go together.
-    fn normals(&self, together: impl Fn(usize, usize) -> bool + Sync) -> Result<Vec<SymmetricMatrix>, Error> {
+    fn normals_among(
+        &self,
+        together: impl Fn(usize, usize) -> bool + Sync,
+    ) -> Result<Vec<SymmetricMatrix>, Error> {
         let groups = [&self.velocities, &self.positions].into_iter().chain(&self.known);
         let matrices: Vec<&BlockMatrix> = groups.map(|group| &group.jacobian).collect();
         let links = self.held.stiffness.links().filter(|(later, earlier)| together(*later, *earlier));
         of_all(&matrices, links, self.order() / 2, &together)
     }
 
-    fn whole(&self) -> Result<&Whole, Error> {
-        if let Some(known) = self.whole.get() {
+    fn normals(&self) -> Result<&Normals, Error> {
+        if let Some(known) = self.normals.get() {
             return Ok(known);
         }
-        let normals = self.normals(|_, _| true)?;
-        let pattern = self.dissections.of(&normals[0], &self.places)?;
-        Ok(self.whole.get_or_init(|| Whole { normals, pattern }))
+        let of_groups = self.normals_among(|_, _| true)?;
+        let pattern = self.dissections.of(&of_groups[0], &self.places)?;
+        Ok(self.normals.get_or_init(|| Normals { of_groups, pattern }))
     }
 
     /// Whether one factor at a time is enough.
     pub fn is_large(&self) -> Result<bool, Error> {
-        Ok(self.whole()?.pattern.is_large())
+        Ok(self.normals()?.pattern.is_large())
     }
 
     /// Holds the unknowns otherwise; what is coupled must be the same.
@@ -213,8 +216,8 @@ impl Linearisation {
     }
 
     fn damped(&self, spring: f64, damping: &[f64], held: &Held) -> Result<DissectedCholesky, Error> {
-        let Whole { normals, pattern } = self.whole()?;
-        let mut sum = self.summed(normals, spring, held)?;
+        let Normals { of_groups, pattern } = self.normals()?;
+        let mut sum = self.summed(of_groups, spring, held)?;
         held.stiffness.add_to(&mut sum)?;
         sum.add_to_diagonal(damping.iter().copied());
         Ok(pattern.factor(&sum)?)

@@ -61,7 +61,7 @@ impl Linearisation {
         let normals = match self.of_chains.get() {
             Some(known) => known,
             None => {
-                let found = self.normals(together)?;
+                let found = self.normals_among(together)?;
                 self.of_chains.get_or_init(|| found)
             }
         };
