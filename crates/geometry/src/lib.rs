@@ -39,6 +39,7 @@ mod interface;
 mod lanes;
 mod moving;
 mod overlap;
+mod places;
 mod plane;
 mod polygon;
 mod region;
@@ -59,6 +60,7 @@ pub use interface::Interface;
 pub use lanes::Lanes;
 pub use moving::{MovingTessellation, Renewal};
 pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
+pub use places::Places;
 pub use plane::{
     Corner, Outer, Vector, circumcentre, cross, dot, quarter_turn, side_direction, side_direction_slope,
 };

@@ -3,7 +3,7 @@
 use crate::least_squares::{self, residuals_as_measured};
 use crate::objective::Objective;
 use crate::search::{Watch, follow, refine};
-use crate::{Error, Observation, Progress};
+use crate::{Error, Observation, Progress, Velocities};
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 use voronudge_model::Structure;
@@ -13,6 +13,9 @@ pub(crate) const BLOCKS: usize = 2;
 
 /// Steps at the end of a fold's fit. One continuation is enough: the flip of a contact hardly changes the parameters.
 const STEPS: u64 = 12;
+
+/// Rings of cells around those whose velocities are held out that lose the nudges which the fit to all has given them.
+const RINGS: usize = 4;
 
 /// Errors on velocities held out of the fit, predicted at the measured positions (whose nudges they would otherwise have
 /// shaped).
@@ -140,7 +143,8 @@ pub(crate) fn training(frames: &[Observation], held_out: &[Vec<bool>]) -> Vec<(u
 }
 
 /// Fits without the velocities of each fold. `at` is the fit to all: where whole frames are held out, the nudges of the others start
-/// from there, since they do not depend on that frame but through the parameters. `None` if too few velocities are left to
+/// from there, since they do not depend on that frame but through the parameters, and where blocks are, those of cells far from them, with parameters that
+/// know nothing of the block. `None` if too few velocities are left to
 /// fit, or to hold out.
 pub(crate) fn cross_validate(
     whole: &Objective<'_>,
@@ -169,15 +173,46 @@ fn test(
         return Ok(None);
     }
     let objective = Objective { frames: &training, ..*whole };
+    let known = whole.part(at, &kept);
     let parameters = if of_frames {
-        refine(&objective, whole.part(at, &kept), STEPS)?.parameters
+        refine(&objective, known, STEPS)?.parameters
     } else {
         let naive = least_squares::fit(&training, structure, space)?;
-        let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
-        follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?.parameters
+        match kept.iter().map(|&index| untouched(&frames[index], &held_out[index])).collect() {
+            Some(untouched) => {
+                let untouched: Vec<Vec<bool>> = untouched;
+                let mut start = known;
+                start[..naive.len()].copy_from_slice(&naive);
+                for (nudge, untouched) in start[naive.len()..].chunks_exact_mut(2).zip(untouched.concat()) {
+                    if !untouched {
+                        nudge.fill(0.0);
+                    }
+                }
+                refine(&objective, start, STEPS)?.parameters
+            }
+            None => {
+                let mut silent = |_: Progress<'_>| ControlFlow::Continue(());
+                follow(&objective, &naive, STEPS, "", &mut Watch { observe: &mut silent })?.parameters
+            }
+        }
     };
     let coefficients = space.coefficients(objective.split(&parameters).0);
     Ok(Some(predict(frames, structure, coefficients.as_slice(), held_out)))
+}
+
+/// Which cells are so far from those whose velocities are held out that these say nothing of their nudges: a velocity depends on the cells within two rings,
+/// and they are in as much touch with each other. None where velocities are not of cells.
+fn untouched(frame: &Observation, held_out: &[bool]) -> Option<Vec<bool>> {
+    let Velocities::OfCells(_) = frame.velocities else { return None };
+    let mut touched = held_out.to_vec();
+    for _ in 0..RINGS {
+        let before = touched.clone();
+        for cell in (0..before.len()).filter(|cell| before[*cell]) {
+            frame.tessellation.neighbours(cell).iter().for_each(|other| touched[*other as usize] = true);
+        }
+    }
+    let few = 2 * touched.iter().filter(|touched| **touched).count() <= touched.len();
+    few.then(|| touched.into_iter().map(|touched| !touched).collect())
 }
 
 /// What given coefficients make of some velocities at the measured positions.

@@ -26,6 +26,20 @@ pub(crate) fn chosen(matrix: &BlockMatrix, rows: impl Iterator<Item = usize>) ->
     chosen
 }
 
+/// The transpose of a matrix with so many block columns.
+pub(crate) fn transposed(matrix: &BlockMatrix, columns: usize) -> BlockMatrix {
+    let Transposed { start, entry } = Transposed::new(matrix, columns);
+    let block = |&(_, at): &(usize, usize)| {
+        let b = matrix.block[at];
+        [b[0], b[2], b[1], b[3]]
+    };
+    BlockMatrix {
+        row_start: start,
+        column: entry.iter().map(|(row, _)| *row as u32).collect(),
+        block: entry.iter().map(block).collect(),
+    }
+}
+
 /// Lengths of some columns, their rows, and the values of all matrices there.
 type Part<const N: usize> = (Vec<usize>, Vec<usize>, [Vec<f64>; N]);
 

@@ -13,9 +13,12 @@
 //! Coordinates without a measured position (of cells that were not seen) have no row in H. They are unknowns of no
 //! distribution, as coefficients are, but for a stiffness that keeps them near where they were put.
 
+mod conjugate_gradients;
+mod determinant;
 mod iterated;
 mod solved;
 
+pub(crate) use iterated::Accuracy;
 pub(crate) use solved::Weighting;
 
 use crate::Error;
@@ -275,12 +278,17 @@ impl Linearisation {
     /// ```
     ///
     /// with the residuals s of the positions, their derivative Z by β and a damping λ of each nudge, if any.
-    pub fn eliminate(&self, spring: f64, damping: &[f64]) -> Result<Eliminated, Error> {
-        self.eliminate_by(self.are_many(), spring, damping)
+    pub fn eliminate(&self, spring: f64, damping: &[f64], accuracy: Accuracy) -> Result<Eliminated, Error> {
+        self.eliminate_by(self.are_many().then_some(accuracy), spring, damping)
     }
 
-    /// The same, first tried by iteration or not.
-    pub fn eliminate_by(&self, iteration: bool, spring: f64, damping: &[f64]) -> Result<Eliminated, Error> {
+    /// The same, perhaps by iteration first.
+    pub fn eliminate_by(
+        &self,
+        iteration: Option<Accuracy>,
+        spring: f64,
+        damping: &[f64],
+    ) -> Result<Eliminated, Error> {
         let held = &self.held;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mut right = self.sum(spring, held, |group| &group.mixed[..n * p]);
@@ -288,7 +296,10 @@ impl Linearisation {
         for (g, pull) in right[n * p..].iter_mut().zip(held.stiffness.times(&self.nudges)) {
             *g -= pull;
         }
-        let iterated = if iteration { self.iterated(spring, damping, &right)? } else { None };
+        let iterated = match iteration {
+            Some(accuracy) => self.iterated(spring, damping, &right, accuracy)?,
+            None => None,
+        };
         let (solved, left) = match iterated {
             Some(found) => found,
             None => {
@@ -297,9 +308,7 @@ impl Linearisation {
                 (solved, Vec::new())
             }
         };
-        // What is left of a right-hand side adds to the product what makes its error of second order.
-        let of_left = |a, b| if left.is_empty() { 0.0 } else { product(&left, &solved, n, a, b) };
-        let dot = |a: usize, b: usize| product(&right, &solved, n, a, b) + of_left(b, a);
+        let dot = |a: usize, b: usize| eliminated(&right, &solved, &left, n, a, b);
         let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
         for (group, weight) in self.groups(spring, held) {
             free_normal += &group.free_normal * weight;
@@ -330,24 +339,35 @@ impl Linearisation {
         held: &Held,
     ) -> Result<(DissectedCholesky, Vec<f64>, Whitened), Error> {
         let factor = self.damped(spring, &[], held)?;
-        let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mixed = self.sum(spring, held, |group| &group.mixed);
         let mut solved = mixed.clone();
         factor.solve(&mut solved);
-        let dot = |a: usize, b: usize| product(&mixed, &solved, n, a, b);
+        let whitened = self.whitened(spring, held, (&mixed, &solved, &[]), factor.log_determinant());
+        Ok((factor, solved, whitened))
+    }
+
+    /// From the products of data with all unknowns, `A⁻¹` of these, what they leave if anything, and log det A.
+    fn whitened(
+        &self,
+        spring: f64,
+        held: &Held,
+        (mixed, solved, left): (&[f64], &[f64], &[f64]),
+        log_determinant: f64,
+    ) -> Whitened {
+        let (n, p) = (self.order(), self.velocities.free_gradient.len());
+        let dot = |a: usize, b: usize| eliminated(mixed, solved, left, n, a, b);
         let (mut free, mut data) = (DMatrix::zeros(p, p), DVector::zeros(p));
         for (group, weight) in self.groups(spring, held) {
             free += &group.free_normal * weight;
             data += &group.free_data * weight;
         }
-        let whitened = Whitened {
+        Whitened {
             free: DMatrix::from_fn(p, p, |a, b| free[(a, b)] - dot(a, b)),
             mixed: DVector::from_fn(p, |a, _| data[a] - dot(a, p)),
             data: self.groups(spring, held).map(|(group, weight)| weight * group.data).sum::<f64>()
                 - dot(p, p),
-            log_determinant: factor.log_determinant() - self.measured_components() * spring.ln(),
-        };
-        Ok((factor, solved, whitened))
+            log_determinant: log_determinant - self.measured_components() * spring.ln(),
+        }
     }
 
     /// Directions of the nudges that the data determine, `df = n − k tr (JᵀJ + kHᵀH)⁻¹HᵀH`, which is n less the derivative of
@@ -366,6 +386,13 @@ const STEP: f64 = 2e-4;
 /// The product of column a of one matrix and column b of another, both of n rows.
 fn product(left: &[f64], right: &[f64], n: usize, a: usize, b: usize) -> f64 {
     left[a * n..(a + 1) * n].iter().zip(&right[b * n..(b + 1) * n]).map(|(x, y)| x * y).sum()
+}
+
+/// `bᵀA⁻¹b` of right-hand sides a and b, of n numbers each, with their solutions and what these leave, if anything: that adds what makes the error of second
+/// order.
+fn eliminated(right: &[f64], solved: &[f64], left: &[f64], n: usize, a: usize, b: usize) -> f64 {
+    let of_left = if left.is_empty() { 0.0 } else { product(left, solved, n, b, a) };
+    product(right, solved, n, a, b) + of_left
 }
 
 #[cfg(test)]

@@ -13,8 +13,6 @@ use crate::Error;
 use crate::linearisation::Held;
 use crate::normal_equations::NormalEquations;
 use crate::whitened::{Leftover, Whitened};
-use argmin::core::{CostFunction, Error as ArgminError, Executor, State};
-use argmin::solver::brent::BrentOpt;
 use rayon::prelude::*;
 
 /// Where noise levels come from.
@@ -92,9 +90,14 @@ pub(crate) const LARGEST_POSITION_NOISE: f64 = 0.15;
 /// explain anything.
 pub(crate) const SMALLEST_VELOCITY_NOISE: f64 = 1e-3;
 
-/// The likelihood is first looked at on this many values of log k to either side, this far apart.
-const GRID: i32 = 2;
+/// The likelihood is first looked at on three values of log k, this far apart, and moves by at most twice that.
 const SPACING: f64 = 1.0;
+
+/// Points through which parabolas are laid at most, beyond these.
+const MOST_POINTS: usize = 12;
+
+/// Share of a bracket that a parabola's vertex keeps from its ends.
+const INSIDE: f64 = 0.02;
 
 /// Precision of log k.
 const PRECISION: f64 = 3e-3;
@@ -106,6 +109,8 @@ pub(crate) struct Restricted<'a> {
     pub known: KnownNoise,
     /// What holds the unknowns, if it is not what holds them in the equations.
     pub held: Option<&'a Held>,
+    /// Whether determinants of many unknowns may come from random signs.
+    pub by_draws: bool,
 }
 
 /// The restricted likelihood at some k.
@@ -118,44 +123,47 @@ pub(crate) struct Likelihood {
 }
 
 impl Restricted<'_> {
-    /// The noise levels of greatest restricted likelihood near the present ones. They move by no more than the
-    /// linearisation is worth: a factor of about e each.
-    pub fn most_likely(&self, present: NoiseLevels) -> Result<NoiseLevels, Error> {
+    /// The noise levels of greatest restricted likelihood near the present ones, and −2 log L there. They move by no more than the linearisation is
+    /// worth: a factor of about e each.
+    pub fn most_likely(&self, present: NoiseLevels) -> Result<(NoiseLevels, f64), Error> {
+        let at = |log_k: f64| Ok::<_, Error>((log_k, self.likelihood(log_k)?));
         let centre = present.spring().ln();
-        let grid: Vec<(f64, f64)> = (-GRID..=GRID)
-            .into_par_iter()
-            .map(|step| centre + SPACING * f64::from(step))
-            .map(|log_k| Ok((log_k, self.criterion(log_k)?)))
-            .collect::<Result<_, Error>>()?;
-        let best = (0..grid.len()).min_by(|a, b| grid[*a].1.total_cmp(&grid[*b].1)).unwrap_or(0);
-        let bracket = (grid[best.saturating_sub(1)].0, grid[(best + 1).min(grid.len() - 1)].0);
-        let solver = BrentOpt::new(bracket.0, bracket.1).set_tolerance(0.0, PRECISION);
-        let executor = Executor::new(self, solver)
-            .configure(|state| state.param(grid[best].0).max_iters(40))
-            .ctrlc(false);
-        let found = executor.run().map_err(|error| Error::Optimiser(error.to_string()))?;
-        let log_k = found.state.get_best_param().copied().unwrap_or(grid[best].0);
-        self.levels(log_k)
+        let first = [centre - SPACING, centre, centre + SPACING];
+        let mut bracket: Vec<(f64, Likelihood)> = first.into_par_iter().map(at).collect::<Result<_, _>>()?;
+        // Further to the side that is more likely.
+        for side in [0, 2] {
+            if least(&bracket) == side {
+                let further = at(centre + 2.0 * (side as f64 - 1.0) * SPACING)?;
+                bracket.insert(if side == 0 { 0 } else { bracket.len() }, further);
+            }
+        }
+        for _ in 0..MOST_POINTS {
+            let best = least(&bracket);
+            if best == 0 || best + 1 == bracket.len() {
+                break;
+            }
+            bracket = bracket[best - 1..=best + 1].to_vec();
+            let [a, b, c] = [0, 1, 2].map(|k| bracket[k].0);
+            let vertex = vertex([0, 1, 2].map(|k| (bracket[k].0, bracket[k].1.criterion)));
+            let next = vertex.clamp(a + INSIDE * (c - a), c - INSIDE * (c - a));
+            if (next - b).abs() < PRECISION {
+                break;
+            }
+            bracket.insert(if next < b { 1 } else { 2 }, at(next)?);
+        }
+        let (log_k, likelihood) = bracket[least(&bracket)];
+        Ok((self.levels(log_k, &likelihood), likelihood.criterion))
     }
 
     /// The levels that belong to k, within their limits.
-    fn levels(&self, log_k: f64) -> Result<NoiseLevels, Error> {
+    fn levels(&self, log_k: f64, likelihood: &Likelihood) -> NoiseLevels {
         let root = (0.5 * log_k).exp();
-        let velocity = self.velocity(log_k)?.max(self.known.velocity.unwrap_or(SMALLEST_VELOCITY_NOISE));
+        let velocity = likelihood.variance.sqrt().max(self.known.velocity.unwrap_or(SMALLEST_VELOCITY_NOISE));
         let position = self
             .known
             .position
             .unwrap_or_else(|| (velocity / root).clamp(SMALLEST_POSITION_NOISE, LARGEST_POSITION_NOISE));
-        Ok(NoiseLevels { position, velocity })
-    }
-
-    /// σ_v that belongs to k.
-    fn velocity(&self, log_k: f64) -> Result<f64, Error> {
-        Ok(match self.known {
-            KnownNoise { velocity: Some(velocity), .. } => velocity,
-            KnownNoise { position: Some(position), .. } => position * (0.5 * log_k).exp(),
-            _ => (self.leftover(log_k)?.misfit / self.left()).sqrt(),
-        })
+        NoiseLevels { position, velocity }
     }
 
     /// n − p.
@@ -186,6 +194,7 @@ impl Restricted<'_> {
         let parts = frames
             .map(|frame| match self.held {
                 Some(held) => frame.whiten_held(log_k.exp(), held),
+                None if self.by_draws => frame.whiten_by_draws(log_k.exp()),
                 None => frame.whiten(log_k.exp()),
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -193,13 +202,17 @@ impl Restricted<'_> {
     }
 }
 
-impl CostFunction for &Restricted<'_> {
-    type Param = f64;
-    type Output = f64;
+/// The most likely of some points.
+fn least(points: &[(f64, Likelihood)]) -> usize {
+    let criterion = |k: &usize| points[*k].1.criterion;
+    (0..points.len()).min_by(|a, b| criterion(a).total_cmp(&criterion(b))).unwrap_or(0)
+}
 
-    fn cost(&self, log_k: &f64) -> Result<f64, ArgminError> {
-        Ok(self.criterion(*log_k)?)
-    }
+/// Where a parabola through three points is least, the middle one below both others.
+fn vertex([(a, fa), (b, fb), (c, fc)]: [(f64, f64); 3]) -> f64 {
+    let (left, right) = ((b - a) * (fb - fc), (b - c) * (fb - fa));
+    let vertex = b - 0.5 * ((b - a) * left - (b - c) * right) / (left - right);
+    if vertex.is_finite() { vertex } else { b }
 }
 
 #[cfg(test)]
@@ -240,7 +253,8 @@ mod tests {
             KnownNoise { position: Some(0.02), velocity: None },
             KnownNoise { position: None, velocity: Some(0.07) },
         ] {
-            let restricted = Restricted { equations: &equations, components: 72.0, known, held: None };
+            let restricted =
+                Restricted { equations: &equations, components: 72.0, known, held: None, by_draws: false };
             let dense = |log_k: f64| {
                 let w = DMatrix::identity(72, 72) + &j * j.transpose() / log_k.exp();
                 let inverse = w.clone().try_inverse().unwrap();
@@ -262,7 +276,7 @@ mod tests {
                 assert!((sparse - dense).abs() < 1e-8 * dense.abs().max(1.0), "{sparse} {dense}");
             }
             // One call moves by a limited step.
-            let found = (0..12).fold(levels, |levels, _| restricted.most_likely(levels).unwrap());
+            let found = (0..12).fold(levels, |levels, _| restricted.most_likely(levels).unwrap().0);
             let least = restricted.criterion(found.spring().ln()).unwrap();
             for aside in [-0.1, 0.1] {
                 assert!(restricted.criterion(found.spring().ln() + aside).unwrap() > least - 1e-6);

@@ -164,10 +164,14 @@ pub(crate) fn most_likely(
     equations: &NormalEquations,
     known: &KnownNoise,
 ) -> Result<(NoiseLevels, f64), Error> {
-    let restricted =
-        Restricted { equations, components: objective.components() as f64, known: *known, held: None };
-    let levels = restricted.most_likely(objective.levels)?;
-    Ok((levels, restricted.criterion(levels.spring().ln())?))
+    let restricted = Restricted {
+        equations,
+        components: objective.components() as f64,
+        known: *known,
+        held: None,
+        by_draws: true,
+    };
+    restricted.most_likely(objective.levels)
 }
 
 /// Whether an estimate of the position noise is at its limit.

@@ -1,7 +1,7 @@
 //! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
 
 use crate::least_squares::{invert, within_bounds};
-use crate::linearisation::{Eliminated, Held, Linearisation};
+use crate::linearisation::{Accuracy, Eliminated, Held, Linearisation};
 use crate::quadratic::HalfSpace;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};
@@ -183,11 +183,27 @@ impl NormalEquations {
     /// units of this, coefficients crawl along the valley of the nudges. Some places may be held harder, each by a damping of its own; none if there are none.
     pub fn step(&self, damping: f64, held: &[f64]) -> Result<Step, Error> {
         let p = self.free.len();
-        self.step_near(damping, held, &DMatrix::zeros(p, p))
+        self.stepped(damping, held, &DMatrix::zeros(p, p), Accuracy::OfSteps)
     }
 
-    /// The same with coefficients that are also known, to be what they are, with some information in units of 1/σ_v².
+    /// The way to where the problem is least.
+    pub fn whole_step(&self) -> Result<Step, Error> {
+        let p = self.free.len();
+        self.stepped(0.0, &[], &DMatrix::zeros(p, p), Accuracy::OfResults)
+    }
+
+    /// A step to be kept, with coefficients that are also known, to be what they are, with some information in units of 1/σ_v².
     pub fn step_near(&self, damping: f64, held: &[f64], known: &DMatrix<f64>) -> Result<Step, Error> {
+        self.stepped(damping, held, known, Accuracy::OfResults)
+    }
+
+    fn stepped(
+        &self,
+        damping: f64,
+        held: &[f64],
+        known: &DMatrix<f64>,
+        accuracy: Accuracy,
+    ) -> Result<Step, Error> {
         let count: usize = self.frames.iter().map(Linearisation::components).sum();
         let diagonal = |frame: &Linearisation| frame.trace() + self.spring * frame.stiffness();
         let unit = self.frames.iter().map(diagonal).sum::<f64>() / count as f64;
@@ -206,7 +222,7 @@ impl NormalEquations {
             .frames
             .par_iter()
             .zip(&shifts)
-            .map(|(frame, shifts)| frame.eliminate(self.spring, shifts))
+            .map(|(frame, shifts)| frame.eliminate(self.spring, shifts, accuracy))
             .collect::<Result<_, _>>()?;
         let p = self.free.len();
         let (mut schur, mut gradient) = (&self.priors.normal + known, self.priors.gradient.clone());
@@ -272,7 +288,7 @@ impl NormalEquations {
 
     /// Each part with its nudges eliminated.
     fn eliminated(&self, spring: f64) -> Result<Vec<Eliminated>, Error> {
-        self.frames.iter().map(|frame| frame.eliminate(spring, &[])).collect()
+        self.frames.iter().map(|frame| frame.eliminate(spring, &[], Accuracy::OfResults)).collect()
     }
 
     /// The β at which the linearised problem would be least without the bounds that hold it back: where its constrained

@@ -1,7 +1,10 @@
 //! Linearised data of one kind: rows of residuals with their derivatives, and their products.
 
-use crate::gram::chosen;
+use crate::gram::{chosen, transposed};
 use nalgebra::{DMatrix, DVector};
+use pulp::{Arch, Simd, WithSimd};
+use rayon::prelude::*;
+use std::sync::OnceLock;
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
 
@@ -45,7 +48,11 @@ pub(crate) fn linearised_back(
     })
 }
 
+/// Rows of a product per task.
+const CHUNK: usize = 1024;
+
 /// A row of blocks times vectors, side by side in lanes.
+#[inline(always)]
 fn product<const L: usize>(columns: &[u32], blocks: &[[f64; 4]], u: &[Pair<L>]) -> Pair<L> {
     let [mut p, mut q] = [[0.0; L]; 2];
     for (column, b) in columns.iter().zip(blocks) {
@@ -58,11 +65,47 @@ fn product<const L: usize>(columns: &[u32], blocks: &[[f64; 4]], u: &[Pair<L>]) 
     [p, q]
 }
 
+/// A matrix times a factor and vectors, side by side in lanes, added to others: some rows of it, from a first one on.
+struct SomeRows<'a, const L: usize> {
+    matrix: &'a BlockMatrix,
+    first: usize,
+    factor: f64,
+    u: &'a [Pair<L>],
+    to: &'a mut [Pair<L>],
+}
+
+impl<const L: usize> WithSimd for SomeRows<'_, L> {
+    type Output = ();
+
+    // What is called from here has to be compiled into it, to be compiled for the processor.
+    #[inline(always)]
+    fn with_simd<A: Simd>(self, _: A) {
+        let BlockMatrix { row_start, column, block } = self.matrix;
+        for (row, to) in row_start[self.first..].windows(2).zip(self.to) {
+            let own = product(&column[row[0]..row[1]], &block[row[0]..row[1]], self.u);
+            for axis in 0..2 {
+                for lane in 0..L {
+                    to[axis][lane] += self.factor * own[axis][lane];
+                }
+            }
+        }
+    }
+}
+
+/// Adds a matrix times a factor and vectors, side by side in lanes.
+fn add_product<const L: usize>(matrix: &BlockMatrix, factor: f64, u: &[Pair<L>], to: &mut [Pair<L>]) {
+    to.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, to)| {
+        Arch::new().dispatch(SomeRows { matrix, first: chunk * CHUNK, factor, u, to });
+    });
+}
+
 /// Rows and their products.
 #[derive(Debug)]
 pub(crate) struct Group {
     /// J, a row for each datum, its columns ascending.
     pub jacobian: BlockMatrix,
+    /// Jᵀ, once it is asked for.
+    transposed: OnceLock<BlockMatrix>,
     /// JᵀX (n × p, by columns), then Jᵀy as the last column.
     pub mixed: Vec<f64>,
     /// Jᵀr
@@ -85,6 +128,7 @@ impl Group {
         let n = nudges.len();
         let mut group = Self {
             jacobian: chosen(rows.jacobian, rows.rows.iter().map(|row| row.0)),
+            transposed: OnceLock::new(),
             mixed: vec![0.0; n * (p + 1)],
             gradient: vec![0.0; n],
             free_normal: DMatrix::zeros(p, p),
@@ -116,20 +160,19 @@ impl Group {
         group
     }
 
-    /// Adds JᵀJu times a factor to vectors, side by side in lanes.
-    pub fn add_products<const L: usize>(&self, factor: f64, u: &[Pair<L>], to: &mut [Pair<L>]) {
-        let BlockMatrix { row_start, column, block } = &self.jacobian;
-        for row in row_start.windows(2) {
-            let (columns, blocks) = (&column[row[0]..row[1]], &block[row[0]..row[1]]);
-            let [p, q] = product(columns, blocks, u).map(|own| own.map(|own| factor * own));
-            for (column, b) in columns.iter().zip(blocks) {
-                let [x, y] = &mut to[*column as usize];
-                for lane in 0..L {
-                    x[lane] += b[0] * p[lane] + b[2] * q[lane];
-                    y[lane] += b[1] * p[lane] + b[3] * q[lane];
-                }
-            }
-        }
+    /// Adds JᵀJu times a factor to vectors, side by side in lanes; Ju is left in the room given.
+    pub fn add_products<const L: usize>(
+        &self,
+        factor: f64,
+        u: &[Pair<L>],
+        to: &mut [Pair<L>],
+        room: &mut Vec<Pair<L>>,
+    ) {
+        room.clear();
+        room.resize(self.jacobian.row_start.len() - 1, [[0.0; L]; 2]);
+        add_product(&self.jacobian, 1.0, u, room);
+        let back = self.transposed.get_or_init(|| transposed(&self.jacobian, to.len()));
+        add_product(back, factor, room, to);
     }
 
     /// ‖Ju‖²

@@ -12,7 +12,12 @@ pub const COEFFICIENTS: [f64; 4] = [0.1, 4.0, 1.0, 1.5];
 
 /// A periodic tissue of 36 cells with noise on positions and velocities.
 pub fn observation(position_noise: f64, velocity_noise: f64, seed: u64) -> Observation {
-    let (positions, domain) = cells();
+    observation_of(6, position_noise, velocity_noise, seed)
+}
+
+/// The same of any even number of cells along each side.
+pub fn observation_of(side: u32, position_noise: f64, velocity_noise: f64, seed: u64) -> Observation {
+    let (positions, domain) = cells_of(side);
     let tessellation = Tessellation::new(&positions, domain).unwrap();
     let terms = voronudge_model::base_terms(1.0);
     let model = Model::with_coefficients(&terms, &COEFFICIENTS);
@@ -29,14 +34,18 @@ pub fn observation(position_noise: f64, velocity_noise: f64, seed: u64) -> Obser
 
 /// Positions of the tissue, without noise.
 pub fn cells() -> (Vec<Vector<f64>>, Domain) {
-    let positions = (0..36)
+    cells_of(6)
+}
+
+fn cells_of(side: u32) -> (Vec<Vector<f64>>, Domain) {
+    let positions = (0..side * side)
         .map(|i| {
             let x = f64::from(i);
-            let row = f64::from(i / 6);
-            Vector::new(f64::from(i % 6) + 0.5 * (row % 2.0) + 0.2 * x.sin(), row + 0.2 * (2.3 * x).cos())
+            let row = f64::from(i / side);
+            Vector::new(f64::from(i % side) + 0.5 * (row % 2.0) + 0.2 * x.sin(), row + 0.2 * (2.3 * x).cos())
         })
         .collect();
-    (positions, Domain::Periodic(PeriodicBox::new([6.0, 6.0]).unwrap()))
+    (positions, Domain::Periodic(PeriodicBox::new([f64::from(side); 2]).unwrap()))
 }
 
 /// The same tissue seen on a grid of unit spacing without noise.

@@ -2,7 +2,7 @@
 
 use crate::Error;
 use crate::SymmetricMatrix;
-use faer::dyn_stack::{MemBuffer, MemStack};
+use faer::dyn_stack::{MemBuffer, MemStack, StackReq};
 use faer::linalg::cholesky::llt::factor::LltError;
 use faer::sparse::SparseColMatRef;
 use faer::sparse::linalg::SupernodalThreshold;
@@ -31,6 +31,15 @@ pub struct Cholesky {
     symbolic: SymbolicCholesky<usize>,
     /// Entries of L, in the arrangement that the symbolic part states.
     values: Vec<f64>,
+}
+
+/// Memory in which solutions are found, to be used again.
+pub struct Scratch(MemBuffer);
+
+impl Default for Scratch {
+    fn default() -> Self {
+        Self(MemBuffer::new(StackReq::EMPTY))
+    }
 }
 
 impl Cholesky {
@@ -103,6 +112,59 @@ impl Cholesky {
             SEQUENTIAL,
             MemStack::new(&mut MemBuffer::new(room)),
         );
+    }
+
+    /// The same with right-hand sides side by side: the numbers of all of them for the first unknown, then for the next.
+    pub fn solve_side_by_side(&self, right_hand_sides: &mut [f64], scratch: &mut Scratch) {
+        let order = self.symbolic.nrows();
+        let columns = right_hand_sides.len() / order.max(1);
+        let needed = self.symbolic.solve_in_place_scratch::<f64>(columns, SEQUENTIAL);
+        if scratch.0.len() < needed.unaligned_bytes_required() {
+            scratch.0 = MemBuffer::new(needed);
+        }
+        LltRef::new(&self.symbolic, &self.values).solve_in_place_with_conj(
+            Conj::No,
+            MatMut::from_row_major_slice_mut(right_hand_sides, order, columns),
+            SEQUENTIAL,
+            MemStack::new(&mut scratch.0),
+        );
+    }
+
+    /// Replaces vectors z side by side by `PᵀLz`: their covariance is A if that of z is one.
+    pub fn colour_side_by_side(&self, vectors: &mut [f64]) {
+        let order = self.symbolic.nrows();
+        let columns = vectors.len() / order.max(1);
+        let white = vectors.to_vec();
+        vectors.fill(0.0);
+        let forward = self.symbolic.perm().map(|permutation| permutation.arrays().0);
+        let mut add = |row: usize, column: usize, entry: f64| {
+            let to = forward.map_or(row, |forward| forward[row]) * columns;
+            for side in 0..columns {
+                vectors[to + side] += entry * white[column * columns + side];
+            }
+        };
+        match self.symbolic.raw() {
+            SymbolicCholeskyRaw::Simplicial(symbolic) => {
+                for column in 0..order {
+                    for at in symbolic.col_ptr()[column]..symbolic.col_ptr()[column + 1] {
+                        add(symbolic.row_idx()[at], column, self.values[at]);
+                    }
+                }
+            }
+            SymbolicCholeskyRaw::Supernodal(symbolic) => {
+                let factor = SupernodalLltRef::new(symbolic, &self.values);
+                for block in (0..symbolic.n_supernodes()).map(|block| factor.supernode(block)) {
+                    let (first, entries) = (block.start(), block.val());
+                    for own in 0..entries.ncols() {
+                        for row in own..entries.nrows() {
+                            let below = row.checked_sub(entries.ncols());
+                            let at = below.map_or(first + row, |below| block.pattern()[below]);
+                            add(at, first + own, entries[(row, own)]);
+                        }
+                    }
+                }
+            }
+        }
     }
 
     /// `log det A = 2 Σ log L_ii`: the determinant itself may be far outside the range of `f64`.

@@ -31,7 +31,7 @@ mod sparse_lu;
 mod symmetric_matrix;
 
 pub use block_sparse::BlockSparse;
-pub use cholesky::{Cholesky, FactorForm};
+pub use cholesky::{Cholesky, FactorForm, Scratch};
 pub use dense_eigen::{Wanted, eigen, eigen_complex};
 pub use dissected_cholesky::{DissectedCholesky, DissectedPattern};
 pub use dissections::Dissections;

@@ -4,12 +4,7 @@ use crate::curve::Sums;
 use crate::hexatic::of_cell;
 use crate::{Curve, Frame, Plan, Quantity, Recording};
 use rayon::prelude::*;
-use rstar::RTree;
-use rstar::primitives::GeomWithData;
-use voronudge_geometry::{Domain, Vector, areas, shape_tensors};
-
-/// Cells by where they are, with those images that come near the box.
-pub(crate) type Places = RTree<GeomWithData<[f64; 2], usize>>;
+use voronudge_geometry::{Places, Vector, areas, shape_tensors};
 
 /// Correlations of velocities, of hexatic order and of places.
 pub(crate) fn correlations(recording: &Recording, plan: &Plan) -> [Curve; 3] {
@@ -61,12 +56,10 @@ fn of_frame(frame: &Frame, plan: &Plan) -> [Sums; 3] {
 /// The cells around a place but at none, and in which bin of distances each is.
 fn others<'a>(places: &'a Places, r: Vector<f64>, plan: &Plan) -> impl Iterator<Item = (usize, usize)> + 'a {
     let (bin, bins) = (plan.bin(), plan.bins);
-    let reach = bins as f64 * bin;
-    places.locate_within_distance([r.x, r.y], reach * reach).filter_map(move |found| {
-        let [x, y] = *found.geom();
-        let distance = (Vector::new(x, y) - r).norm();
+    places.within(r, bins as f64 * bin).filter_map(move |(other, way)| {
+        let distance = way.norm();
         let ring = (distance / bin) as usize;
-        (distance > 0.0 && ring < bins).then_some((found.data, ring))
+        (distance > 0.0 && ring < bins).then_some((other, ring))
     })
 }
 
@@ -107,21 +100,8 @@ pub(crate) fn wrapped(frame: &Frame, cell: usize) -> Vector<f64> {
     frame.tessellation.domain().wrap(frame.positions[cell])
 }
 
-/// The cells of a frame, with their images within reach of the box.
+/// The cells of a frame.
 pub(crate) fn places(frame: &Frame, reach: f64) -> Places {
-    let mut all = Vec::with_capacity(frame.tracks.len());
-    for cell in 0..frame.tracks.len() {
-        let r = wrapped(frame, cell);
-        all.push(GeomWithData::new([r.x, r.y], cell));
-        let Domain::Periodic(own) = frame.tessellation.domain() else { continue };
-        let [width, height] = own.lengths();
-        for n in (-2..=2).flat_map(|ny| (-2..=2).map(move |nx| [nx, ny])).filter(|n| *n != [0, 0]) {
-            let image = r + own.translation(n);
-            let near = |value: f64, length: f64| (-reach..length + reach).contains(&value);
-            if near(image.x, width) && near(image.y, height) {
-                all.push(GeomWithData::new([image.x, image.y], cell));
-            }
-        }
-    }
-    RTree::bulk_load(all)
+    let cells = (0..frame.tracks.len()).map(|cell| frame.positions[cell]);
+    Places::new(cells, frame.tessellation.domain(), reach)
 }

@@ -93,15 +93,12 @@ impl Neighbourhood {
         without: &[usize],
     ) -> Result<Self, Error> {
         let (mut cells, mut positions, mut targets) = (Vec::new(), Vec::new(), Vec::new());
-        for cell in scene.cells(undone, without) {
-            let d = scene.between(centre, cell.position);
-            if d.norm_squared() < CONTEXT * CONTEXT {
-                if let Some(target) = cell.target.filter(|_| d.norm_squared() < COMPARED * COMPARED) {
-                    targets.push((cells.len(), target));
-                }
-                cells.push(cell);
-                positions.push(centre + d);
+        for (cell, d) in scene.cells_around(centre, CONTEXT, undone, without) {
+            if let Some(target) = cell.target.filter(|_| d.norm_squared() < COMPARED * COMPARED) {
+                targets.push((cells.len(), target));
             }
+            cells.push(cell);
+            positions.push(centre + d);
         }
         let tessellation = tessellate(&positions)?;
         let flow = match &scene.measured.velocities {

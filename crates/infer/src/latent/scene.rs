@@ -3,7 +3,8 @@
 use super::law::Law;
 use super::{Change, ChangeKind};
 use crate::{Error, Observation, Velocities};
-use voronudge_geometry::Vector;
+use std::sync::OnceLock;
+use voronudge_geometry::{Places, Vector};
 
 /// Where a cell of a completed frame comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -37,9 +38,15 @@ pub(super) struct Scene<'a> {
     pub origins: Vec<Origin>,
     /// The measured data without their background, as the model is to explain them.
     pub targets: Vec<Option<Vector<f64>>>,
-    /// Squared residuals in units of their variance, of the data of the completed frame that count.
-    pub squares: Vec<(Vector<f64>, f64)>,
+    /// Squared residuals in units of their variance, of the data of the completed frame that count, and where they are.
+    squares: (Places, Vec<f64>),
+    /// Where its cells are, once that is asked for.
+    places: OnceLock<Places>,
 }
+
+/// Distance, in ℓ₀, within which anything is looked for.
+const REACH: f64 = 6.0;
+const MARGIN: f64 = 1e-6;
 
 impl<'a> Scene<'a> {
     /// A frame as detected.
@@ -50,7 +57,8 @@ impl<'a> Scene<'a> {
             observation: measured.clone(),
             origins: (0..measured.positions.len()).map(Origin::Detected).collect(),
             targets: Vec::new(),
-            squares: Vec::new(),
+            squares: (Places::new([], measured.tessellation.domain(), REACH), Vec::new()),
+            places: OnceLock::new(),
         }
     }
 
@@ -87,6 +95,7 @@ impl<'a> Scene<'a> {
             }
             false => observation,
         };
+        self.places = OnceLock::new();
         Ok(())
     }
 
@@ -108,24 +117,40 @@ impl<'a> Scene<'a> {
                 self.targets[*cell] = all[*cell];
             }
         }
-        let of = |row: &super::law::Judged| {
-            (self.observation.position_of_datum(row.datum), row.residual.norm_squared() / row.variance)
-        };
-        self.squares = judged.iter().map(of).collect();
+        let places = judged.iter().map(|row| self.observation.position_of_datum(row.datum));
+        self.squares = (
+            Places::new(places, self.measured.tessellation.domain(), REACH),
+            judged.iter().map(|row| row.residual.norm_squared() / row.variance).collect(),
+        );
     }
 
-    /// The cells, with some of the changes undone, without some further detections.
-    pub fn cells(&self, undone: &[usize], without: &[usize]) -> Vec<Cell> {
-        let own = self.origins.iter().zip(&self.observation.positions).filter(|(origin, _)| match origin {
+    /// The cells around a place, and the ways to them, with some of the changes undone, without some further detections.
+    pub fn cells_around(
+        &self,
+        centre: Vector<f64>,
+        distance: f64,
+        undone: &[usize],
+        without: &[usize],
+    ) -> Vec<(Cell, Vector<f64>)> {
+        let positions = &self.observation.positions;
+        let places = self.places.get_or_init(|| {
+            Places::new(positions.iter().copied(), self.measured.tessellation.domain(), REACH)
+        });
+        // Rounding may put a cell on either side; in a small box one may be met twice.
+        let mut near: Vec<usize> = places.within(centre, distance + MARGIN).map(|(cell, _)| cell).collect();
+        near.sort_unstable();
+        near.dedup();
+        let own = near.into_iter().filter(|cell| match &self.origins[*cell] {
             Origin::Detected(cell) => !without.contains(cell),
             Origin::Added(index, _) => !undone.contains(index),
         });
-        let mut cells: Vec<Cell> = own.map(|(origin, position)| self.cell(*origin, *position)).collect();
         let restored = undone.iter().flat_map(|index| &self.changes[*index].removed);
-        for cell in restored.filter(|cell| !without.contains(cell)) {
-            cells.push(self.cell(Origin::Detected(*cell), self.measured.positions[*cell]));
-        }
-        cells
+        let restored = restored.filter(|cell| !without.contains(cell));
+        own.map(|cell| self.cell(self.origins[cell], positions[cell]))
+            .chain(restored.map(|cell| self.cell(Origin::Detected(*cell), self.measured.positions[*cell])))
+            .map(|cell| (cell, self.between(centre, cell.position)))
+            .filter(|(_, way)| way.norm_squared() < distance * distance)
+            .collect()
     }
 
     /// Whether cells have labels.
@@ -181,11 +206,11 @@ impl<'a> Scene<'a> {
 
     /// Share of squared residuals near a place, each counted by its logarithm.
     pub fn unexplained(&self, place: Vector<f64>, radius: f64) -> f64 {
-        self.squares
-            .iter()
-            .filter(|(at, _)| self.between(place, *at).norm_squared() < radius * radius)
-            .map(|(_, square)| (square / super::law::FREEDOM).ln_1p())
-            .sum()
+        let (places, squares) = &self.squares;
+        let mut near: Vec<usize> = places.within(place, radius).map(|(datum, _)| datum).collect();
+        near.sort_unstable();
+        near.dedup();
+        near.iter().map(|datum| (squares[*datum] / super::law::FREEDOM).ln_1p()).sum()
     }
 }
 

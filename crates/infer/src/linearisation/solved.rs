@@ -214,10 +214,10 @@ impl Solved<'_> {
     /// The part of A that a direction changes, times a vector.
     fn held_times(&self, direction: &Weighting, u: &[f64]) -> Vec<f64> {
         let u = to_lanes::<1>(u, u.len());
-        let mut sum = vec![[[0.0]; 2]; u.len()];
+        let (mut sum, mut room) = (vec![[[0.0]; 2]; u.len()], Vec::new());
         direction.held.stiffness.add_products(&u, &mut sum);
         for (group, weight) in self.parts.iter().zip(direction.of_groups()).filter(|(_, w)| *w != 0.0) {
-            group.add_products(weight, &u, &mut sum);
+            group.add_products(weight, &u, &mut sum, &mut room);
         }
         from_lanes(&sum, 1)
     }

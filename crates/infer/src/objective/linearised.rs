@@ -175,7 +175,7 @@ impl<'a> Objective<'a> {
                                 .map(|cell| frame.positions[*cell])
                                 .map(|r| Some([r[0], r[1], 0.0]))
                                 .collect(),
-                            chains: Vec::new(),
+                            chains: (0..cells.len() as u32).collect(),
                             dissections: frame.dissections(),
                             left_out: frame.positions.len() - cells.len(),
                         })

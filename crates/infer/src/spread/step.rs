@@ -5,6 +5,7 @@ use super::inverse::inverse;
 use super::{Fitting, Linearised, Spread, State};
 use crate::Error;
 use crate::least_squares::{invert, within_bounds};
+use crate::linearisation::Accuracy;
 use crate::noisy_fit::STEPS_PER_ROUND;
 use crate::search::refine;
 use nalgebra::{DMatrix, DVector};
@@ -87,7 +88,8 @@ impl Fitting<'_> {
         let frames = linearised.equations.frames.par_iter().zip(&gram.solved);
         let of_frames = frames
             .map(|(frame, solved)| {
-                let own = frame.eliminate(state.levels.spring(), &[])?.nudge_step(&free_step);
+                let spring = state.levels.spring();
+                let own = frame.eliminate(spring, &[], Accuracy::OfResults)?.nudge_step(&free_step);
                 Ok((DVector::from_vec(own) - solved * &of_cells).as_slice().to_vec())
             })
             .collect::<Result<Vec<_>, Error>>()?;

@@ -70,7 +70,7 @@ impl MovieObjective<'_> {
         else {
             return Ok(HintsOfDrives::default());
         };
-        let step = equations.step(0.0, &[])?.step;
+        let step = equations.whole_step()?.step;
         let at = self.space.dimension() + 2 * block;
         let (c, v) = ([step[at], step[at + 1]], covariance);
         // Each beside the other if that is there, and alone if it is not.

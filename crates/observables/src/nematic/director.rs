@@ -1,8 +1,8 @@
 //! The director field: the shapes of cells, smoothed.
 
 use crate::Frame;
-use crate::pairs::{Places, places, wrapped};
-use voronudge_geometry::{Domain, Vector, shape_tensors};
+use crate::pairs::{places, wrapped};
+use voronudge_geometry::{Domain, Places, Vector, shape_tensors};
 
 /// Widths of the Gaussian beyond which cells are left out: their weights are below 3·10⁻⁴.
 pub(super) const CUT: f64 = 4.0;
@@ -51,11 +51,9 @@ impl<'a> DirectorField<'a> {
         let per_square = 1.0 / (self.width * self.width);
         let reach = CUT * self.width;
         let mut local = Local::default();
-        for found in self.places.locate_within_distance([r.x, r.y], reach * reach) {
-            let [x, y] = *found.geom();
-            let d = Vector::new(x, y) - r;
+        for (cell, d) in self.places.within(r, reach) {
             let weight = (-0.5 * d.norm_squared() * per_square).exp();
-            for (k, own) in self.shapes[found.data].iter().enumerate() {
+            for (k, own) in self.shapes[cell].iter().enumerate() {
                 local.value[k] += weight * own;
                 for axis in 0..2 {
                     local.gradient[axis][k] += weight * own * d[axis] * per_square;
