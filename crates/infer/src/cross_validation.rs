@@ -178,9 +178,9 @@ fn test(
         refine(&objective, known, STEPS)?.parameters
     } else {
         let naive = least_squares::fit(&training, structure, space)?;
-        match kept.iter().map(|&index| untouched(&frames[index], &held_out[index])).collect() {
+        let untouched = kept.iter().map(|&index| untouched(&frames[index], &held_out[index]));
+        match untouched.collect::<Option<Vec<Vec<bool>>>>() {
             Some(untouched) => {
-                let untouched: Vec<Vec<bool>> = untouched;
                 let mut start = known;
                 start[..naive.len()].copy_from_slice(&naive);
                 for (nudge, untouched) in start[naive.len()..].chunks_exact_mut(2).zip(untouched.concat()) {

@@ -46,6 +46,8 @@ pub(super) struct Scene<'a> {
 
 /// Distance, in ℓ₀, within which anything is looked for.
 const REACH: f64 = 6.0;
+
+/// What rounding may make of a distance.
 const MARGIN: f64 = 1e-6;
 
 impl<'a> Scene<'a> {

@@ -4,9 +4,11 @@ use super::{Held, Linearisation};
 use crate::rows::Pair;
 use voronudge_linalg::{Cholesky, Scratch};
 
-/// Iterations after which factors are taken instead, and after which it is asked whether that will come to pass.
+/// Iterations after which factors are taken instead.
 const MOST: usize = 400;
-const MANY: usize = 80;
+
+/// The iteration at which it is asked whether, going on as before, that would come to pass.
+const ASKED: usize = 80;
 
 /// A = JᵀJ + kHᵀH + λ and what stiffness there is beside, with its preconditioner M.
 pub(super) struct Operator<'a> {
@@ -52,7 +54,7 @@ impl Operator<'_> {
             let is_slow = |(size, first): (&f64, &f64)| {
                 (size / first).ln() > 2.0 * tolerance.ln() * iteration as f64 / MOST as f64
             };
-            if iteration == MANY && size.iter().zip(&first).any(is_slow) {
+            if iteration == ASKED && size.iter().zip(&first).any(is_slow) {
                 return None;
             }
             if size.iter().zip(&enough).all(|(size, enough)| size <= enough) {

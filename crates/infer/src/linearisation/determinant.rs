@@ -21,8 +21,7 @@ use rayon::prelude::*;
 /// Unknowns below which determinants are those of factors.
 const MANY: usize = 40_000;
 
-/// Vectors of random signs: so many times as many as there are lanes. In a liquid of 4000 cells they shift σ_v by some 3 %, where its standard error is 2 %;
-/// both fall with the root of the number of cells.
+/// Vectors of random signs: so many times as many as there are lanes. They moved σ_v by .8 % in a liquid of 4000 cells, by less than .4 % in one of 10⁴.
 const DRAWS: usize = 2;
 
 impl Linearisation {
