@@ -178,16 +178,13 @@ fn test(
         refine(&objective, known, STEPS)?.parameters
     } else {
         let naive = least_squares::fit(&training, structure, space)?;
-        let untouched = kept.iter().map(|&index| untouched(&frames[index], &held_out[index]));
-        match untouched.collect::<Option<Vec<Vec<bool>>>>() {
-            Some(untouched) => {
+        let touched = kept.iter().map(|&index| touched(&frames[index], &held_out[index]));
+        match touched.collect::<Option<Vec<Vec<bool>>>>() {
+            Some(touched) => {
                 let mut start = known;
                 start[..naive.len()].copy_from_slice(&naive);
-                for (nudge, untouched) in start[naive.len()..].chunks_exact_mut(2).zip(untouched.concat()) {
-                    if !untouched {
-                        nudge.fill(0.0);
-                    }
-                }
+                let nudges = start[naive.len()..].chunks_exact_mut(2).zip(touched.concat());
+                nudges.filter(|(_, touched)| *touched).for_each(|(nudge, _)| nudge.fill(0.0));
                 refine(&objective, start, STEPS)?.parameters
             }
             None => {
@@ -200,9 +197,10 @@ fn test(
     Ok(Some(predict(frames, structure, coefficients.as_slice(), held_out)))
 }
 
-/// Which cells are so far from those whose velocities are held out that these say nothing of their nudges: a velocity depends on the cells within two rings,
-/// and they are in as much touch with each other. None where velocities are not of cells.
-fn untouched(frame: &Observation, held_out: &[bool]) -> Option<Vec<bool>> {
+/// Which cells are so near those whose velocities are held out that these say something of their nudges: a velocity depends on the cells within two rings,
+/// which are in as much touch with others. None where velocities are not of cells, or such cells are more than half: what begins where it was measured has to
+/// be led from loose to tight data.
+fn touched(frame: &Observation, held_out: &[bool]) -> Option<Vec<bool>> {
     let Velocities::OfCells(_) = frame.velocities else { return None };
     let mut touched = held_out.to_vec();
     for _ in 0..RINGS {
@@ -212,7 +210,7 @@ fn untouched(frame: &Observation, held_out: &[bool]) -> Option<Vec<bool>> {
         }
     }
     let few = 2 * touched.iter().filter(|touched| **touched).count() <= touched.len();
-    few.then(|| touched.into_iter().map(|touched| !touched).collect())
+    few.then_some(touched)
 }
 
 /// What given coefficients make of some velocities at the measured positions.

@@ -388,7 +388,7 @@ fn product(left: &[f64], right: &[f64], n: usize, a: usize, b: usize) -> f64 {
     left[a * n..(a + 1) * n].iter().zip(&right[b * n..(b + 1) * n]).map(|(x, y)| x * y).sum()
 }
 
-/// `bᵀA⁻¹b` of right-hand sides a and b, of n numbers each, with their solutions and what these leave, if anything: that adds what makes the error of second
+/// `bᵀA⁻¹a` of two right-hand sides, of n numbers each, with their solutions and what these leave, if anything: that adds what makes the error of second
 /// order.
 fn eliminated(right: &[f64], solved: &[f64], left: &[f64], n: usize, a: usize, b: usize) -> f64 {
     let of_left = if left.is_empty() { 0.0 } else { product(left, solved, n, b, a) };

@@ -189,7 +189,7 @@ impl NormalEquations {
     /// The way to where the problem is least.
     pub fn whole_step(&self) -> Result<Step, Error> {
         let p = self.free.len();
-        self.stepped(0.0, &[], &DMatrix::zeros(p, p), Accuracy::OfResults)
+        self.step_near(0.0, &[], &DMatrix::zeros(p, p))
     }
 
     /// A step to be kept, with coefficients that are also known, to be what they are, with some information in units of 1/σ_v².

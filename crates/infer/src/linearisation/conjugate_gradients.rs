@@ -50,11 +50,9 @@ impl Operator<'_> {
         let mut direction = next.clone();
         let mut size = products(&left, &direction);
         let (first, enough) = (size, size.map(|size| tolerance.powi(2) * size));
+        let by_then = tolerance.powf(2.0 * ASKED as f64 / MOST as f64);
         for iteration in 0..MOST {
-            let is_slow = |(size, first): (&f64, &f64)| {
-                (size / first).ln() > 2.0 * tolerance.ln() * iteration as f64 / MOST as f64
-            };
-            if iteration == ASKED && size.iter().zip(&first).any(is_slow) {
+            if iteration == ASKED && size.iter().zip(&first).any(|(size, first)| *size > by_then * first) {
                 return None;
             }
             if size.iter().zip(&enough).all(|(size, enough)| size <= enough) {

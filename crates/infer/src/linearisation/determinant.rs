@@ -4,7 +4,7 @@
 //! log det A = log det M + tr log (L⁻¹AL⁻ᵀ) ≈ log det M + mean over z of  zᵀz Σ_i w_i log θ_i,          M = LLᵀ
 //! ```
 //!
-//! M is A without what couples different chains, so that little is left to chance; θ_i and √w_i are the eigenvalues of the tridiagonal matrix that
+//! M is A without what couples different chains, so that less is left to chance; θ_i and √w_i are the eigenvalues of the tridiagonal matrix that
 //! conjugate gradients for `Lz` go through, and the first components of its eigenvectors. The signs z are the same ones at all levels.
 
 use super::Linearisation;

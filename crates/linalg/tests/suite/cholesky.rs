@@ -1,7 +1,7 @@
 //! Cholesky factors against matrices of which all is known.
 
 use nalgebra::DMatrix;
-use voronudge_linalg::{Cholesky, Error, FactorForm, SymmetricMatrix};
+use voronudge_linalg::{Cholesky, Error, FactorForm, Scratch, SymmetricMatrix};
 
 #[test]
 fn an_indefinite_matrix_is_refused() {
@@ -45,6 +45,36 @@ fn times(matrix: &SymmetricMatrix, x: &[f64]) -> Vec<f64> {
         }
     }
     product
+}
+
+/// Side by side or one after the other, solutions are the same; the columns of `PᵀL`, from those of the identity, make the matrix.
+#[test]
+fn vectors_side_by_side_are_solved_and_coloured() {
+    let matrix = laplacian(6, 0.3);
+    let n = matrix.order();
+    for form in FORMS {
+        let factor = factor(&matrix, form);
+        let given: Vec<f64> = (0..3 * n).map(|i| (i as f64).sin()).collect();
+        let mut one_by_one = given.clone();
+        factor.solve(&mut one_by_one);
+        let mut scratch = Scratch::default();
+        // One right-hand side, then three in memory that has to grow.
+        for sides in [1, 3] {
+            let mut beside: Vec<f64> = (0..sides * n).map(|i| given[i % sides * n + i / sides]).collect();
+            factor.solve_side_by_side(&mut beside, &mut scratch);
+            let is_same = |i: usize| (beside[i] - one_by_one[i % sides * n + i / sides]).abs() < 1e-12;
+            assert!((0..sides * n).all(is_same), "{form:?} {sides}");
+        }
+        let mut root = DMatrix::<f64>::identity(n, n);
+        factor.colour_side_by_side(root.as_mut_slice());
+        // Side by side in memory are rows, which are columns here.
+        let product = root.tr_mul(&root);
+        let mut expected = DMatrix::zeros(n, n);
+        for (row, column, value) in matrix.entries() {
+            (expected[(row, column)], expected[(column, row)]) = (value, value);
+        }
+        assert!((product - expected).amax() < 1e-12, "{form:?}");
+    }
 }
 
 /// Two right-hand sides at once.
