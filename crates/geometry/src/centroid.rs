@@ -1,9 +1,8 @@
 //! Where the centroid of a cell's polygon is, seen from the cell.
 
-use crate::{CellPolygon, Scalar, Tessellation, Vector, cross};
-use num_dual::DualSVec64;
+use crate::{Arithmetic, CellPolygon, Tangent, Tessellation, Vector, cross};
 
-impl<S: Scalar> CellPolygon<S> {
+impl<S: Arithmetic> CellPolygon<S> {
     /// Centroid relative to the cell: `Σ (p + q) (p × q) / (6A)` over the sides from p to q.
     pub fn centroid(&self) -> Vector<S> {
         let corners = self.corners();
@@ -14,7 +13,7 @@ impl<S: Scalar> CellPolygon<S> {
             let (p, q) = (corner.centre, corners[next].centre);
             sum += (p + q) * cross(p, q);
         }
-        sum * (self.shape().area * 6.0).recip()
+        sum * (self.shape().area * 6.0).inverse()
     }
 }
 
@@ -26,17 +25,15 @@ pub fn centroid_slopes(
     cell: usize,
     mut visit: impl FnMut(usize, [f64; 4]),
 ) {
-    type Dual = DualSVec64<2>;
-    let ring: Vec<Vector<f64>> = tessellation.displacements(positions, cell).collect();
+    type Dual = Tangent<f64, 2>;
+    let ring = || tessellation.displacements(positions, cell);
     let mut polygon = CellPolygon::default();
-    for (seeded, &neighbour) in tessellation.neighbours(cell).iter().enumerate() {
-        polygon.fill_ring(ring.iter().enumerate().map(|(m, d)| {
-            let (x, y) = (Dual::from_re(d.x), Dual::from_re(d.y));
-            if m == seeded { Vector::new(x.derivative(0), y.derivative(1)) } else { Vector::new(x, y) }
-        }));
-        let at = polygon.centroid();
-        let slope = |x: Dual| x.eps.0.map_or([0.0; 2], |eps| [eps[0], eps[1]]);
-        let ([xx, xy], [yx, yy]) = (slope(at.x), slope(at.y));
-        visit(neighbour as usize, [xx, xy, yx, yy]);
+    polygon.fill_ring(ring().map(|d| Vector::new(Dual::held(d.x), Dual::held(d.y))));
+    for ((m, d), &neighbour) in ring().enumerate().zip(tessellation.neighbours(cell)) {
+        polygon.with_neighbour(m, Vector::new(Dual::along(d.x, 0), Dual::along(d.y, 1)), |polygon| {
+            let at = polygon.centroid();
+            let ([xx, xy], [yx, yy]) = (at.x.slopes, at.y.slopes);
+            visit(neighbour as usize, [xx, xy, yx, yy]);
+        });
     }
 }

@@ -66,7 +66,7 @@ pub use plane::{
 };
 pub use polygon::{CellPolygon, Shape, areas, perimeters, polygons, shape_tensors};
 pub use region::Region;
-pub use scalar::{Arithmetic, Scalar, lift};
+pub use scalar::{Arithmetic, Elementary, Scalar, lift};
 pub use side::Side;
 pub use tangent::Tangent;
 pub use tessellation::{Tessellation, Triangle};

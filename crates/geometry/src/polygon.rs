@@ -76,15 +76,21 @@ impl<S: Arithmetic> CellPolygon<S> {
         // Slices of one length, and loops over indices: what is called must be compiled into the caller, for its processor.
         let ring = &self.ring[..sides];
         let (corners, directions) = (&mut self.corners[..sides], &mut self.directions[..sides]);
-        let Some(last) = sides.checked_sub(1) else {
-            return;
-        };
         for m in 0..sides {
-            corners[m] = Corner::new(ring[m], ring[if m == last { 0 } else { m + 1 }]);
+            corners[m] = Corner::new(ring[m], ring[if m + 1 == sides { 0 } else { m + 1 }]);
             directions[m] = side_direction(ring[m]);
         }
+        self.measure();
+    }
+
+    #[inline(always)]
+    fn measure(&mut self) {
+        let sides = self.ring.len();
+        let (corners, directions) = (&self.corners[..sides], &self.directions[..sides]);
+        let zero = S::constant(0.0);
         let (mut perimeter, mut twice_area) = (zero, zero);
-        let mut previous = corners[last].centre;
+        let Some(last) = corners.last() else { return };
+        let mut previous = last.centre;
         for m in 0..sides {
             let c = corners[m].centre;
             twice_area += cross(previous, c);
@@ -92,6 +98,22 @@ impl<S: Arithmetic> CellPolygon<S> {
             previous = c;
         }
         self.shape = Shape { area: twice_area * 0.5, perimeter };
+    }
+
+    /// Gives the polygon that has neighbour `m` elsewhere to a function. Only what this neighbour touches is worked out anew, and put back.
+    #[inline(always)]
+    pub fn with_neighbour(&mut self, m: usize, displacement: Vector<S>, work: impl FnOnce(&Self)) {
+        let (before, after) = (self.preceding(m), self.following(m));
+        let (ring, direction, shape) = (self.ring[m], self.directions[m], self.shape);
+        let corners = [self.corners[before], self.corners[m]];
+        self.ring[m] = displacement;
+        self.directions[m] = side_direction(displacement);
+        self.corners[before] = Corner::new(self.ring[before], displacement);
+        self.corners[m] = Corner::new(displacement, self.ring[after]);
+        self.measure();
+        work(self);
+        (self.ring[m], self.directions[m], self.shape) = (ring, direction, shape);
+        [self.corners[before], self.corners[m]] = corners;
     }
 
     /// Number of sides, of vertices and of neighbours.

@@ -34,6 +34,58 @@ pub trait Arithmetic:
     fn root(self) -> Self;
 }
 
+/// What a formula needs that has branches, which are taken on the real part, or other functions. Every [`Scalar`] has it, and so have its
+/// [`Tangent`](crate::Tangent)s.
+pub trait Elementary: Arithmetic {
+    /// The real part.
+    fn real(&self) -> f64;
+
+    /// `sin x`
+    fn sine(self) -> Self;
+
+    /// `cos x`
+    fn cosine(self) -> Self;
+
+    /// `eˣ`
+    fn exponential(self) -> Self;
+
+    /// `xⁿ`
+    #[inline(always)]
+    fn power(self, n: u32) -> Self {
+        let (mut power, mut square, mut left) = (Self::constant(1.0), self, n);
+        while left > 0 {
+            if left % 2 == 1 {
+                power *= square;
+            }
+            square *= square;
+            left /= 2;
+        }
+        power
+    }
+}
+
+impl<T: DualNumCopy<Primitive = f64>> Elementary for T {
+    #[inline(always)]
+    fn real(&self) -> f64 {
+        self.re()
+    }
+
+    #[inline(always)]
+    fn sine(self) -> Self {
+        self.sin()
+    }
+
+    #[inline(always)]
+    fn cosine(self) -> Self {
+        self.cos()
+    }
+
+    #[inline(always)]
+    fn exponential(self) -> Self {
+        self.exp()
+    }
+}
+
 impl<T: DualNumCopy<Primitive = f64>> Arithmetic for T {
     #[inline(always)]
     fn constant(value: f64) -> Self {
@@ -53,13 +105,9 @@ impl<T: DualNumCopy<Primitive = f64>> Arithmetic for T {
 
 /// A real number or a dual number over `f64`.
 ///
-/// Every geometric and mechanical formula is generic over this trait, or over its [`Arithmetic`]. Branches are taken on [`Scalar::real`] only.
-pub trait Scalar: DualNumCopy<Primitive = f64> + Arithmetic {
-    /// The real part.
-    fn real(&self) -> f64 {
-        self.re()
-    }
-}
+/// Every geometric and mechanical formula is generic over this trait, or over what it needs of it: [`Elementary`] functions, or [`Arithmetic`] alone.
+/// Branches are taken on [`Elementary::real`] only.
+pub trait Scalar: DualNumCopy<Primitive = f64> + Elementary {}
 
 impl<T: DualNumCopy<Primitive = f64>> Scalar for T {}
 

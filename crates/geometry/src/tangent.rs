@@ -1,6 +1,6 @@
 //! Dual numbers over any arithmetic.
 
-use crate::Arithmetic;
+use crate::{Arithmetic, Elementary};
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number with its slopes along `D` directions.
@@ -62,6 +62,31 @@ impl<S: Arithmetic, const D: usize> Arithmetic for Tangent<S, D> {
         let root = self.value.root();
         let change = root.inverse() * 0.5;
         self.slopes(root, |slope| slope * change)
+    }
+}
+
+impl<S: Elementary, const D: usize> Elementary for Tangent<S, D> {
+    #[inline(always)]
+    fn real(&self) -> f64 {
+        self.value.real()
+    }
+
+    #[inline(always)]
+    fn sine(self) -> Self {
+        let change = self.value.cosine();
+        self.slopes(self.value.sine(), |slope| slope * change)
+    }
+
+    #[inline(always)]
+    fn cosine(self) -> Self {
+        let change = -self.value.sine();
+        self.slopes(self.value.cosine(), |slope| slope * change)
+    }
+
+    #[inline(always)]
+    fn exponential(self) -> Self {
+        let exponential = self.value.exponential();
+        self.slopes(exponential, |slope| slope * exponential)
     }
 }
 

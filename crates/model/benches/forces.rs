@@ -7,8 +7,11 @@
 use divan::{Bencher, counter::ItemsCount};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use voronudge_geometry::{Domain, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{BlockMatrix, Effect, HalfEdgeForces, JacobianBuilder, Model, Parameters, jvp, vjp};
+use std::sync::Arc;
+use voronudge_geometry::{Domain, Grid, PeriodicBox, Tessellation, Vector};
+use voronudge_model::{
+    BlockMatrix, Effect, Environment, HalfEdgeForces, JacobianBuilder, Model, Parameters, VectorMap, jvp, vjp,
+};
 
 fn main() {
     divan::main();
@@ -65,29 +68,47 @@ fn transposed_jacobian_times_vector(bencher: Bencher, side: usize) {
         .bench_local(|| vjp(&tessellation, divan::black_box(&positions), &model, &positions));
 }
 
-/// The base model and one further effect.
-const EFFECTS: [&str; 4] = ["alpha_area", "nematic_stress", "p0_gradient", "internal_drag"];
-
-fn with(id: &str) -> (Vec<Vector<f64>>, Tessellation, Model<f64>) {
-    let (positions, tessellation, model) = tissue(30);
-    let effect = Effect::from_id(id).expect("an effect of the catalogue");
-    let columns = effect.columns(&model.environment, tessellation.domain()).expect("an effect that applies");
-    let model = columns.into_iter().fold(model, |model, column| model.with(column, 0.1));
-    (positions, tessellation, model)
+/// The base model and one further effect; in open fields those that periodic boxes do not have.
+fn effects() -> impl Iterator<Item = &'static str> {
+    std::iter::once(BASE).chain(Effect::all().iter().map(|effect| effect.id).filter(|id| with(id).is_some()))
 }
 
-#[divan::bench(args = EFFECTS)]
+/// Nothing else.
+const BASE: &str = "(base)";
+
+fn with(id: &str) -> Option<(Vec<Vector<f64>>, Tessellation, Model<f64>)> {
+    let (positions, tessellation, model) = tissue(30);
+    let Some(effect) = Effect::from_id(id) else { return Some((positions, tessellation, model)) };
+    let open = Tessellation::new(&positions, Domain::Open).expect("distinct cells");
+    let grid = Grid::new([-1.0; 2], [1.0; 2], [32; 2]).expect("a grid");
+    let surroundings = || {
+        let map = VectorMap::new(grid, (0..grid.len()).map(|k| grid.centre(k)).collect())?;
+        Environment::default()
+            .with_map(map)
+            .with_labels((0..positions.len()).map(|cell| Some((cell % 3) as i64)).collect())?
+            .with_earlier(positions.iter().map(|r| Some(*r)).collect())?
+            .with_beyond_edge((0..positions.len()).map(|cell| !open.is_closed(cell)).collect())
+    };
+    let environment = Arc::new(surroundings().expect("what effects refer to"));
+    [tessellation, open].into_iter().find_map(|tessellation| {
+        let columns = effect.columns(&environment, tessellation.domain()).ok()?;
+        let model = columns.iter().fold(model.clone(), |model, column| model.with(*column, 0.1));
+        (!columns.is_empty()).then(|| (positions.clone(), tessellation, model.within(&environment)))
+    })
+}
+
+#[divan::bench(args = effects())]
 fn velocities_with(bencher: Bencher, id: &str) {
-    let (positions, tessellation, model) = with(id);
+    let (positions, tessellation, model) = with(id).expect("an effect that applies");
     let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
         forces.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
     });
 }
 
-#[divan::bench(args = EFFECTS, max_time = 5)]
+#[divan::bench(args = effects(), max_time = 5)]
 fn sparse_jacobian_with(bencher: Bencher, id: &str) {
-    let (positions, tessellation, model) = with(id);
+    let (positions, tessellation, model) = with(id).expect("an effect that applies");
     let (mut builder, mut matrix) = (JacobianBuilder::default(), BlockMatrix::default());
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
         builder.build(&tessellation, divan::black_box(&positions), &model, &mut matrix);

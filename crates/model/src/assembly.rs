@@ -6,12 +6,12 @@
 use crate::element_lanes::{elements_in_lanes, fit_lanes};
 use crate::mirrored_jacobian::signs_of;
 use crate::response::respond;
-use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces};
+use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces, WeightedTerm};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
 use std::sync::Arc;
-use voronudge_geometry::{BySides, CellPolygon, Domain, Scalar, Tessellation, Vector};
+use voronudge_geometry::{BySides, CellPolygon, Domain, Elementary, Scalar, Tessellation, Vector};
 
 /// Cells per task.
 pub(crate) const CHUNK: usize = BySides::MOST_CELLS;
@@ -96,7 +96,8 @@ impl<S: Scalar> HalfEdgeForces<S> {
         for (cell, v) in velocities.iter_mut().enumerate() {
             polygon.fill(tessellation, positions, cell);
             let own = &mut self.forces[tessellation.ring(cell)];
-            *v = VertexForces::of_cell(model, cell, polygon.shape()).on_ring(&polygon, own);
+            let site = model.site(cell, polygon.len(), positions[cell]);
+            *v = VertexForces::of_cell(model, site, polygon.shape()).on_ring(&polygon, own);
         }
         for image in 0..tessellation.len() {
             let ([x, y], cell) = (signs_of(image / cells, mirrors), image % cells);
@@ -231,22 +232,23 @@ pub(crate) fn element<S: Scalar>(
     polygon: &CellPolygon<S>,
     on_ring: &mut [Vector<S>],
 ) -> Vector<S> {
-    let mut on_cell = VertexForces::of_cell(model, cell, polygon.shape()).on_ring(polygon, on_ring);
+    let site = model.site(cell, neighbours.len(), position);
+    let mut on_cell = VertexForces::of_cell(model, site, polygon.shape()).on_ring(polygon, on_ring);
     if model.has_ring_terms() {
         let element =
             CellElement { cell, neighbours, polygon, position, domain, environment: &model.environment };
-        ring_terms(model, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
+        ring_terms(&model.terms, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
     }
     on_cell
 }
 
-/// Adds the forces of the ring terms of a model for one cell.
-pub(crate) fn ring_terms<S: Scalar>(
-    model: &Model<S>,
+/// Adds the forces of those terms that are ring terms, for one cell.
+pub(crate) fn ring_terms<S: Elementary>(
+    terms: &[WeightedTerm<S>],
     element: &CellElement<'_, S>,
     forces: &mut RingForces<'_, S>,
 ) {
-    for weighted in &model.terms {
+    for weighted in terms {
         weighted.term.act_on_ring(element, weighted.coefficient, forces);
     }
 }

@@ -1,7 +1,7 @@
 //! What a general term sees of a cell, and where it puts its forces.
 
 use crate::Environment;
-use voronudge_geometry::{CellPolygon, Domain, Scalar, Vector, dot, side_direction};
+use voronudge_geometry::{Arithmetic, CellPolygon, Domain, Elementary, Vector, dot};
 
 /// One cell with its ring, as a [`RingTerm`](crate::RingTerm) sees it.
 #[derive(Debug, Clone, Copy)]
@@ -20,28 +20,52 @@ pub struct CellElement<'a, S> {
     pub environment: &'a Environment,
 }
 
-impl<S: Scalar> CellElement<'_, S> {
+impl<S: Elementary> CellElement<'_, S> {
     /// Position of the cell relative to the environment's origin.
     pub fn from_origin(&self) -> Vector<S> {
-        let origin = self.environment.origin();
-        Vector::new(self.position.x - origin.x, self.position.y - origin.y)
+        from_origin(self.position, self.environment)
     }
 
     /// Length of side `m` and the unit vector along it, counter-clockwise.
     pub fn side(&self, m: usize) -> (S, Vector<S>) {
-        let (ring, corners) = (self.polygon.ring(), self.polygon.corners());
+        let corners = self.polygon.corners();
         let before = if m == 0 { corners.len() - 1 } else { m - 1 };
-        let direction = side_direction(ring[m]);
+        let direction = self.polygon.directions()[m];
         (dot(corners[m].centre - corners[before].centre, direction), direction)
     }
 
     /// Unit vector to each neighbour and distance of it.
     pub fn directions(&self) -> impl Iterator<Item = (Vector<S>, S)> {
         self.polygon.ring().iter().map(|d| {
-            let distance = dot(*d, *d).sqrt();
-            (*d * distance.recip(), distance)
+            let distance = dot(*d, *d).root();
+            (*d * distance.inverse(), distance)
         })
     }
+}
+
+/// Where a cell is, how many neighbours it has, and what is known of it.
+#[derive(Debug, Clone, Copy)]
+pub struct Site<'a, S> {
+    /// Index of the cell.
+    pub cell: usize,
+    /// Number of its neighbours.
+    pub neighbours: usize,
+    /// Position of the cell.
+    pub position: Vector<S>,
+    /// What surrounds and preceded the cells.
+    pub environment: &'a Environment,
+}
+
+impl<S: Arithmetic> Site<'_, S> {
+    /// Position of the cell relative to the environment's origin.
+    pub fn from_origin(&self) -> Vector<S> {
+        from_origin(self.position, self.environment)
+    }
+}
+
+fn from_origin<S: Arithmetic>(position: Vector<S>, environment: &Environment) -> Vector<S> {
+    let origin = environment.origin();
+    Vector::new(position.x - origin.x, position.y - origin.y)
 }
 
 /// The forces of one cell on its ring and on itself.
@@ -53,7 +77,7 @@ pub struct RingForces<'a, S> {
     pub(crate) on_cell: &'a mut Vector<S>,
 }
 
-impl<S: Scalar> RingForces<'_, S> {
+impl<S: Arithmetic> RingForces<'_, S> {
     /// A force on the cell itself: from outside, momentum is not conserved.
     pub fn on_cell(&mut self, force: Vector<S>) {
         *self.on_cell += force;

@@ -131,7 +131,7 @@ pub fn cell_derivatives<S: Scalar>(
         let mut factors = given.clone();
         factors.of_parameters[parameter as usize] = vec![factor; cells];
         let mut model = Model { responses: Vec::new(), ..model.clone() };
-        model.terms.retain(|weighted| !weighted.term.is_ring_term());
+        model.terms.retain(|weighted| weighted.term.is_shape_term());
         model.environment = Arc::new(Environment::clone(&model.environment).having(factors));
         model
     };

@@ -1,7 +1,7 @@
 //! One cell's element: forces on its vertices, handed on to the centres of its neighbours.
 
-use crate::{Model, WeightedTerm};
-use voronudge_geometry::{Arithmetic, CellPolygon, Shape, Vector, quarter_turn};
+use crate::{Model, Site, WeightedTerm};
+use voronudge_geometry::{Arithmetic, CellPolygon, Elementary, Shape, Vector, quarter_turn};
 
 /// The forces that a cell exerts on its vertices, as multiples of the gradients of its area and perimeter.
 #[derive(Debug, Clone, Copy)]
@@ -28,19 +28,26 @@ impl<S: Arithmetic> VertexForces<S> {
 
     /// The sum over terms for one cell of a model, with the parameters that are its own.
     #[inline(always)]
-    pub fn of_cell(model: &Model<S>, cell: usize, shape: Shape<S>) -> Self {
-        match model.environment.cells_differ() {
-            false => Self::of(&model.terms, shape),
-            true => {
-                let zero = S::constant(0.0);
-                let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
-                for weighted in &model.terms {
-                    let own = model.environment.cell_factors().term(weighted, cell);
-                    own.term.act_on_shape(shape, own.coefficient, &mut forces);
-                }
-                forces
-            }
+    pub fn of_cell(model: &Model<S>, site: Site<'_, S>, shape: Shape<S>) -> Self
+    where
+        S: Elementary,
+    {
+        if model.cells_are_alike() {
+            return Self::of(&model.terms, shape);
         }
+        let zero = S::constant(0.0);
+        let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
+        for weighted in &model.terms {
+            let (term, coefficient) = match weighted.term.modulated(&site) {
+                Some((term, weight)) => (term, weighted.coefficient * weight),
+                None => {
+                    let own = model.environment.cell_factors().term(weighted, site.cell);
+                    (own.term, own.coefficient)
+                }
+            };
+            term.act_on_shape(shape, coefficient, &mut forces);
+        }
+        forces
     }
 
     /// Adds `factor · ∂A/∂r_v` to every vertex.

@@ -1,12 +1,12 @@
 //! The derivatives of elements, by the positions of the cell and of its ring.
 
 use crate::block_matrix::Block;
-use crate::element_jacobian::{BlockOf, ByShape, ElementJacobian, seeded};
+use crate::element_jacobian::{BlockOf, ByShape, ElementJacobian, along, seeded};
 use crate::ring_jacobian::RingJacobian;
 use crate::{Model, VertexForces, WeightedTerm};
 use pulp::{Arch, Simd, WithSimd};
 use std::ops::Range;
-use voronudge_geometry::{Arithmetic, BySides, CellPolygon, Lanes, Tangent, Tessellation, Vector};
+use voronudge_geometry::{Arithmetic, BySides, CellPolygon, Lanes, Shape, Tangent, Tessellation, Vector};
 
 /// The derivatives of the elements that act on some cells: their own, and those of their neighbours.
 ///
@@ -70,6 +70,7 @@ struct Elements<'a> {
     in_lanes: Option<Vec<WeightedTerm<ByShape<Lanes>>>>,
     polygon: CellPolygon<f64>,
     one: Work<f64>,
+    on_ring: Vec<Vector<f64>>,
     several: Work<Lanes>,
     ring_terms: Option<RingJacobian>,
 }
@@ -84,9 +85,10 @@ impl<'a> Elements<'a> {
             tessellation,
             positions,
             model: model.map(Tangent::held),
-            in_lanes: (!model.environment.cells_differ()).then(|| model.terms.iter().map(in_lanes).collect()),
+            in_lanes: model.cells_are_alike().then(|| model.terms.iter().map(in_lanes).collect()),
             polygon: CellPolygon::default(),
             one: Work::default(),
+            on_ring: Vec::new(),
             several: Work::default(),
             ring_terms: model.has_ring_terms().then(|| RingJacobian::new(model)),
         }
@@ -118,9 +120,28 @@ impl<'a> Elements<'a> {
     }
 
     fn fill_one(&mut self, cell: usize, blocks: &mut [Block]) {
-        self.polygon.fill(self.tessellation, self.positions, cell);
-        let multiples = VertexForces::of_cell(&self.model, cell, seeded(self.polygon.shape()));
-        blocks.copy_from_slice(self.one.fill(&self.polygon, &multiples));
+        let Self { tessellation, positions, model, polygon, one, .. } = self;
+        polygon.fill(tessellation, positions, cell);
+        let (points, r, shape) = (polygon.len() + 1, positions[cell], polygon.shape());
+        let site = |position| model.site(cell, polygon.len(), position);
+        let held = Vector::new(Tangent::held(r.x), Tangent::held(r.y));
+        let multiples = VertexForces::of_cell(model, site(held), seeded(shape));
+        blocks.copy_from_slice(one.fill(polygon, &multiples));
+        if !model.has_modulated_terms() {
+            return;
+        }
+        // Coefficients change with the place of the cell.
+        let moved = Vector::new(Tangent::along(r.x, 0), Tangent::along(r.y, 1));
+        let shape = Shape { area: Tangent::held(shape.area), perimeter: Tangent::held(shape.perimeter) };
+        let multiples = VertexForces::of_cell(model, site(moved), shape);
+        self.on_ring.resize(polygon.len(), Vector::zeros());
+        for direction in 0..2 {
+            let on_cell = along(&multiples, direction).on_ring(polygon, &mut self.on_ring);
+            for (row, force) in blocks.chunks_exact_mut(points).zip([on_cell].iter().chain(&self.on_ring)) {
+                row[0][direction] += force.x;
+                row[0][2 + direction] += force.y;
+            }
+        }
     }
 }
 

@@ -38,6 +38,19 @@ pub(crate) fn held<S: Arithmetic>(multiples: &VertexForces<ByShape<S>>) -> Verte
     }
 }
 
+/// The derivatives of multiples along a direction.
+#[inline(always)]
+pub(crate) fn along<S: Arithmetic>(
+    multiples: &VertexForces<ByShape<S>>,
+    direction: usize,
+) -> VertexForces<S> {
+    VertexForces {
+        area: multiples.area.slopes[direction],
+        perimeter: multiples.perimeter.slopes[direction],
+        turned_perimeter: multiples.turned_perimeter.slopes[direction],
+    }
+}
+
 /// How the force on the vertex at the beginning of side `m` (and, reversed, on that at its end) changes with neighbour `m` by the direction of the side.
 #[inline(always)]
 pub(crate) fn turn<S: Arithmetic>(polygon: &CellPolygon<S>, m: usize, held: &VertexForces<S>) -> Outer<S> {

@@ -65,7 +65,7 @@ fn slope<S: Scalar>(value: &S) -> f64 {
 /// Models that can be evaluated in lanes: on plain numbers or dual numbers with one derivative, with the same functions of area and perimeter for all cells.
 pub(crate) fn fit_lanes<S: Scalar>(models: &[Model<S>]) -> bool {
     [TypeId::of::<f64>(), TypeId::of::<Dual64>()].contains(&TypeId::of::<S>())
-        && models.iter().all(|model| !model.has_ring_terms() && !model.environment.cells_differ())
+        && models.iter().all(|model| !model.has_ring_terms() && model.cells_are_alike())
 }
 
 /// The elements of a chunk of cells under models that [`fit_lanes`].

@@ -2,7 +2,7 @@
 
 use crate::CellFactors;
 use thiserror::Error;
-use voronudge_geometry::{Certificate, Domain, Grid, Scalar, Tessellation, Vector, areas};
+use voronudge_geometry::{Certificate, Domain, Elementary, Grid, Tessellation, Vector, areas};
 
 /// Why an environment cannot be used.
 #[derive(Debug, Clone, PartialEq, Error)]
@@ -59,7 +59,7 @@ impl VectorMap {
 
     /// The field at a position; zero outside the outermost centres. In a periodic box the image of the position that
     /// follows the first centre is looked up.
-    pub fn at<S: Scalar>(&self, position: Vector<S>, domain: Domain) -> Vector<S> {
+    pub fn at<S: Elementary>(&self, position: Vector<S>, domain: Domain) -> Vector<S> {
         let zero = S::constant(0.0);
         let outside = Vector::new(zero, zero);
         let ([nx, ny], [dx, dy]) = (self.grid.size(), self.grid.spacing());

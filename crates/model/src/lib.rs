@@ -53,7 +53,7 @@ mod transition;
 pub use assembly::{HalfEdgeForces, columns, velocities};
 pub use axis::Axis;
 pub use block_matrix::BlockMatrix;
-pub use cell_element::{CellElement, RingForces};
+pub use cell_element::{CellElement, RingForces, Site};
 pub use cell_parameters::{CellDerivatives, CellFactors, CellParameter, cell_derivatives};
 pub use effect::{Column, Effect, EffectError};
 pub use element::VertexForces;
@@ -62,11 +62,12 @@ pub use jacobian::{JacobianBuilder, jacobian};
 pub use mirrored_jacobian::{jacobian_with_images, signs_of};
 pub use parameters::{PARAMETER_NAMES, Parameters, parameter_derivatives};
 pub use products::{jvp, vjp};
-pub use response::{Exactness, Flow, FlowResponse, Linearisation, Response, Stage};
+pub use response::{Exactness, Flow, FlowResponse, Linearisation, Response, Rows, Stage};
 pub use row_assembly::{RowAssembly, assemble};
 pub use stress::{cell_stresses, stress};
 pub use structure::{Evaluation, Model, Structure, WeightedResponse, WeightedTerm, base_terms};
 pub use term::{
-    Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, Parity, RingTerm, ShapeTerm, Term,
+    Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, ModulatedTerm, Parity, Reach,
+    RingTerm, ShapeTerm, Term,
 };
 pub use transition::{Exchange, JumpSlopes};

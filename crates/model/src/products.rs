@@ -49,7 +49,7 @@ pub fn vjp(
     model: &Model<f64>,
     w: &[Vector<f64>],
 ) -> Vec<Vector<f64>> {
-    if model.has_ring_terms() || !model.responses.is_empty() || model.environment.cells_differ() {
+    if model.has_ring_terms() || !model.responses.is_empty() || !model.cells_are_alike() {
         return jacobian(tessellation, positions, model).apply_transposed(w);
     }
     let counts = |(cell, w): (usize, &Vector<f64>)| {
@@ -91,7 +91,7 @@ impl Chunk<'_> {
                 for (u, &other) in element.u.iter_mut().zip(self.tessellation.neighbours(cell)) {
                     *u = self.w[other as usize] - self.w[cell];
                 }
-                let multiples = VertexForces::of_cell(&model, cell, seeded(polygon.shape()));
+                let multiples = VertexForces::of(&model.terms, seeded(polygon.shape()));
                 let on_cell = element.differentiate(&polygon, &multiples);
                 self.write(cell, on_cell, |m| element.on_ring[m]);
             } else {

@@ -1,32 +1,43 @@
 //! The exact derivative of the ring terms of one cell's element.
 //!
 //! The forces of a general term are differentiated by dual numbers through the very function that gives them: by the
-//! displacements of the ring and, for terms that depend on where the cell is, by its position with the ring held. Neither
+//! displacements of the ring, or by the position of the cell with the ring held, as far as its [`Reach`] says that they matter. Neither
 //! momentum nor translation is taken for granted.
 
 use crate::assembly::ring_terms;
 use crate::block_matrix::Block;
-use crate::{CellElement, Model, RingForces};
-use num_dual::DualSVec64;
-use voronudge_geometry::{Arithmetic, CellPolygon, Tessellation, Vector};
+use crate::{CellElement, Model, Reach, RingForces, WeightedTerm};
+use voronudge_geometry::{Arithmetic, CellPolygon, Tangent, Tessellation, Vector};
 
-/// Points of the plane by which forces are differentiated at once.
-const POINTS: usize = 4;
-type Dual = DualSVec64<{ 2 * POINTS }>;
+/// By the two coordinates of a point.
+type Dual = Tangent<f64, 2>;
 
 /// Buffers for one element after another.
 pub(crate) struct RingJacobian {
-    model: Model<Dual>,
-    ring: Vec<Vector<f64>>,
+    model: Model<f64>,
+    of_place: Vec<WeightedTerm<Dual>>,
+    of_pairs: Vec<WeightedTerm<Dual>>,
+    of_ring: Vec<WeightedTerm<Dual>>,
     polygon: CellPolygon<Dual>,
+    /// On the cell, then on each of its ring.
     forces: Vec<Vector<Dual>>,
 }
 
 impl RingJacobian {
     pub(crate) fn new(model: &Model<f64>) -> Self {
-        let mut model = model.lift();
-        model.terms.retain(|w| w.term.is_ring_term());
-        Self { model, ring: Vec::new(), polygon: CellPolygon::default(), forces: Vec::new() }
+        let lift =
+            |w: &WeightedTerm<f64>| WeightedTerm { term: w.term, coefficient: Dual::held(w.coefficient) };
+        let of = |reach| {
+            model.terms.iter().filter(|w| w.term.reach() == Some(reach)).map(lift).collect::<Vec<_>>()
+        };
+        Self {
+            model: model.clone(),
+            of_place: of(Reach::Place),
+            of_pairs: of(Reach::Pair),
+            of_ring: of(Reach::Ring),
+            polygon: CellPolygon::default(),
+            forces: Vec::new(),
+        }
     }
 
     /// Adds the derivatives of the force on the cell, and then on each of its ring, by the position of the cell, and then of each of its ring:
@@ -38,49 +49,65 @@ impl RingJacobian {
         cell: usize,
         blocks: &mut [Block],
     ) {
-        self.ring.clear();
-        self.ring.extend(tessellation.ring(cell).map(|h| tessellation.displacement(positions, cell, h)));
-        let points = self.ring.len() + 1;
-        for first in (0..points).step_by(POINTS) {
-            let seed = |point: usize, v: Vector<f64>| {
-                let (x, y) = (Dual::from_re(v.x), Dual::from_re(v.y));
-                match point.checked_sub(first).filter(|k| *k < POINTS) {
-                    Some(k) => Vector::new(x.derivative(2 * k), y.derivative(2 * k + 1)),
-                    None => Vector::new(x, y),
-                }
-            };
-            self.polygon.fill_ring(self.ring.iter().enumerate().map(|(m, d)| seed(m, *d)));
-            let zero = Vector::new(Dual::constant(0.0), Dual::constant(0.0));
-            self.forces.clear();
-            self.forces.resize(points, zero);
-            let element = CellElement {
-                cell,
-                neighbours: tessellation.neighbours(cell),
-                polygon: &self.polygon,
-                position: seed(points - 1, positions[cell]),
-                domain: tessellation.domain(),
-                environment: &self.model.environment,
-            };
-            if let Some((on_cell, on_ring)) = self.forces.split_last_mut() {
-                ring_terms(&self.model, &element, &mut RingForces { on_ring, on_cell });
+        let Self { model, of_place, of_pairs, of_ring, polygon, forces } = self;
+        let (neighbours, domain, r) = (tessellation.neighbours(cell), tessellation.domain(), positions[cell]);
+        let (points, environment) = (neighbours.len() + 1, &*model.environment);
+        // Gives what the slopes of the forces are to a function, the cell first.
+        let mut act = |terms: &[_], polygon: &_, position, add: &mut dyn FnMut(usize, Block)| {
+            forces.clear();
+            forces.resize(points, Vector::new(Dual::constant(0.0), Dual::constant(0.0)));
+            let element = CellElement { cell, neighbours, polygon, position, domain, environment };
+            if let Some((on_cell, on_ring)) = forces.split_first_mut() {
+                ring_terms(terms, &element, &mut RingForces { on_ring, on_cell });
             }
-            // The cell comes last among the points here, and first among the blocks.
-            let (on_cell, on_ring) = blocks.split_at_mut(points);
-            let rows = on_ring.chunks_exact_mut(points).chain(std::iter::once(on_cell));
-            for (row, force) in rows.zip(&self.forces) {
-                for (k, point) in (first..points).take(POINTS).enumerate() {
-                    let slope = |x: &Dual, along: usize| x.eps.0.map_or(0.0, |eps| eps[2 * k + along]);
-                    let block =
-                        [slope(&force.x, 0), slope(&force.x, 1), slope(&force.y, 0), slope(&force.y, 1)];
-                    if point + 1 == points {
-                        row[0].iter_mut().zip(block).for_each(|(total, entry)| *total += entry);
-                    } else if tessellation.neighbours(cell)[point] as usize != cell {
-                        // A displacement of the ring grows with its neighbour's position and falls with the cell's; that of an image of the cell stays.
-                        row[point + 1].iter_mut().zip(block).for_each(|(total, entry)| *total += entry);
-                        row[0].iter_mut().zip(block).for_each(|(total, entry)| *total -= entry);
-                    }
+            forces.iter().enumerate().for_each(|(point, force)| add(point, slopes(force)));
+        };
+        let ring = || tessellation.displacements(positions, cell);
+        // A displacement of the ring grows with its neighbour's position and falls with the cell's; that of an image of the cell stays.
+        let moves = |m: usize| neighbours[m] as usize != cell;
+        let mut to = |row: usize, column: usize, block: Block, sign: f64| {
+            let total = &mut blocks[row * points + column];
+            total.iter_mut().zip(block).for_each(|(total, entry)| *total += sign * entry);
+        };
+        if !of_place.is_empty() {
+            polygon.fill_ring(ring().map(held));
+            act(of_place, polygon, seeded(r), &mut |row, block| to(row, 0, block, 1.0));
+        }
+        if !of_pairs.is_empty() {
+            // No force depends on more than its own pair, so all pairs move at once.
+            polygon.fill_ring(ring().map(seeded));
+            act(of_pairs, polygon, held(r), &mut |other, block| {
+                if other > 0 && moves(other - 1) {
+                    to(other, other, block, 1.0);
+                    to(other, 0, block, -1.0);
+                    to(0, other, block, -1.0);
+                    to(0, 0, block, 1.0);
                 }
+            });
+        }
+        if !of_ring.is_empty() {
+            polygon.fill_ring(ring().map(held));
+            for (m, displacement) in ring().enumerate().filter(|(m, _)| moves(*m)) {
+                polygon.with_neighbour(m, seeded(displacement), |polygon| {
+                    act(of_ring, polygon, held(r), &mut |row, block| {
+                        to(row, m + 1, block, 1.0);
+                        to(row, 0, block, -1.0);
+                    });
+                });
             }
         }
     }
+}
+
+fn held(v: Vector<f64>) -> Vector<Dual> {
+    Vector::new(Dual::held(v.x), Dual::held(v.y))
+}
+
+fn seeded(v: Vector<f64>) -> Vector<Dual> {
+    Vector::new(Dual::along(v.x, 0), Dual::along(v.y, 1))
+}
+
+/// `[xx, xy, yx, yy]`, row = component of the force.
+fn slopes(force: &Vector<Dual>) -> Block {
+    [force.x.slopes[0], force.x.slopes[1], force.y.slopes[0], force.y.slopes[1]]
 }

@@ -20,15 +20,15 @@ impl RowAssembly {
     }
 
     /// Adds a block `[xx, xy, yx, yy]` in a column.
+    #[inline]
     pub fn add(&mut self, column: usize, block: &[f64; 4]) {
-        if self.place[column] == u32::MAX {
-            self.place[column] = self.columns.len() as u32;
-            self.columns.push(column as u32);
-            self.blocks.push([0.0; 4]);
-        }
-        let sum = &mut self.blocks[self.place[column] as usize];
-        for (total, entry) in sum.iter_mut().zip(block) {
-            *total += entry;
+        match self.blocks.get_mut(self.place[column] as usize) {
+            Some(sum) => *sum = std::array::from_fn(|entry| sum[entry] + block[entry]),
+            None => {
+                self.place[column] = self.columns.len() as u32;
+                self.columns.push(column as u32);
+                self.blocks.push(*block);
+            }
         }
     }
 

@@ -2,7 +2,7 @@
 
 use crate::{
     Adhesion, AreaElasticity, Column, Contractility, CorticalChirality, Environment, Parameters, Response,
-    Term, columns, response::respond,
+    Site, Term, columns, response::respond,
 };
 use num_dual::{Dual64, DualSVec64};
 use std::sync::Arc;
@@ -102,9 +102,26 @@ impl<S: Scalar> Model<S> {
         }
     }
 
-    /// Whether a term is more than a function of areas and perimeters.
+    /// Whether a term is more than a multiple of the gradients of areas and perimeters.
     pub fn has_ring_terms(&self) -> bool {
         self.terms.iter().any(|w| w.term.is_ring_term())
+    }
+}
+
+impl<S: Arithmetic> Model<S> {
+    /// Whether coefficients of shape terms differ from cell to cell.
+    pub(crate) fn has_modulated_terms(&self) -> bool {
+        self.terms.iter().any(|w| !w.term.is_shape_term() && !w.term.is_ring_term())
+    }
+
+    /// Whether the multiples of the gradients of area and perimeter are the same functions of these for all cells.
+    pub(crate) fn cells_are_alike(&self) -> bool {
+        !self.environment.cells_differ() && !self.has_modulated_terms()
+    }
+
+    /// Where a cell is.
+    pub fn site(&self, cell: usize, neighbours: usize, position: Vector<S>) -> Site<'_, S> {
+        Site { cell, neighbours, position, environment: &self.environment }
     }
 }
 

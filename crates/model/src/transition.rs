@@ -127,7 +127,8 @@ impl Exchange {
     /// more than functions of areas and perimeters are left out.
     pub fn slopes(&self, model: &Model<f64>) -> JumpSlopes {
         let mut slopes = JumpSlopes::default();
-        let model = model.map(Tangent::held);
+        let mut model = model.map(Tangent::held);
+        model.terms.retain(|weighted| weighted.term.is_shape_term());
         let (mut polygon, mut jacobian) = (CellPolygon::default(), ElementJacobian::default());
         let mut blocks = Vec::new();
         for (number, (cell, rings)) in self.cells.iter().zip(&self.rings).enumerate() {
@@ -136,7 +137,9 @@ impl Exchange {
                 blocks.clear();
                 blocks.resize(sides * sides, [0.0; 4]);
                 polygon.fill_ring(ring.displacements.iter().copied());
-                let multiples = VertexForces::of_cell(&model, *cell, seeded(polygon.shape()));
+                // Where a cell is makes no difference to shape terms.
+                let site = model.site(*cell, sides, Vector::new(Tangent::held(0.0), Tangent::held(0.0)));
+                let multiples = VertexForces::of_cell(&model, site, seeded(polygon.shape()));
                 jacobian.fill(&polygon, &multiples, &mut blocks);
                 // What acts on the cell itself is minus the sum of what acts on its ring.
                 let on_cell = (0..sides).map(|slot| (slot, number, -sign));

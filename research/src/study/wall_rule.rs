@@ -33,7 +33,11 @@ impl Papers {
         let mut polygon = CellPolygon::default();
         for cell in 0..cells {
             polygon.fill(&tessellation, &all, cell);
-            let forces = VertexForces::of_cell(&self.model, cell, polygon.shape());
+            let forces = VertexForces::of_cell(
+                &self.model,
+                self.model.site(cell, polygon.len(), positions[cell]),
+                polygon.shape(),
+            );
             let neighbours = tessellation.neighbours(cell);
             for (m, corner) in polygon.corners().iter().enumerate() {
                 let pair = [neighbours[m], neighbours[(m + 1) % neighbours.len()]].map(|own| own as usize);

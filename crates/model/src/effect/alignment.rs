@@ -1,8 +1,8 @@
 //! Cells follow their neighbours.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, Vector};
 
 /// The mean earlier velocity of the neighbours for which it is known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +27,11 @@ impl ForceTerm for Alignment {
 }
 
 impl RingTerm for Alignment {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let known = cell.neighbours.iter().filter_map(|&j| cell.environment.earlier(j as usize));
         let (sum, count) =
             known.fold((Vector::zeros(), 0), |(sum, count), v: Vector<f64>| (sum + v, count + 1));

@@ -1,8 +1,8 @@
 //! Chirality that changes across the tissue.
 
 use super::{Column, Effect, Kind, Profile, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use crate::{CorticalChirality, ForceTerm, ModulatedTerm, Parity, Site, Term};
+use voronudge_geometry::Elementary;
 
 /// Cortical chirality proportional to a profile over position.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,12 +25,13 @@ impl ForceTerm for ChiralityGradient {
     }
 }
 
-impl RingTerm for ChiralityGradient {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        let polygon = cell.polygon;
-        let strength = coefficient * self.profile.at(cell.from_origin());
-        let torque = strength * polygon.shape().perimeter;
-        forces.on_vertices(polygon, |m| quarter_turn(polygon.perimeter_gradient(m)) * torque);
+impl ModulatedTerm for ChiralityGradient {
+    fn term(&self) -> Term {
+        CorticalChirality.into()
+    }
+
+    fn weight<S: Elementary>(&self, site: &Site<'_, S>) -> S {
+        self.profile.at(site.from_origin())
     }
 }
 

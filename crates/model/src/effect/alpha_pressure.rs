@@ -2,7 +2,7 @@
 
 use super::{Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// The pressure `A − ℓ_0²` turned by a quarter. A constant part of the pressure is a gauge: the areas that meet at a vertex add up
 /// to the same, so it changes no velocity.
@@ -24,7 +24,7 @@ impl ForceTerm for AlphaPressure {
 }
 
 impl RingTerm for AlphaPressure {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let polygon = cell.polygon;
         let excess = polygon.shape().area - cell.environment.cell_size().powi(2);
         let pressure = coefficient * excess;

@@ -2,7 +2,7 @@
 
 use super::{Alias, Column, Effect, Kind, Unit, open_only};
 use crate::{CellElement, Environment, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Domain, Scalar, Vector};
+use voronudge_geometry::{Domain, Elementary, Vector};
 
 /// A force on counted cells at the edge against their outward normal `n`, the sum of the unit vectors to neighbours beyond the
 /// edge.
@@ -28,13 +28,13 @@ impl ForceTerm for BoundaryTension {
 }
 
 impl RingTerm for BoundaryTension {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         forces.on_cell(-outward(cell) * coefficient);
     }
 }
 
 /// Sum of the unit vectors to neighbours beyond the edge, for a cell that counts; zero otherwise.
-pub(super) fn outward<S: Scalar>(cell: &CellElement<'_, S>) -> Vector<S> {
+pub(super) fn outward<S: Elementary>(cell: &CellElement<'_, S>) -> Vector<S> {
     let zero = S::constant(0.0);
     let mut normal = Vector::new(zero, zero);
     if cell.environment.is_beyond_edge(cell.cell) {

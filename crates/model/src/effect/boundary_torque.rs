@@ -3,7 +3,7 @@
 use super::boundary_tension::{needs_edge, outward};
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// A force on counted cells along the edge, across the normal of [`BoundaryTension`](super::BoundaryTension).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -28,7 +28,7 @@ impl ForceTerm for BoundaryTorque {
 }
 
 impl RingTerm for BoundaryTorque {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         forces.on_cell(-quarter_turn(outward(cell)) * coefficient);
     }
 }

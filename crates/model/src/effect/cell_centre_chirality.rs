@@ -1,7 +1,7 @@
 //! Chirality that acts on the centre of the cell.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{BlockMatrix, Flow, FlowResponse, HalfEdgeForces, Linearisation, Parity, assemble};
+use crate::{Flow, FlowResponse, HalfEdgeForces, Linearisation, Parity, Rows};
 use voronudge_geometry::{Scalar, Vector, quarter_turn};
 
 /// The velocity of all forces that descend an energy, turned by a quarter at the centre of the cell.
@@ -32,11 +32,11 @@ impl FlowResponse for CellCentreChirality {
         flow.each(|cell, _| quarter_turn(passive[cell]) * coefficient)
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let flow = &at.flow;
         let passive = crate::jacobian(flow.tessellation, flow.positions, &flow.model.passive());
         let turn = [0.0, -coefficient, coefficient, 0.0];
-        assemble(passive.rows(), |cell, row| row.add_row(&turn, &passive, cell))
+        Box::new(move |cell, row| row.add_row(&turn, &passive, cell))
     }
 }
 

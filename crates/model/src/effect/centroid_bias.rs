@@ -1,7 +1,7 @@
 //! Centroids were taken for centres.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{BlockMatrix, Exactness, Flow, FlowResponse, Linearisation, Parity, RowAssembly, assemble};
+use crate::{Exactness, Flow, FlowResponse, Linearisation, Parity, RowAssembly, Rows, assemble};
 use voronudge_geometry::{CellPolygon, Scalar, Vector, centroid_slopes};
 
 /// The change of the velocities when each centre is moved back from its centroid: `−J (centroid − r)`. Cells with an open polygon
@@ -41,14 +41,14 @@ impl FlowResponse for CentroidBias {
         flow.each(|cell, _| change[cell] * -coefficient)
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let flow = &at.flow;
         let of_offsets = assemble(flow.positions.len(), |cell, row| {
             if flow.tessellation.is_closed(cell) {
                 centroid_row(flow, cell, row);
             }
         });
-        assemble(flow.positions.len(), |cell, row| {
+        Box::new(move |cell, row| {
             for (j, block) in at.jacobian.row(cell) {
                 row.add_row(&block.map(|entry| -coefficient * entry), &of_offsets, j);
             }

@@ -1,9 +1,9 @@
 //! Chirality of single junctions.
 
-use super::edge_tension::side_gradient;
+use super::edge_tension::each_side_gradient;
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// The tension of the sides of [`EdgeTension`](super::EdgeTension), turned by a quarter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,8 +24,10 @@ impl ForceTerm for ChiralEdgeTension {
 }
 
 impl RingTerm for ChiralEdgeTension {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        forces.on_vertices(cell.polygon, |m| quarter_turn(side_gradient(cell, m)) * coefficient);
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+        each_side_gradient(cell, |m, gradient| {
+            forces.on_vertex(cell.polygon, m, quarter_turn(gradient) * coefficient);
+        });
     }
 }
 

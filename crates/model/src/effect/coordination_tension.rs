@@ -1,8 +1,8 @@
 //! A tension that depends on the number of neighbours.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use crate::{Adhesion, ForceTerm, ModulatedTerm, Parity, Site, Term};
+use voronudge_geometry::Elementary;
 
 /// Adhesion in proportion to the number `z` of neighbours beyond six.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -22,11 +22,13 @@ impl ForceTerm for CoordinationTension {
     }
 }
 
-impl RingTerm for CoordinationTension {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        let polygon = cell.polygon;
-        let strength = coefficient * (polygon.len() as f64 - 6.0);
-        forces.on_vertices(polygon, |m| polygon.perimeter_gradient(m) * strength);
+impl ModulatedTerm for CoordinationTension {
+    fn term(&self) -> Term {
+        Adhesion.into()
+    }
+
+    fn weight<S: Elementary>(&self, site: &Site<'_, S>) -> S {
+        S::constant(site.neighbours as f64 - 6.0)
     }
 }
 

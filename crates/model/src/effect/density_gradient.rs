@@ -2,7 +2,7 @@
 
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector, dot};
+use voronudge_geometry::{Elementary, Vector, dot};
 
 /// The gradient of a smoothed density, `Σ_j (ℓ_ij/ℓ_0) w(d_ij) d̂_ij` over the neighbours of a cell,
 /// with `ℓ_ij` the length of the common side and the compact kernel `w(d) = (1 − d²/R²)⁴` for `d < R = 2 ℓ_0`.
@@ -28,7 +28,7 @@ impl ForceTerm for DensityGradient {
 }
 
 impl RingTerm for DensityGradient {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         for m in 0..cell.neighbours.len() {
             let pull = contact_pull(cell, m) * (coefficient * 0.5);
             forces.on_pair(m, -pull);
@@ -37,7 +37,7 @@ impl RingTerm for DensityGradient {
 }
 
 /// The pull of the neighbour across side `m`.
-pub(super) fn contact_pull<S: Scalar>(cell: &CellElement<'_, S>, m: usize) -> Vector<S> {
+pub(super) fn contact_pull<S: Elementary>(cell: &CellElement<'_, S>, m: usize) -> Vector<S> {
     let unit = 1.0 / cell.environment.cell_size();
     let (length, _) = cell.side(m);
     let d = cell.polygon.ring()[m];
@@ -46,7 +46,7 @@ pub(super) fn contact_pull<S: Scalar>(cell: &CellElement<'_, S>, m: usize) -> Ve
     if inside.real() <= 0.0 {
         return Vector::new(S::constant(0.0), S::constant(0.0));
     }
-    d * (square.sqrt().recip() * inside.powi(4) * length * unit)
+    d * (square.root().inverse() * inside.power(4) * length * unit)
 }
 
 /// The catalogue's entry.

@@ -1,8 +1,8 @@
 //! A constant velocity of the whole tissue.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{Axis, CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use crate::{Axis, CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, Vector};
 
 /// A constant velocity along one axis.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,7 +30,11 @@ impl ForceTerm for Drift {
 }
 
 impl RingTerm for Drift {
-    fn act<S: Scalar>(&self, _cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, _cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let mut velocity = Vector::new(S::constant(0.0), S::constant(0.0));
         velocity[self.axis.index()] = coefficient;
         forces.on_cell(velocity);

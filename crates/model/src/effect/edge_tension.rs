@@ -2,7 +2,7 @@
 
 use super::{Alias, Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use voronudge_geometry::{Elementary, Vector};
 
 /// A tension of each side that grows with its length: the energy `½ Σ ℓ²` of the sides of the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -23,16 +23,28 @@ impl ForceTerm for EdgeTension {
 }
 
 impl RingTerm for EdgeTension {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        forces.on_vertices(cell.polygon, |m| -side_gradient(cell, m) * coefficient);
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+        each_side_gradient(cell, |m, gradient| forces.on_vertex(cell.polygon, m, -gradient * coefficient));
     }
 }
 
-/// `∂(½ Σ ℓ²)/∂r_v` at vertex `m`, between the sides `m` and `m + 1`.
-pub(super) fn side_gradient<S: Scalar>(cell: &CellElement<'_, S>, m: usize) -> Vector<S> {
-    let next = if m + 1 == cell.neighbours.len() { 0 } else { m + 1 };
-    let ((before, t_before), (after, t_after)) = (cell.side(m), cell.side(next));
-    t_before * before - t_after * after
+/// `∂(½ Σ ℓ²)/∂r_v` at each vertex, between the sides `m` and `m + 1`.
+pub(super) fn each_side_gradient<S: Elementary>(
+    cell: &CellElement<'_, S>,
+    mut give: impl FnMut(usize, Vector<S>),
+) {
+    let sides = cell.polygon.len();
+    let pull = |m: usize| {
+        let (length, direction) = cell.side(m);
+        direction * length
+    };
+    let first = pull(0);
+    let mut before = first;
+    for m in 0..sides {
+        let after = if m + 1 == sides { first } else { pull(m + 1) };
+        give(m, before - after);
+        before = after;
+    }
 }
 
 /// The catalogue's entry.

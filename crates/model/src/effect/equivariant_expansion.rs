@@ -1,8 +1,8 @@
 //! Forces between neighbours of any dependence on distance: a description, not a mechanism.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// Direction of a pair force.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -41,11 +41,15 @@ impl ForceTerm for RadialShell {
 }
 
 impl RingTerm for RadialShell {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Pair
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let unit = 1.0 / cell.environment.cell_size();
         for (m, (direction, distance)) in cell.directions().enumerate() {
             let deviation = (distance * unit - (0.6 + 0.4 * f64::from(self.shell))) * (1.0 / 0.3);
-            let weight = (-deviation * deviation).exp() * coefficient * 0.5;
+            let weight = (-deviation * deviation).exponential() * coefficient * 0.5;
             let along = match self.direction {
                 PairDirection::Radial => direction,
                 PairDirection::Turned => quarter_turn(direction),

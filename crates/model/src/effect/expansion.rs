@@ -1,8 +1,8 @@
 //! Uniform growth or spreading of an open tissue.
 
 use super::{Column, Effect, Kind, Unit, open_only};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::Elementary;
 
 /// Uniform dilation about the origin.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +27,11 @@ impl ForceTerm for Expansion {
 }
 
 impl RingTerm for Expansion {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         forces.on_cell(cell.from_origin() * coefficient);
     }
 }

@@ -1,8 +1,8 @@
 //! A field from outside: a map of some other measurement.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::Elementary;
 
 /// The vector of a supplied map at the position of the cell, zero outside of it.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,7 +30,11 @@ impl ForceTerm for ExternalField {
 }
 
 impl RingTerm for ExternalField {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         if let Some(map) = cell.environment.maps().get(self.map) {
             forces.on_cell(map.at(cell.position, cell.domain) * coefficient);
         }

@@ -1,7 +1,7 @@
 //! All velocities are scaled.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{BlockMatrix, Flow, FlowResponse, Linearisation, Parity, assemble};
+use crate::{Flow, FlowResponse, Linearisation, Parity, Rows};
 use voronudge_geometry::{Scalar, Vector};
 
 /// The velocities times a factor.
@@ -29,9 +29,9 @@ impl FlowResponse for FlowGain {
         flow.each(|_, v| v * coefficient)
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let Linearisation { flow, jacobian } = at;
-        assemble(jacobian.rows(), |cell, row| {
+        Box::new(move |cell, row| {
             if !flow.moves(cell) {
                 return;
             }

@@ -1,7 +1,7 @@
 //! Friction that changes across the tissue.
 
 use super::{Column, Effect, Kind, Profile, Unit};
-use crate::{BlockMatrix, Flow, FlowResponse, Linearisation, Parity, assemble};
+use crate::{Flow, FlowResponse, Linearisation, Parity, Rows};
 use num_dual::DualSVec64;
 use voronudge_geometry::{Scalar, Vector};
 
@@ -33,9 +33,9 @@ impl FlowResponse for FrictionGradient {
         })
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let Linearisation { flow, jacobian } = at;
-        assemble(jacobian.rows(), |cell, row| {
+        Box::new(move |cell, row| {
             if !flow.moves(cell) {
                 return;
             }

@@ -3,7 +3,7 @@
 mod inverse_rows;
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{BlockMatrix, Exactness, Flow, FlowResponse, Linearisation, Parity, Stage, assemble};
+use crate::{Exactness, Flow, FlowResponse, Linearisation, Parity, Rows, Stage};
 use inverse_rows::inverse_rows;
 use voronudge_geometry::{Scalar, Vector};
 
@@ -49,11 +49,11 @@ impl FlowResponse for InternalDrag {
         added
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let Linearisation { flow, jacobian } = at;
         let graph = Graph::new(flow);
         let inverse = inverse_rows(&graph, coefficient);
-        assemble(jacobian.rows(), |cell, row| {
+        Box::new(move |cell, row| {
             if !flow.moves(cell) {
                 return;
             }

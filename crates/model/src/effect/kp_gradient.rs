@@ -1,8 +1,8 @@
 //! Contractility that changes across the tissue.
 
 use super::{Alias, Column, Effect, Kind, Profile, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use crate::{Contractility, ForceTerm, ModulatedTerm, Parity, Site, Term};
+use voronudge_geometry::Elementary;
 
 /// Contractility proportional to a profile over position.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,12 +25,13 @@ impl ForceTerm for ContractilityGradient {
     }
 }
 
-impl RingTerm for ContractilityGradient {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        let polygon = cell.polygon;
-        let strength = coefficient * self.profile.at(cell.from_origin());
-        let tension = strength * polygon.shape().perimeter;
-        forces.on_vertices(polygon, |m| -polygon.perimeter_gradient(m) * tension);
+impl ModulatedTerm for ContractilityGradient {
+    fn term(&self) -> Term {
+        Contractility.into()
+    }
+
+    fn weight<S: Elementary>(&self, site: &Site<'_, S>) -> S {
+        self.profile.at(site.from_origin())
     }
 }
 

@@ -1,8 +1,8 @@
 //! Labelled cells with other parameters.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use crate::{Adhesion, Contractility, CorticalChirality, ForceTerm, ModulatedTerm, Parity, Site, Term};
+use voronudge_geometry::Elementary;
 
 /// The parameter that differs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -46,21 +46,21 @@ impl ForceTerm for LabelParameter {
     }
 }
 
-impl RingTerm for LabelParameter {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        if cell.environment.label(cell.cell) != Some(self.label) {
-            return;
+impl ModulatedTerm for LabelParameter {
+    fn term(&self) -> Term {
+        match self.parameter {
+            LabelledParameter::Adhesion => Adhesion.into(),
+            LabelledParameter::Contractility => Contractility.into(),
+            LabelledParameter::Chirality => CorticalChirality.into(),
         }
-        let polygon = cell.polygon;
-        let perimeter = polygon.shape().perimeter;
-        forces.on_vertices(polygon, |m| {
-            let gradient = polygon.perimeter_gradient(m);
-            match self.parameter {
-                LabelledParameter::Adhesion => gradient * (coefficient * cell.environment.cell_size()),
-                LabelledParameter::Contractility => -gradient * (coefficient * perimeter),
-                LabelledParameter::Chirality => quarter_turn(gradient) * (coefficient * perimeter),
-            }
-        });
+    }
+
+    fn weight<S: Elementary>(&self, site: &Site<'_, S>) -> S {
+        S::constant(match (site.environment.label(site.cell) == Some(self.label), self.parameter) {
+            (false, _) => 0.0,
+            (true, LabelledParameter::Adhesion) => site.environment.cell_size(),
+            (true, _) => 1.0,
+        })
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::{Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use voronudge_geometry::{Elementary, Vector};
 
 /// The stress `ζ Q` within the cell, with `Q` the traceless shape tensor of its sides, divided by the perimeter. A vertex feels
 /// `−σ ∂A/∂r_v`.
@@ -24,7 +24,7 @@ impl ForceTerm for NematicStress {
 }
 
 impl RingTerm for NematicStress {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let polygon = cell.polygon;
         let [xx, xy] = polygon.shape_tensor();
         let stress = [xx * coefficient, xy * coefficient];
@@ -33,7 +33,7 @@ impl RingTerm for NematicStress {
 }
 
 /// `Q g` for a traceless symmetric tensor.
-pub(super) fn contract<S: Scalar>([xx, xy]: [S; 2], g: Vector<S>) -> Vector<S> {
+pub(super) fn contract<S: Elementary>([xx, xy]: [S; 2], g: Vector<S>) -> Vector<S> {
     Vector::new(xx * g.x + xy * g.y, xy * g.x - xx * g.y)
 }
 

@@ -3,7 +3,7 @@
 use super::density_gradient::contact_pull;
 use super::{Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// The gradient of the smoothed density of [`DensityGradient`](super::DensityGradient), turned by a quarter.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,7 +24,7 @@ impl ForceTerm for OddDiffusion {
 }
 
 impl RingTerm for OddDiffusion {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         for m in 0..cell.neighbours.len() {
             let pull = contact_pull(cell, m) * (coefficient * 0.5);
             forces.on_pair(m, -quarter_turn(pull));

@@ -3,7 +3,7 @@
 use super::nematic_stress::contract;
 use super::{Column, Effect, Kind, Unit};
 use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use voronudge_geometry::Elementary;
 
 /// As [`NematicStress`](super::NematicStress) with the axis of the stress turned by 45° from the long axis of the cell.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,7 +24,7 @@ impl ForceTerm for OddNematicStress {
 }
 
 impl RingTerm for OddNematicStress {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let polygon = cell.polygon;
         let [xx, xy] = polygon.shape_tensor();
         let stress = [-xy * coefficient, xx * coefficient];

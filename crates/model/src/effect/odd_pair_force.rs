@@ -2,8 +2,8 @@
 
 use super::short_range_repulsion::range_weight;
 use super::{Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// As [`ShortRangeRepulsion`](super::ShortRangeRepulsion), across the line between the centres.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -24,7 +24,11 @@ impl ForceTerm for OddPairForce {
 }
 
 impl RingTerm for OddPairForce {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Pair
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         for (m, (direction, distance)) in cell.directions().enumerate() {
             let push = range_weight(distance, cell.environment.cell_size()) * coefficient * 0.5;
             forces.on_pair(m, -quarter_turn(direction) * push);

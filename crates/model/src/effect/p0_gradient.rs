@@ -1,8 +1,8 @@
 //! Adhesion that changes across the tissue.
 
 use super::{Alias, Column, Effect, Kind, Profile, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use crate::{Adhesion, ForceTerm, ModulatedTerm, Parity, Site, Term};
+use voronudge_geometry::Elementary;
 
 /// Adhesion proportional to a profile over position.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -25,11 +25,13 @@ impl ForceTerm for AdhesionGradient {
     }
 }
 
-impl RingTerm for AdhesionGradient {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
-        let polygon = cell.polygon;
-        let strength = coefficient * self.profile.at(cell.from_origin());
-        forces.on_vertices(polygon, |m| polygon.perimeter_gradient(m) * strength);
+impl ModulatedTerm for AdhesionGradient {
+    fn term(&self) -> Term {
+        Adhesion.into()
+    }
+
+    fn weight<S: Elementary>(&self, site: &Site<'_, S>) -> S {
+        self.profile.at(site.from_origin())
     }
 }
 

@@ -1,8 +1,8 @@
 //! Cells keep on in the direction of before.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, Vector};
 
 /// The velocity of the cell in an earlier interval; zero where it is not known.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +27,11 @@ impl ForceTerm for Persistence {
 }
 
 impl RingTerm for Persistence {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         if let Some(v) = cell.environment.earlier(cell.cell) {
             forces.on_cell(Vector::new(coefficient * v.x, coefficient * v.y));
         }

@@ -2,7 +2,7 @@
 
 use crate::Axis;
 use std::f64::consts::TAU;
-use voronudge_geometry::{Domain, PeriodicBox, Scalar, Vector};
+use voronudge_geometry::{Domain, Elementary, PeriodicBox, Vector};
 
 /// Sine or cosine.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -30,11 +30,11 @@ impl Default for Wave {
 
 impl Wave {
     /// `sin(q·x)` or `cos(q·x)`.
-    pub fn at<S: Scalar>(&self, x: Vector<S>) -> S {
+    pub fn at<S: Elementary>(&self, x: Vector<S>) -> S {
         let angle = x.x * self.wavevector.x + x.y * self.wavevector.y;
         match self.phase {
-            Phase::Sine => angle.sin(),
-            Phase::Cosine => angle.cos(),
+            Phase::Sine => angle.sine(),
+            Phase::Cosine => angle.cosine(),
         }
     }
 
@@ -73,7 +73,7 @@ impl Default for Profile {
 
 impl Profile {
     /// Its value at a position relative to the origin.
-    pub fn at<S: Scalar>(&self, x: Vector<S>) -> S {
+    pub fn at<S: Elementary>(&self, x: Vector<S>) -> S {
         match self {
             Self::Linear(axis) => x[axis.index()],
             Self::Periodic(wave) => wave.at(x) * (1.0 / wave.wavevector.norm()),

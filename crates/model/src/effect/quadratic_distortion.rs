@@ -1,8 +1,8 @@
 //! Second-order polynomials of the position: the error of a lens.
 
 use super::{Column, Effect, Kind, Unit, open_only};
-use crate::{Axis, CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use crate::{Axis, CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, Vector};
 
 /// A monomial of the position about the origin, in units of `ℓ_0`, as a velocity along one axis.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -38,11 +38,15 @@ impl ForceTerm for PolynomialFlow {
 }
 
 impl RingTerm for PolynomialFlow {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let x = cell.from_origin() * S::constant(1.0 / cell.environment.cell_size());
-        let [a, b] = self.powers.map(i32::from);
+        let [a, b] = self.powers.map(u32::from);
         let mut velocity = Vector::new(S::constant(0.0), S::constant(0.0));
-        velocity[self.axis.index()] = coefficient * x.x.powi(a) * x.y.powi(b);
+        velocity[self.axis.index()] = coefficient * x.x.power(a) * x.y.power(b);
         forces.on_cell(velocity);
     }
 }

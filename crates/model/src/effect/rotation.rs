@@ -1,8 +1,8 @@
 //! Rigid rotation of an open tissue.
 
 use super::{Column, Effect, Kind, Unit, open_only};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, quarter_turn};
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, quarter_turn};
 
 /// Rigid rotation about the origin.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -27,7 +27,11 @@ impl ForceTerm for Rotation {
 }
 
 impl RingTerm for Rotation {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         forces.on_cell(quarter_turn(cell.from_origin()) * coefficient);
     }
 }

@@ -1,8 +1,8 @@
 //! Uniform pure shear of an open tissue.
 
 use super::{Column, Effect, Kind, Unit, open_only};
-use crate::{Axis, CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Scalar, Vector};
+use crate::{Axis, CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Elementary, Vector};
 
 /// Uniform pure shear about the origin: `(x, −y)` along the axes, `(y, x)` along the diagonals.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -30,7 +30,11 @@ impl ForceTerm for Shear {
 }
 
 impl RingTerm for Shear {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let x = cell.from_origin();
         let flow = match self.axis {
             Axis::X => Vector::new(x.x, -x.y),

@@ -1,8 +1,8 @@
 //! Repulsion between close neighbours.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::Scalar;
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::Elementary;
 
 /// A push from each neighbour along the line between the centres, with
 /// `w(d) = (1 − d²/R²)⁴` for `d < R = 1.6 ℓ_0`: half of it is gone at 0.64 ℓ_0, and it vanishes where neighbours come and go.
@@ -24,7 +24,11 @@ impl ForceTerm for ShortRangeRepulsion {
 }
 
 impl RingTerm for ShortRangeRepulsion {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Pair
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         for (m, (direction, distance)) in cell.directions().enumerate() {
             let push = range_weight(distance, cell.environment.cell_size()) * coefficient * 0.5;
             forces.on_pair(m, direction * push);
@@ -33,10 +37,10 @@ impl RingTerm for ShortRangeRepulsion {
 }
 
 /// The weight `w(d)` of a pair at a distance, for cells of size `ℓ_0`.
-pub(super) fn range_weight<S: Scalar>(distance: S, cell_size: f64) -> S {
+pub(super) fn range_weight<S: Elementary>(distance: S, cell_size: f64) -> S {
     let ratio = distance * (1.0 / (1.6 * cell_size));
     let inside = -ratio * ratio + 1.0;
-    if inside.real() > 0.0 { inside.powi(4) } else { S::constant(0.0) }
+    if inside.real() > 0.0 { inside.power(4) } else { S::constant(0.0) }
 }
 
 /// The catalogue's entry.

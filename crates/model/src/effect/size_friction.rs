@@ -1,7 +1,7 @@
 //! Mobility that depends on the size of the cell.
 
 use super::{Column, Effect, Kind, Unit};
-use crate::{BlockMatrix, Flow, FlowResponse, Linearisation, Parity, assemble};
+use crate::{Flow, FlowResponse, Linearisation, Parity, Rows};
 use voronudge_geometry::{CellPolygon, Scalar, Vector};
 
 /// Velocities in proportion to the area of the cell beyond the mean `ℓ_0²`.
@@ -33,9 +33,9 @@ impl FlowResponse for SizeFriction {
         })
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let Linearisation { flow, jacobian } = at;
-        assemble(jacobian.rows(), |cell, row| {
+        Box::new(move |cell, row| {
             if !flow.moves(cell) {
                 return;
             }

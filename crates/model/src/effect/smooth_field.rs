@@ -3,8 +3,8 @@
 use super::profile::Wave;
 use super::quadratic_distortion::monomials;
 use super::{Column, Effect, Kind, Unit};
-use crate::{CellElement, ForceTerm, Parity, RingForces, RingTerm};
-use voronudge_geometry::{Domain, Scalar, Vector, quarter_turn};
+use crate::{CellElement, ForceTerm, Parity, Reach, RingForces, RingTerm};
+use voronudge_geometry::{Domain, Elementary, Vector, quarter_turn};
 
 /// Direction of a plane wave's velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -44,7 +44,11 @@ impl ForceTerm for WaveFlow {
 }
 
 impl RingTerm for WaveFlow {
-    fn act<S: Scalar>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
+    fn reach(&self) -> Reach {
+        Reach::Place
+    }
+
+    fn act<S: Elementary>(&self, cell: &CellElement<'_, S>, coefficient: S, forces: &mut RingForces<'_, S>) {
         let unit = self.wave.wavevector.normalize();
         let direction = match self.polarisation {
             Polarisation::Along => unit,

@@ -1,7 +1,7 @@
 //! Velocities belong to another moment than positions.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{BlockMatrix, Exactness, Flow, FlowResponse, Linearisation, Parity, assemble};
+use crate::{Exactness, Flow, FlowResponse, Linearisation, Parity, Rows};
 use voronudge_geometry::{Scalar, Vector};
 
 /// The change of the velocities over a time, `J v₀`. Cells without a velocity are held.
@@ -30,9 +30,9 @@ impl FlowResponse for TimeLag {
         flow.each(|cell, _| rate[cell] * coefficient)
     }
 
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let Linearisation { flow, jacobian } = at;
-        assemble(jacobian.rows(), |cell, row| {
+        Box::new(move |cell, row| {
             if !flow.moves(cell) {
                 return;
             }

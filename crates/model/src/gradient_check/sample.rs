@@ -82,7 +82,8 @@ impl Sample {
             let mut largest: f64 = 0.0;
             for size in [1.0, 2.0] {
                 let shape = Shape { area: size * area, perimeter: size * perimeter };
-                VertexForces::of(&model.terms, shape).on_ring(&polygon, &mut forces);
+                let site = model.site(cell, polygon.len(), self.positions[cell]);
+                VertexForces::of_cell(model, site, shape).on_ring(&polygon, &mut forces);
                 let ring = self.tessellation.ring(cell);
                 let displacement = |h| self.tessellation.displacement(&self.positions, cell, h) * size.sqrt();
                 scaled.fill_ring(ring.map(displacement));
@@ -96,7 +97,7 @@ impl Sample {
                 };
                 let mut on_cell = Vector::zeros();
                 let on_ring = forces.as_mut_slice();
-                ring_terms(model, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
+                ring_terms(&model.terms, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
                 largest = forces.iter().chain([&on_cell]).map(|f| f.amax()).fold(largest, f64::max);
             }
             let neighbours = self.tessellation.neighbours(cell).iter();

@@ -11,7 +11,7 @@
 
 use crate::effect::*;
 use crate::jacobian::has_velocity;
-use crate::{BlockMatrix, HalfEdgeForces, Model, Parity, assemble};
+use crate::{BlockMatrix, HalfEdgeForces, Model, Parity, RowAssembly, assemble};
 use num_dual::Dual;
 use voronudge_geometry::{Scalar, Tessellation, Vector};
 
@@ -67,6 +67,9 @@ pub struct Linearisation<'a> {
     pub jacobian: &'a BlockMatrix,
 }
 
+/// What is added to a row of a matrix, by its number.
+pub type Rows<'a> = Box<dyn Fn(usize, &mut RowAssembly) + Sync + 'a>;
+
 /// When a response acts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Stage {
@@ -111,8 +114,8 @@ pub trait FlowResponse {
     /// What it adds to the velocities (N).
     fn respond<S: Scalar>(&self, flow: &Flow<'_, S>, coefficient: S) -> Vec<Vector<S>>;
 
-    /// What it adds to the Jacobian.
-    fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix;
+    /// What it adds to the rows of the Jacobian.
+    fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a>;
 
     /// How exact [`linearise`](Self::linearise) is.
     fn exactness(&self) -> Exactness {
@@ -151,28 +154,30 @@ pub(crate) fn respond_jacobian(
 ) -> BlockMatrix {
     let mut velocities = Vec::new();
     HalfEdgeForces::default().evaluate_terms(tessellation, positions, model, &mut velocities);
-    let (mut before, mut jacobian) = (velocities.clone(), of_terms.clone());
-    let mut jacobian_before = of_terms;
-    for stage in [Stage::Additive, Stage::Implicit] {
-        for weighted in model.responses.iter().filter(|w| w.response.stage() == stage) {
-            if stage == Stage::Implicit {
-                before.copy_from_slice(&velocities);
-                jacobian_before.clone_from(&jacobian);
+    let mut jacobian = of_terms;
+    let at_stage = |stage| model.responses.iter().filter(move |w| w.response.stage() == stage);
+    // All additive responses act on the same; those that are implicit one after another.
+    let mut groups = vec![at_stage(Stage::Additive).collect::<Vec<_>>()];
+    groups.extend(at_stage(Stage::Implicit).map(|weighted| vec![weighted]));
+    groups.retain(|group| !group.is_empty());
+    for (number, group) in groups.iter().enumerate() {
+        let flow = Flow { tessellation, positions, model, velocities: &velocities };
+        let at = Linearisation { flow, jacobian: &jacobian };
+        let more: Vec<_> = group.iter().map(|w| w.response.linearise(&at, w.coefficient)).collect();
+        let sum = assemble(jacobian.rows(), |cell, row| {
+            if has_velocity(tessellation, cell) {
+                row.add_scaled_row(1.0, &jacobian, cell);
+                more.iter().for_each(|more| more(cell, row));
             }
-            let flow = Flow { tessellation, positions, model, velocities: &before };
-            let added = weighted.response.respond(&flow, weighted.coefficient);
-            let at = Linearisation { flow, jacobian: &jacobian_before };
-            let more = weighted.response.linearise(&at, weighted.coefficient);
-            jacobian = assemble(jacobian.rows(), |cell, row| {
-                if has_velocity(tessellation, cell) {
-                    row.add_scaled_row(1.0, &jacobian, cell);
-                    row.add_scaled_row(1.0, &more, cell);
-                }
-            });
-            for (v, more) in velocities.iter_mut().zip(added) {
-                *v += more;
+        });
+        drop(more);
+        if number + 1 < groups.len() {
+            let added: Vec<_> = group.iter().map(|w| w.response.respond(&at.flow, w.coefficient)).collect();
+            for added in added {
+                velocities.iter_mut().zip(added).for_each(|(v, more)| *v += more);
             }
         }
+        jacobian = sum;
     }
     jacobian
 }
@@ -217,7 +222,7 @@ macro_rules! responses {
                 match self { $(Self::$response(response) => response.respond(flow, coefficient)),+ }
             }
 
-            fn linearise(&self, at: &Linearisation<'_>, coefficient: f64) -> BlockMatrix {
+            fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
                 match self { $(Self::$response(response) => response.linearise(at, coefficient)),+ }
             }
 
