@@ -223,7 +223,7 @@ impl Linearisation {
         let mut sum = self.summed(of_groups, spring, held)?;
         held.stiffness.add_to(&mut sum)?;
         sum.add_to_diagonal(damping.iter().copied());
-        Ok(pattern.factor(&sum)?)
+        Ok(pattern.factor_raised(&mut sum)?)
     }
 
     /// The sum of one matrix for each group.

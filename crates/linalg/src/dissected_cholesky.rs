@@ -34,6 +34,12 @@ const SMALL: usize = 2_000_000;
 /// Entries from which on several factors at once would take much memory.
 const LARGE: usize = 40_000_000;
 
+/// How many times as large as the median the largest entry of a diagonal may be beside which nothing is lost.
+const UNEVEN: f64 = 1e10;
+
+/// Share of an entry of the diagonal that is more than its rounding.
+const RAISE: f64 = 1e-11;
+
 /// How a product of so many multiplications is shared out.
 pub(crate) fn shared(work: usize) -> Par {
     if work >= SHARED { Par::rayon(TASKS) } else { Par::Seq }
@@ -100,6 +106,23 @@ impl DissectedPattern {
         let job = Job { fronts: &self.fronts, matrix };
         job.all(self.fronts.roots(), &mut values)?;
         Ok(DissectedCholesky { fronts: Arc::clone(&self.fronts), values })
+    }
+
+    /// The same of a matrix some of whose diagonal entries may be so much larger than most that others are lost in rounding beside them: entries of the
+    /// diagonal are then raised by more than their rounding.
+    ///
+    /// # Errors
+    /// Those of [`factor`](Self::factor).
+    pub fn factor_raised(&self, matrix: &mut SymmetricMatrix) -> Result<DissectedCholesky, Error> {
+        let refused = match self.factor(matrix) {
+            Err(Error::NotPositiveDefinite) => Error::NotPositiveDefinite,
+            done => return done,
+        };
+        let mut diagonal: Vec<f64> = matrix.diagonal().collect();
+        matrix.add_to_diagonal(diagonal.iter().map(|entry| RAISE * entry).collect::<Vec<_>>());
+        diagonal.sort_unstable_by(f64::total_cmp);
+        let is_uneven = diagonal[diagonal.len() - 1] > UNEVEN * diagonal[diagonal.len() / 2];
+        if is_uneven { self.factor(matrix) } else { Err(refused) }
     }
 }
 

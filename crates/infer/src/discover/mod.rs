@@ -38,7 +38,7 @@ use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
 use crate::replicates::Keeper;
 use crate::search::Watch;
 use crate::tracks::Movie;
-use crate::{CrossValidation, Error, Observation, Unkept};
+use crate::{CrossValidation, Doubt, Error, Observation, Unkept};
 use candidate::{candidates, candidates_of_tracks};
 use classes::{Selection, selection};
 use evidence::Evidence;
@@ -89,7 +89,9 @@ fn searched(
     let Setting { frames, search, .. } = setting;
     let base = setting.fit(Vec::new(), None, watch)?;
     let split = Split::new(frames, blocks(frames));
-    let testable = base.lineup.left() >= base.lineup.number_of_columns() as f64;
+    let is_turning = |doubt: &Doubt| matches!(doubt, Doubt::Turning(_));
+    let testable = base.lineup.left() >= base.lineup.number_of_columns() as f64
+        && !base.inference.doubts.iter().any(is_turning);
     let mut growth = Growth::new(setting, &base, &split, watch)?;
     let mut null_sets = NullSets::default();
     let mut grown = None;

@@ -12,7 +12,7 @@ use super::steps::{Model, Setting};
 use crate::tracks::{Movie, Scatter};
 use crate::{Activity, Error, Estimate};
 
-/// Share of the root mean square velocity below which a scatter has no name: an exact model leaves some where contacts change and at the rim of
+/// Share of the root mean square velocity below which a scatter, or the lower end of its interval, has no name: an exact model leaves some where contacts change and at the rim of
 /// a field (2.7 % of exact positions in an open field), whatever the likelihood says.
 const LEAST_SIZE: f64 = 0.04;
 
@@ -57,7 +57,7 @@ impl RandomMotion {
         let (size, [least, most]) = (size_of(diffusion), interval.map(size_of));
         let plain = by_evidence(setting, candidate, (evidence, 1, p(evidence, 1)));
         let fate = match plain.fate {
-            Fate::Explained if size < LEAST_SIZE => Fate::NotConfirmed(NUMERICAL),
+            Fate::Explained if least < LEAST_SIZE => Fate::NotConfirmed(NUMERICAL),
             fate => fate,
         };
         let ranked =

@@ -15,6 +15,7 @@ mod tails;
 mod voids;
 
 pub(crate) use examine::{EXACT, examine, examine_residuals};
+pub(crate) use steps::turning;
 pub(crate) use tails::tails;
 pub use voids::Voids;
 pub(crate) use voids::voids;
@@ -40,6 +41,8 @@ pub enum Doubt {
     Pattern,
     /// Velocities are differences of positions between which cells move by this share of ℓ₀.
     LongSteps(f64),
+    /// Along the fitted paths cells move so many times as fast as they get on from frame to frame: they turn around in between.
+    Turning(f64),
     /// Residuals follow an error of measurement that the catalogue of effects knows, with this coefficient.
     Effect(&'static str, f64),
     /// A finer integration of the motion between frames would change a coefficient by so many standard errors, but is too dear.
@@ -79,7 +82,9 @@ impl Doubt {
             Self::Voids(_) => Part::Cells,
             Self::Tails(_) => Part::Outliers,
             Self::Pattern => Part::Pattern,
-            Self::LongSteps(_) | Self::Integration(_) | Self::Effect("time_lag", _) => Part::Tracks,
+            Self::LongSteps(_) | Self::Turning(_) | Self::Integration(_) | Self::Effect("time_lag", _) => {
+                Part::Tracks
+            }
             Self::Effect("flow_blur", _) => Part::Window,
             Self::Effect(..) => Part::Positions,
         }

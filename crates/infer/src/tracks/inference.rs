@@ -12,7 +12,7 @@ use super::states::States;
 use crate::coefficients::parameters;
 use crate::cross_validation::Folds;
 use crate::diagnostics::robust_variance;
-use crate::doubts::{EXACT, tails, voids};
+use crate::doubts::{EXACT, tails, turning, voids};
 use crate::inference::{changed_edges, doubts, estimates};
 use crate::noisy_fit::at_limit;
 use crate::position_rows::PositionRows;
@@ -117,6 +117,12 @@ pub(crate) fn follow(
     let coefficients = space.coefficients(free);
     let means = mean_velocities(&objective, &placed, displacements)?;
     let components = objective.explained_components(&placed, &found.parameters);
+    // Of cells that crawl the velocity at a frame is not the model's alone.
+    let own_velocities = states.motions.iter().filter(|_| found.memory.is_none()).filter_map(|motion| {
+        let along = placed.instants[motion.interval].1.of_cells[motion.cells[0] as usize];
+        Some([along, *means[motion.interval].get(&motion.track)?])
+    });
+    let turning = turning(own_velocities).map(Doubt::Turning);
     let weights = motion_weights(states, objective.weights(&placed, &found.parameters));
     let missed = velocities.iter().zip(&states.motions).filter_map(|(seen, motion)| {
         let mean = means[motion.interval].get(&motion.track)?;
@@ -162,6 +168,7 @@ pub(crate) fn follow(
         doubts: doubts(value, expected, &levels, &request.noise, found.status)
             .into_iter()
             .chain((found.error > ACCEPTED_ERROR).then_some(Doubt::Integration(found.error)))
+            .chain(turning)
             .chain(voids(&movie.seen_by(states.clone())).map(Doubt::Voids))
             .chain(stray)
             .collect(),

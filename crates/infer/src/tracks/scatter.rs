@@ -6,12 +6,20 @@
 
 use super::anchors::Share;
 use super::fit::least_scatter;
+use super::held_out::AsMeasured;
 use super::inference::Followed;
 use super::likely::LESS_LIKELY;
 use super::look::{Seen, Way};
+use super::motions::Motion;
 use super::movie::Movie;
+use super::objective::{MovieObjective, Placed};
+use super::states::States;
+use crate::diagnostics::robust_variance;
 use crate::noise::Likelihood;
 use crate::{CoefficientSpace, Error, Request};
+
+/// How many motions are taken for jumps by chance.
+const JUMPS: f64 = 0.1;
 
 /// Draws for slopes of the likelihood.
 const DRAWS: usize = 48;
@@ -98,6 +106,30 @@ impl OfSpring<'_> {
     }
 }
 
+/// Which motions the model misses by more than chance lets one of so many miss.
+fn jumps(objective: &MovieObjective<'_>, placed: &Placed<'_>, at: &[f64]) -> Result<Vec<bool>, Error> {
+    let displacements = objective.split(at).1;
+    let means = objective.seen_velocities(placed, displacements)?;
+    let measured = AsMeasured::new(*objective, displacements);
+    // In units of what an interval of this length leaves by errors of positions.
+    let missed = measured.velocities.iter().zip(means).zip(&objective.states.motions);
+    let halved: Vec<f64> = missed
+        .map(|((seen, mean), motion)| {
+            let missed = seen.map_or(0.0, |seen| (seen - mean).norm_squared());
+            0.5 * missed * objective.span(motion.interval).powi(2)
+        })
+        .collect();
+    Ok(stand_out(&halved))
+}
+
+/// Which halved squares of normal vectors are larger than one of so many is by chance; of those that are zero nothing is known.
+fn stand_out(halved: &[f64]) -> Vec<bool> {
+    let known: Vec<f64> = halved.iter().copied().filter(|square| *square > 0.0).collect();
+    let usual = robust_variance(&known).map_or(f64::INFINITY, |(variance, _)| variance);
+    let most = usual * (known.len() as f64 / JUMPS).ln();
+    halved.iter().map(|square| *square > most).collect()
+}
+
 impl Followed {
     /// What the dynamics of a fit of cells that do not crawl scatter by; `None` if that was given.
     pub fn scatter(
@@ -109,9 +141,18 @@ impl Followed {
         if request.noise.velocity.is_some() {
             return Ok(None);
         }
-        let objective = self.objective(movie, &request.structure, space);
+        // In steps that are fine enough for coefficients contacts change too soon or too late, and leave a scatter of their own.
+        let of_fit = self.objective(movie, &request.structure, space);
+        let objective = MovieObjective { rule: of_fit.rule.twice(), ..of_fit };
         let at = &self.fit.parameters;
         let placed = objective.place(at)?;
+        // A track that jumps is no scatter of all cells.
+        let states = objective.states;
+        let jumps = jumps(&objective, &placed, at)?;
+        let is_smooth = |(_, jumps): &(&Motion, bool)| !jumps;
+        let motions = states.motions.iter().zip(jumps).filter(is_smooth).map(|(motion, _)| *motion).collect();
+        let states = &States { motions, ..states.clone() };
+        let objective = MovieObjective { states, ..objective };
         let components = objective.explained_components(&placed, at);
         let equations = &objective.linearise_at(&placed, at, Share::Known)?;
         let seen = Seen { objective, equations, components, known: request.noise };
@@ -127,5 +168,29 @@ impl Followed {
         let lower = if evidence < LESS_LIKELY { 0.0 } else { diffusion(own.end(&likeliest, -1.0)?) };
         let interval = [lower, diffusion(own.end(&likeliest, 1.0)?)];
         Ok(Some(Scatter { diffusion: diffusion(variance), interval, evidence }))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use rand::{Rng, SeedableRng};
+    use rand_distr::{Distribution, Exp1};
+    use rand_pcg::Pcg64;
+
+    #[test]
+    fn jumps_stand_out_and_chance_does_not() {
+        let (count, mut alarms) = (1000, 0);
+        for seed in 0..400 {
+            let mut generator = Pcg64::seed_from_u64(seed);
+            let mut halved: Vec<f64> = (0..count).map(|_| Exp1.sample(&mut generator)).collect();
+            halved[generator.random_range(0..count)] = 0.0;
+            alarms += usize::from(stand_out(&halved).contains(&true));
+            let jump = generator.random_range(0..count);
+            halved[jump] = 18.0;
+            assert!(stand_out(&halved)[jump], "seed {seed}");
+        }
+        // One in ten.
+        assert!((20..=60).contains(&alarms), "{alarms} of 400");
     }
 }

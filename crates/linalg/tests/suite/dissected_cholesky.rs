@@ -55,6 +55,27 @@ fn an_indefinite_matrix_is_refused() {
     assert!(DissectedPattern::new(&matrix, &[None; 3]).is_err());
 }
 
+/// The second unknown is all but lost beside the first: what is left of it is what its own diagonal entry is raised by, not nothing.
+#[test]
+fn what_is_lost_in_rounding_beside_something_large_is_held() {
+    let uneven = |large: f64| {
+        let values = vec![large, large, large * (1.0 - 1e-15), 1.0, 1.0, 1.0];
+        SymmetricMatrix::new(vec![0, 2, 3, 4, 5, 6], vec![0, 1, 1, 2, 3, 4], values).unwrap()
+    };
+    let factored = |mut matrix: SymmetricMatrix| {
+        let pattern = DissectedPattern::new(&matrix, &[None; 5]).unwrap();
+        assert_eq!(pattern.factor(&matrix).err(), Some(Error::NotPositiveDefinite));
+        let mut x = vec![0.0, 0.0, 1.0, 1.0, 1.0];
+        pattern.factor_raised(&mut matrix).map(|factor| {
+            factor.solve(&mut x);
+            x
+        })
+    };
+    let solved = factored(uneven(1e16)).unwrap();
+    assert!(solved[2..].iter().all(|x| (x - 1.0).abs() < 1e-10), "{solved:?}");
+    assert_eq!(factored(uneven(1.0)).err(), Some(Error::NotPositiveDefinite));
+}
+
 /// Whatever was asked for before, factors are to the last bit those of an order that is found anew, for patterns and places in turn.
 #[test]
 fn what_is_remembered_is_what_is_found_anew() {

@@ -3,8 +3,8 @@
 use super::history::has_memory;
 use super::measured::Findings;
 use crate::problem::Problem;
-use voronudge_infer::NoiseSource;
 use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Ranked, Search, Selected, Verdict};
+use voronudge_infer::{Doubt, NoiseSource};
 use voronudge_model::Effect;
 use voronudge_model::effect::Kind;
 use voronudge_report::numbers::significant;
@@ -214,7 +214,14 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
             percent(discovery.after.budget.unexplained)
         ),
         (Verdict::NotTestable, _) => {
-            let used = discovery.before.inference.used;
+            let before = &discovery.before.inference;
+            if before.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_))) {
+                return format!(
+                    "These data cannot tell whether something is missing: cells turn around between frames, and the paths that the \
+                     base model finds for them need not be theirs; {errors}."
+                );
+            }
+            let used = before.used;
             let frames = prepared.frames.len();
             format!(
                 "These data cannot tell whether something is missing: {used} velocities in {frames} frame{} are too few, or \

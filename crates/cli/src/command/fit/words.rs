@@ -67,6 +67,11 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
              frames that are closer in time",
             significant(step, 2)
         ),
+        Doubt::Turning(ratio) => format!(
+            "cells turn around between frames: along the fitted paths they move {} times as fast as they get on from one frame to the \
+             next, and a fit can end at a wrong path; give frames that are closer in time",
+            significant(ratio, 2)
+        ),
         Doubt::Effect("time_lag", _) => {
             "velocities lag behind the positions, as differences over too long a time do; give frames that are closer in time"
                 .into()

@@ -84,6 +84,7 @@ fn misfit(doubt: &Doubt) -> &'static str {
         }
         Doubt::Voids(_) => "cells were missed",
         Doubt::Tails(_) => "a few velocities are out of line with the rest",
+        Doubt::Turning(_) => "cells turn around between frames",
         Doubt::LongSteps(_) | Doubt::Integration(_) | Doubt::Effect("time_lag", _) => {
             "cells move too far between frames"
         }
