@@ -43,6 +43,7 @@ use candidate::{candidates, candidates_of_tracks};
 use classes::{Selection, selection};
 use evidence::Evidence;
 use growth::{Grown, Growth};
+use ranking::{NOTHING_TO_TELL, TURNING};
 use scatter::RandomMotion;
 use steps::{Model, Setting};
 
@@ -89,9 +90,10 @@ fn searched(
     let Setting { frames, search, .. } = setting;
     let base = setting.fit(Vec::new(), None, watch)?;
     let split = Split::new(frames, blocks(frames));
-    let is_turning = |doubt: &Doubt| matches!(doubt, Doubt::Turning(_));
-    let testable = base.lineup.left() >= base.lineup.number_of_columns() as f64
-        && !base.inference.doubts.iter().any(is_turning);
+    let are_few = base.lineup.left() < base.lineup.number_of_columns() as f64;
+    let turning = base.inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_)));
+    let untestable = are_few.then_some(NOTHING_TO_TELL).or(turning.then_some(TURNING));
+    let testable = untestable.is_none();
     let mut growth = Growth::new(setting, &base, &split, watch)?;
     let mut null_sets = NullSets::default();
     let mut grown = None;
@@ -137,6 +139,9 @@ fn searched(
     let last = differing.as_ref().map_or(extended, |own| &own.model);
     let explains = !selected.selected.is_empty();
     let mut ranking = growth.ranking;
+    if let Some(reason) = untestable {
+        ranking.leave(reason);
+    }
     if testable && let Some(random) = RandomMotion::of(&setting, last)? {
         ranking.put(random.ranked);
         selected.selected.extend(random.selected);

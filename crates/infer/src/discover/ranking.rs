@@ -14,8 +14,12 @@ const NO_POLARITY: &str = "no polarity was found that could turn";
 /// Why random motion is no question.
 const NO_SCATTER: &str = "the motions are too few, or what they scatter by was given";
 
-/// Why it was not asked whether cells differ.
-const NOTHING_TO_TELL: &str = "the velocities are too few to tell";
+/// Why it was not asked whether cells differ, or anything else.
+pub(super) const NOTHING_TO_TELL: &str = "the velocities are too few to tell";
+
+/// Why nothing is asked of cells that turn around between frames.
+pub(super) const TURNING: &str =
+    "cells turn around between frames, and the paths that a fit finds need not be theirs";
 
 /// All candidates, the smallest p first; those that cannot be tested at the end.
 pub(super) struct Ranking {
@@ -93,6 +97,13 @@ impl Ranking {
     pub fn end(&mut self, effect: &Effect, fate: &Fate) {
         for ranked in self.candidates.iter_mut().filter(|ranked| ranked.effect.id == effect.id) {
             ranked.fate = fate.clone();
+        }
+    }
+
+    /// Marks those that are better than chance where nothing is asked any further.
+    pub fn leave(&mut self, reason: &'static str) {
+        for ranked in self.candidates.iter_mut().filter(|ranked| ranked.fate == Fate::Explained) {
+            ranked.fate = Fate::NotConfirmed(reason);
         }
     }
 
