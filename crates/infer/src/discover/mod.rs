@@ -157,7 +157,11 @@ fn searched(
     let left = verdict::Left::new(&setting, last, &after);
     let explained = explains.then_some(selected.largest_share).or(only_scatters.then_some(1.0));
     let verdict = verdict::decide(testable, explained, &left, proven);
-    let prospects = prospects::of(&setting, last, &selected.selected).ok().flatten();
+    // Of paths that need not be those of the cells nothing follows for others.
+    let prospects = match turning {
+        true => None,
+        false => prospects::of(&setting, last, &selected.selected).ok().flatten(),
+    };
     Ok(Discovery {
         verdict,
         before,

@@ -214,14 +214,13 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
             percent(discovery.after.budget.unexplained)
         ),
         (Verdict::NotTestable, _) => {
-            let before = &discovery.before.inference;
-            if before.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_))) {
+            if is_turning(discovery) {
                 return format!(
                     "These data cannot tell whether something is missing: cells turn around between frames, and the paths that the \
                      base model finds for them need not be theirs; {errors}."
                 );
             }
-            let used = before.used;
+            let used = discovery.before.inference.used;
             let frames = prepared.frames.len();
             format!(
                 "These data cannot tell whether something is missing: {used} velocities in {frames} frame{} are too few, or \
@@ -230,6 +229,11 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
             )
         }
     }
+}
+
+/// Whether cells turn around between frames, so that nothing was searched for.
+fn is_turning(discovery: &Discovery) -> bool {
+    discovery.before.inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_)))
 }
 
 /// What the answer does not say.
@@ -315,6 +319,10 @@ pub(super) fn measure_next(
     findings: &Findings,
 ) -> String {
     let mut advice: Vec<String> = findings.advice().collect();
+    if is_turning(discovery) {
+        advice.push("Frames that are closer in time: cells turn around between those that there are.".into());
+        return advice.join(" ");
+    }
     for selected in &discovery.selected {
         for other in others(selected) {
             let by = told_apart_by(selected.effect, other);
