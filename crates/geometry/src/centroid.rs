@@ -28,12 +28,10 @@ pub fn centroid_slopes(
     type Dual = Tangent<f64, 2>;
     let ring = || tessellation.displacements(positions, cell);
     let mut polygon = CellPolygon::default();
-    polygon.fill_ring(ring().map(|d| Vector::new(Dual::held(d.x), Dual::held(d.y))));
+    polygon.fill_ring(ring().map(Dual::held_vector));
     for ((m, d), &neighbour) in ring().enumerate().zip(tessellation.neighbours(cell)) {
-        polygon.with_neighbour(m, Vector::new(Dual::along(d.x, 0), Dual::along(d.y, 1)), |polygon| {
-            let at = polygon.centroid();
-            let ([xx, xy], [yx, yy]) = (at.x.slopes, at.y.slopes);
-            visit(neighbour as usize, [xx, xy, yx, yy]);
+        polygon.with_neighbour(m, Dual::seeded_vector(d), |polygon| {
+            visit(neighbour as usize, Dual::block(&polygon.centroid()));
         });
     }
 }

@@ -1,6 +1,6 @@
 //! Dual numbers over any arithmetic.
 
-use crate::{Arithmetic, Elementary};
+use crate::{Arithmetic, Elementary, Vector};
 use std::ops::{Add, AddAssign, Mul, MulAssign, Neg, Sub, SubAssign};
 
 /// A number with its slopes along `D` directions.
@@ -41,6 +41,27 @@ impl<S: Arithmetic, const D: usize> Tangent<S, D> {
             *slope = f(*slope, other);
         }
         Self { value, slopes }
+    }
+}
+
+impl<S: Arithmetic> Tangent<S, 2> {
+    /// A vector that does not change.
+    #[inline(always)]
+    pub fn held_vector(v: Vector<S>) -> Vector<Self> {
+        Vector::new(Self::held(v.x), Self::held(v.y))
+    }
+
+    /// A vector along whose two components others are differentiated.
+    #[inline(always)]
+    pub fn seeded_vector(v: Vector<S>) -> Vector<Self> {
+        Vector::new(Self::along(v.x, 0), Self::along(v.y, 1))
+    }
+
+    /// The derivative of a vector by the one that was seeded, `[xx, xy, yx, yy]`, row = component of the vector.
+    #[inline(always)]
+    pub fn block(v: &Vector<Self>) -> [S; 4] {
+        let ([xx, xy], [yx, yy]) = (v.x.slopes, v.y.slopes);
+        [xx, xy, yx, yy]
     }
 }
 

@@ -187,6 +187,11 @@ impl Inference {
         (self.objective / self.expected_objective).max(1.0)
     }
 
+    /// Whether cells turn around between the frames of tracks, so that the paths of the fit need not be theirs.
+    pub fn cells_turn(&self) -> bool {
+        self.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_)))
+    }
+
     /// The frames with the weights that their velocities have in the fit; `None` if all count alike.
     pub(crate) fn weighed(&self, frames: &[Observation]) -> Option<Vec<Observation>> {
         if self.frames.iter().all(|own| own.weights.is_empty()) {

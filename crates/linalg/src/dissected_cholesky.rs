@@ -114,16 +114,21 @@ impl DissectedPattern {
     /// # Errors
     /// Those of [`factor`](Self::factor).
     pub fn factor_raised(&self, matrix: &mut SymmetricMatrix) -> Result<DissectedCholesky, Error> {
-        let refused = match self.factor(matrix) {
-            Err(Error::NotPositiveDefinite) => Error::NotPositiveDefinite,
-            done => return done,
-        };
-        let mut diagonal: Vec<f64> = matrix.diagonal().collect();
-        matrix.add_to_diagonal(diagonal.iter().map(|entry| RAISE * entry).collect::<Vec<_>>());
-        diagonal.sort_unstable_by(f64::total_cmp);
-        let is_uneven = diagonal[diagonal.len() - 1] > UNEVEN * diagonal[diagonal.len() / 2];
-        if is_uneven { self.factor(matrix) } else { Err(refused) }
+        match self.factor(matrix) {
+            Err(Error::NotPositiveDefinite) if is_uneven(matrix.diagonal().collect()) => {
+                let raised: Vec<f64> = matrix.diagonal().map(|entry| RAISE * entry).collect();
+                matrix.add_to_diagonal(raised);
+                self.factor(matrix)
+            }
+            done => done,
+        }
     }
+}
+
+/// Whether the largest entry of a diagonal is far from the median.
+fn is_uneven(mut diagonal: Vec<f64>) -> bool {
+    diagonal.sort_unstable_by(f64::total_cmp);
+    diagonal.last().is_some_and(|largest| *largest > UNEVEN * diagonal[diagonal.len() / 2])
 }
 
 /// A factorised matrix `P A Pᵀ = L Lᵀ`, P a permutation by nested dissection.

@@ -124,16 +124,14 @@ impl<'a> Elements<'a> {
         polygon.fill(tessellation, positions, cell);
         let (points, r, shape) = (polygon.len() + 1, positions[cell], polygon.shape());
         let site = |position| model.site(cell, polygon.len(), position);
-        let held = Vector::new(Tangent::held(r.x), Tangent::held(r.y));
-        let multiples = VertexForces::of_cell(model, site(held), seeded(shape));
+        let multiples = VertexForces::of_cell(model, site(Tangent::held_vector(r)), seeded(shape));
         blocks.copy_from_slice(one.fill(polygon, &multiples));
         if !model.has_modulated_terms() {
             return;
         }
         // Coefficients change with the place of the cell.
-        let moved = Vector::new(Tangent::along(r.x, 0), Tangent::along(r.y, 1));
         let shape = Shape { area: Tangent::held(shape.area), perimeter: Tangent::held(shape.perimeter) };
-        let multiples = VertexForces::of_cell(model, site(moved), shape);
+        let multiples = VertexForces::of_cell(model, site(Tangent::seeded_vector(r)), shape);
         self.on_ring.resize(polygon.len(), Vector::zeros());
         for direction in 0..2 {
             let on_cell = along(&multiples, direction).on_ring(polygon, &mut self.on_ring);

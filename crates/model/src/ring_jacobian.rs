@@ -6,7 +6,8 @@
 
 use crate::assembly::ring_terms;
 use crate::block_matrix::Block;
-use crate::{CellElement, Model, Reach, RingForces, WeightedTerm};
+use crate::{CellElement, Environment, Model, Reach, RingForces, WeightedTerm};
+use std::sync::Arc;
 use voronudge_geometry::{Arithmetic, CellPolygon, Tangent, Tessellation, Vector};
 
 /// By the two coordinates of a point.
@@ -14,7 +15,7 @@ type Dual = Tangent<f64, 2>;
 
 /// Buffers for one element after another.
 pub(crate) struct RingJacobian {
-    model: Model<f64>,
+    environment: Arc<Environment>,
     of_place: Vec<WeightedTerm<Dual>>,
     of_pairs: Vec<WeightedTerm<Dual>>,
     of_ring: Vec<WeightedTerm<Dual>>,
@@ -31,7 +32,7 @@ impl RingJacobian {
             model.terms.iter().filter(|w| w.term.reach() == Some(reach)).map(lift).collect::<Vec<_>>()
         };
         Self {
-            model: model.clone(),
+            environment: model.environment.clone(),
             of_place: of(Reach::Place),
             of_pairs: of(Reach::Pair),
             of_ring: of(Reach::Ring),
@@ -49,9 +50,9 @@ impl RingJacobian {
         cell: usize,
         blocks: &mut [Block],
     ) {
-        let Self { model, of_place, of_pairs, of_ring, polygon, forces } = self;
+        let Self { environment, of_place, of_pairs, of_ring, polygon, forces } = self;
         let (neighbours, domain, r) = (tessellation.neighbours(cell), tessellation.domain(), positions[cell]);
-        let (points, environment) = (neighbours.len() + 1, &*model.environment);
+        let points = neighbours.len() + 1;
         // Gives what the slopes of the forces are to a function, the cell first.
         let mut act = |terms: &[_], polygon: &_, position, add: &mut dyn FnMut(usize, Block)| {
             forces.clear();
@@ -60,7 +61,7 @@ impl RingJacobian {
             if let Some((on_cell, on_ring)) = forces.split_first_mut() {
                 ring_terms(terms, &element, &mut RingForces { on_ring, on_cell });
             }
-            forces.iter().enumerate().for_each(|(point, force)| add(point, slopes(force)));
+            forces.iter().enumerate().for_each(|(point, force)| add(point, Dual::block(force)));
         };
         let ring = || tessellation.displacements(positions, cell);
         // A displacement of the ring grows with its neighbour's position and falls with the cell's; that of an image of the cell stays.
@@ -70,13 +71,13 @@ impl RingJacobian {
             total.iter_mut().zip(block).for_each(|(total, entry)| *total += sign * entry);
         };
         if !of_place.is_empty() {
-            polygon.fill_ring(ring().map(held));
-            act(of_place, polygon, seeded(r), &mut |row, block| to(row, 0, block, 1.0));
+            polygon.fill_ring(ring().map(Dual::held_vector));
+            act(of_place, polygon, Dual::seeded_vector(r), &mut |row, block| to(row, 0, block, 1.0));
         }
         if !of_pairs.is_empty() {
             // No force depends on more than its own pair, so all pairs move at once.
-            polygon.fill_ring(ring().map(seeded));
-            act(of_pairs, polygon, held(r), &mut |other, block| {
+            polygon.fill_ring(ring().map(Dual::seeded_vector));
+            act(of_pairs, polygon, Dual::held_vector(r), &mut |other, block| {
                 if other > 0 && moves(other - 1) {
                     to(other, other, block, 1.0);
                     to(other, 0, block, -1.0);
@@ -86,10 +87,10 @@ impl RingJacobian {
             });
         }
         if !of_ring.is_empty() {
-            polygon.fill_ring(ring().map(held));
+            polygon.fill_ring(ring().map(Dual::held_vector));
             for (m, displacement) in ring().enumerate().filter(|(m, _)| moves(*m)) {
-                polygon.with_neighbour(m, seeded(displacement), |polygon| {
-                    act(of_ring, polygon, held(r), &mut |row, block| {
+                polygon.with_neighbour(m, Dual::seeded_vector(displacement), |polygon| {
+                    act(of_ring, polygon, Dual::held_vector(r), &mut |row, block| {
                         to(row, m + 1, block, 1.0);
                         to(row, 0, block, -1.0);
                     });
@@ -97,17 +98,4 @@ impl RingJacobian {
             }
         }
     }
-}
-
-fn held(v: Vector<f64>) -> Vector<Dual> {
-    Vector::new(Dual::held(v.x), Dual::held(v.y))
-}
-
-fn seeded(v: Vector<f64>) -> Vector<Dual> {
-    Vector::new(Dual::along(v.x, 0), Dual::along(v.y, 1))
-}
-
-/// `[xx, xy, yx, yy]`, row = component of the force.
-fn slopes(force: &Vector<Dual>) -> Block {
-    [force.x.slopes[0], force.x.slopes[1], force.y.slopes[0], force.y.slopes[1]]
 }

@@ -114,6 +114,11 @@ impl<S: Arithmetic> Model<S> {
         self.terms.iter().any(|w| !w.term.is_shape_term() && !w.term.is_ring_term())
     }
 
+    /// Whether all terms are functions of areas and perimeters, the same for all cells but for parameters of their own.
+    pub fn is_of_shapes(&self) -> bool {
+        self.terms.iter().all(|w| w.term.is_shape_term())
+    }
+
     /// Whether the multiples of the gradients of area and perimeter are the same functions of these for all cells.
     pub(crate) fn cells_are_alike(&self) -> bool {
         !self.environment.cells_differ() && !self.has_modulated_terms()

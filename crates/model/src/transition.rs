@@ -138,7 +138,7 @@ impl Exchange {
                 blocks.resize(sides * sides, [0.0; 4]);
                 polygon.fill_ring(ring.displacements.iter().copied());
                 // Where a cell is makes no difference to shape terms.
-                let site = model.site(*cell, sides, Vector::new(Tangent::held(0.0), Tangent::held(0.0)));
+                let site = model.site(*cell, sides, Tangent::held_vector(Vector::zeros()));
                 let multiples = VertexForces::of_cell(&model, site, seeded(polygon.shape()));
                 jacobian.fill(&polygon, &multiples, &mut blocks);
                 // What acts on the cell itself is minus the sum of what acts on its ring.

@@ -41,7 +41,7 @@ impl Walls {
 
     /// Whether cells can move between walls under a model: its terms are functions of the cells' shapes.
     pub fn admit<S: Scalar>(self, model: &Model<S>) -> bool {
-        !model.has_ring_terms() && model.responses.is_empty()
+        model.is_of_shapes() && model.responses.is_empty()
     }
 
     /// Cells in front of the walls of a box at positions (N) with velocities (N, or none): the tessellation of them and their mirror images, and

@@ -74,6 +74,8 @@ fn impossible_surroundings_are_refused() {
     refuse("--shear-rate inf", "--shear-rate is inf");
     refuse("--walls x --shear-rate 1", "cannot be used with");
     refuse("--walls x --effect drift=0.1,0.2", "walls");
+    refuse("--walls x --effect coordination_tension=0.1", "walls");
+    refuse("--walls x --effect p0_gradient=0.1,0.1,0.1,0.1", "walls");
 }
 
 #[test]

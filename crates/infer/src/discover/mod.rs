@@ -38,7 +38,7 @@ use crate::cross_validation::{BLOCKS, Folds, Split, cross_validate};
 use crate::replicates::Keeper;
 use crate::search::Watch;
 use crate::tracks::Movie;
-use crate::{CrossValidation, Doubt, Error, Observation, Unkept};
+use crate::{CrossValidation, Error, Observation, Unkept};
 use candidate::{candidates, candidates_of_tracks};
 use classes::{Selection, selection};
 use evidence::Evidence;
@@ -91,7 +91,7 @@ fn searched(
     let base = setting.fit(Vec::new(), None, watch)?;
     let split = Split::new(frames, blocks(frames));
     let are_few = base.lineup.left() < base.lineup.number_of_columns() as f64;
-    let turning = base.inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_)));
+    let turning = base.inference.cells_turn();
     let untestable = are_few.then_some(NOTHING_TO_TELL).or(turning.then_some(TURNING));
     let testable = untestable.is_none();
     let mut growth = Growth::new(setting, &base, &split, watch)?;

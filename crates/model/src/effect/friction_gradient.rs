@@ -2,8 +2,7 @@
 
 use super::{Column, Effect, Kind, Profile, Unit};
 use crate::{Flow, FlowResponse, Linearisation, Parity, Rows};
-use num_dual::DualSVec64;
-use voronudge_geometry::{Scalar, Vector};
+use voronudge_geometry::{Scalar, Tangent, Vector};
 
 /// Friction with the substrate proportional to a profile over position, to first order.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
@@ -39,12 +38,10 @@ impl FlowResponse for FrictionGradient {
             if !flow.moves(cell) {
                 return;
             }
-            type Dual = DualSVec64<2>;
             let (r, v) = (flow.positions[cell] - flow.model.environment.origin(), flow.velocities[cell]);
-            let seeded = Vector::new(Dual::from_re(r.x).derivative(0), Dual::from_re(r.y).derivative(1));
-            let profile = self.profile.at(seeded);
-            row.add_scaled_row(-coefficient * profile.re, jacobian, cell);
-            let [x, y] = profile.eps.0.map_or([0.0; 2], |eps| [-coefficient * eps[0], -coefficient * eps[1]]);
+            let profile = self.profile.at(Tangent::seeded_vector(r));
+            row.add_scaled_row(-coefficient * profile.value, jacobian, cell);
+            let [x, y] = profile.slopes.map(|slope| -coefficient * slope);
             row.add(cell, &[v.x * x, v.x * y, v.y * x, v.y * y]);
         })
     }

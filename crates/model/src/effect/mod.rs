@@ -102,6 +102,24 @@ pub enum Column {
     Response(Response),
 }
 
+/// Makes columns of the types of one kind, by its name among the variants of [`Column`].
+macro_rules! columns_of {
+    ($kind:ident: $($own:ident,)+) => {
+        $(impl From<$own> for $kind {
+            fn from(own: $own) -> Self {
+                Self::$own(own)
+            }
+        }
+
+        impl From<$own> for Column {
+            fn from(own: $own) -> Self {
+                Self::$kind($kind::$own(own))
+            }
+        })+
+    };
+}
+pub(crate) use columns_of;
+
 /// What an effect stands for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Kind {

@@ -9,7 +9,7 @@
 //! A response is generic over the scalar, so its velocities and their derivatives by the coefficients are exact. Its
 //! types stand in `effect/`; the list of all is at the end of this file.
 
-use crate::effect::*;
+use crate::effect::{columns_of, *};
 use crate::jacobian::has_velocity;
 use crate::{BlockMatrix, HalfEdgeForces, Model, Parity, RowAssembly, assemble};
 use num_dual::Dual;
@@ -231,17 +231,7 @@ macro_rules! responses {
             }
         }
 
-        $(impl From<$response> for Response {
-            fn from(response: $response) -> Self {
-                Self::$response(response)
-            }
-        }
-
-        impl From<$response> for Column {
-            fn from(response: $response) -> Self {
-                Self::Response(Response::$response(response))
-            }
-        })+
+        columns_of!(Response: $($response,)+);
     };
 }
 

@@ -15,7 +15,7 @@ pub use area_elasticity::AreaElasticity;
 pub use contractility::Contractility;
 pub use cortical_chirality::CorticalChirality;
 
-use crate::effect::*;
+use crate::effect::{columns_of, *};
 use crate::{CellElement, RingForces, Site, VertexForces};
 use voronudge_geometry::{Arithmetic, Elementary, Scalar, Shape};
 
@@ -91,22 +91,6 @@ pub trait RingTerm: ForceTerm {
     fn reach(&self) -> Reach {
         Reach::Ring
     }
-}
-
-macro_rules! from_terms {
-    ($($term:ident,)+) => {
-        $(impl From<$term> for Term {
-            fn from(term: $term) -> Self {
-                Self::$term(term)
-            }
-        }
-
-        impl From<$term> for Column {
-            fn from(term: $term) -> Self {
-                Self::Term(Term::$term(term))
-            }
-        })+
-    };
 }
 
 macro_rules! terms {
@@ -234,7 +218,7 @@ macro_rules! terms {
             }
         }
 
-        from_terms!($($shape,)+ $($modulated,)+ $($ring,)+);
+        columns_of!(Term: $($shape,)+ $($modulated,)+ $($ring,)+);
     };
 }
 

@@ -3,8 +3,8 @@
 use super::history::has_memory;
 use super::measured::Findings;
 use crate::problem::Problem;
+use voronudge_infer::NoiseSource;
 use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Ranked, Search, Selected, Verdict};
-use voronudge_infer::{Doubt, NoiseSource};
 use voronudge_model::Effect;
 use voronudge_model::effect::Kind;
 use voronudge_report::numbers::significant;
@@ -214,7 +214,7 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
             percent(discovery.after.budget.unexplained)
         ),
         (Verdict::NotTestable, _) => {
-            if is_turning(discovery) {
+            if discovery.before.inference.cells_turn() {
                 return format!(
                     "These data cannot tell whether something is missing: cells turn around between frames, and the paths that the \
                      base model finds for them need not be theirs; {errors}."
@@ -229,11 +229,6 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
             )
         }
     }
-}
-
-/// Whether cells turn around between frames, so that nothing was searched for.
-fn is_turning(discovery: &Discovery) -> bool {
-    discovery.before.inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Turning(_)))
 }
 
 /// What the answer does not say.
@@ -319,7 +314,7 @@ pub(super) fn measure_next(
     findings: &Findings,
 ) -> String {
     let mut advice: Vec<String> = findings.advice().collect();
-    if is_turning(discovery) {
+    if discovery.before.inference.cells_turn() {
         advice.push("Frames that are closer in time: cells turn around between those that there are.".into());
         return advice.join(" ");
     }
