@@ -15,9 +15,11 @@
 
 mod conjugate_gradients;
 mod determinant;
+mod eliminated;
 mod iterated;
 mod solved;
 
+pub(crate) use eliminated::Eliminated;
 pub(crate) use iterated::Accuracy;
 pub(crate) use solved::Weighting;
 
@@ -91,33 +93,6 @@ pub(crate) struct Local<'a> {
     pub dissections: &'a Dissections,
     /// Places that are measured but held, and not among the unknowns.
     pub left_out: usize,
-}
-
-/// One frame's part of a step before the coefficients' part is known.
-pub(crate) struct Eliminated {
-    order: usize,
-    /// (JᵀJ + (k+λ)I)⁻¹ applied to JᵀX and to Jᵀr − kε.
-    solved: Vec<f64>,
-    /// XᵀX − XᵀJ (JᵀJ + (k+λ)I)⁻¹ JᵀX
-    pub schur: DMatrix<f64>,
-    /// Its right-hand side.
-    pub gradient: DVector<f64>,
-    /// (Jᵀr − kε)ᵀ (JᵀJ + (k+λ)I)⁻¹ (Jᵀr − kε)
-    pub gain: f64,
-}
-
-impl Eliminated {
-    /// δε for given δβ.
-    pub fn nudge_step(&self, free_step: &DVector<f64>) -> Vec<f64> {
-        let n = self.order;
-        let mut step = self.solved[free_step.len() * n..].to_vec();
-        for (column, delta) in self.solved.chunks_exact(n).zip(free_step.iter()) {
-            for (s, c) in step.iter_mut().zip(column) {
-                *s -= delta * c;
-            }
-        }
-        step
-    }
 }
 
 impl Linearisation {
@@ -240,18 +215,30 @@ impl Linearisation {
         Ok(sum)
     }
 
-    /// `A⁻¹` for the two unknowns of a block, and what coefficients do to these: `A⁻¹JᵀX` there (2 × p), with A = JᵀJ + kHᵀH and what stiffness there
-    /// is beside.
-    pub fn of_block(&self, spring: f64, block: usize) -> Result<(DMatrix<f64>, DMatrix<f64>), Error> {
+    /// `A⁻¹` for the two unknowns of a block, what coefficients do to these: `A⁻¹JᵀX` there (2 × p), with A = JᵀJ + kHᵀH and what stiffness there
+    /// is beside, and the information on the coefficients that is left with A eliminated.
+    pub fn of_block(&self, spring: f64, block: usize) -> Result<[DMatrix<f64>; 3], Error> {
         let factor = self.factor(spring)?;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
-        let mut right = self.sum(spring, &self.held, |group| &group.mixed[..n * p]);
+        let right = self.sum(spring, &self.held, |group| &group.mixed[..n * p]);
+        let mut solved = right.clone();
         for axis in 0..2 {
-            right.extend((0..n).map(|i| f64::from(u8::from(i == 2 * block + axis))));
+            solved.extend((0..n).map(|i| f64::from(u8::from(i == 2 * block + axis))));
         }
-        factor.solve(&mut right);
-        let at = |axis: usize, column: usize| right[column * n + 2 * block + axis];
-        Ok((DMatrix::from_fn(2, 2, |i, j| at(i, p + j)), DMatrix::from_fn(2, p, at)))
+        factor.solve(&mut solved);
+        let at = |axis: usize, column: usize| solved[column * n + 2 * block + axis];
+        let schur = self.schur(spring, &self.held, |a, b| product(&right, &solved, n, a, b));
+        Ok([DMatrix::from_fn(2, 2, |i, j| at(i, p + j)), DMatrix::from_fn(2, p, at), schur])
+    }
+
+    /// What is left of the information on the coefficients where so much is taken off each entry.
+    fn schur(&self, spring: f64, held: &Held, taken: impl Fn(usize, usize) -> f64) -> DMatrix<f64> {
+        let p = self.velocities.free_gradient.len();
+        let mut free = DMatrix::zeros(p, p);
+        for (group, weight) in self.groups(spring, held) {
+            free += &group.free_normal * weight;
+        }
+        DMatrix::from_fn(p, p, |a, b| free[(a, b)] - taken(a, b))
     }
 
     /// A vector of products, summed over all kinds of data.
@@ -268,6 +255,14 @@ impl Linearisation {
     /// `JᵀX + kHᵀZ` (n × p, by columns), then `Jᵀy` with what positions add to it.
     pub fn mixed(&self, spring: f64) -> Vec<f64> {
         self.sum(spring, &self.held, |group| &group.mixed)
+    }
+
+    /// `Jᵀr + kHᵀs`: half the decrease of Φ with each nudge.
+    pub fn pull(&self, spring: f64) -> Vec<f64> {
+        let mut pull = self.sum(spring, &self.held, |group| &group.gradient);
+        let held = self.held.stiffness.times(&self.nudges);
+        pull.iter_mut().zip(held).for_each(|(pull, held)| *pull -= held);
+        pull
     }
 
     /// Eliminates the nudges from a damped Gauss–Newton step
@@ -292,10 +287,7 @@ impl Linearisation {
         let held = &self.held;
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let mut right = self.sum(spring, held, |group| &group.mixed[..n * p]);
-        right.extend(self.sum(spring, held, |group| &group.gradient));
-        for (g, pull) in right[n * p..].iter_mut().zip(held.stiffness.times(&self.nudges)) {
-            *g -= pull;
-        }
+        right.extend(self.pull(spring));
         let iterated = match iteration {
             Some(accuracy) => self.iterated(spring, damping, &right, accuracy)?,
             None => None,
@@ -309,12 +301,11 @@ impl Linearisation {
             }
         };
         let dot = |a: usize, b: usize| eliminated(&right, &solved, &left, n, a, b);
-        let (mut free_normal, mut free_gradient) = (DMatrix::zeros(p, p), DVector::zeros(p));
+        let mut free_gradient = DVector::zeros(p);
         for (group, weight) in self.groups(spring, held) {
-            free_normal += &group.free_normal * weight;
             free_gradient += &group.free_gradient * weight;
         }
-        let schur = DMatrix::from_fn(p, p, |a, b| free_normal[(a, b)] - dot(a, b));
+        let schur = self.schur(spring, held, dot);
         let gradient = DVector::from_fn(p, |a, _| free_gradient[a] - dot(a, p));
         Ok(Eliminated { order: n, gain: dot(p, p), schur, gradient, solved })
     }
@@ -356,13 +347,12 @@ impl Linearisation {
     ) -> Whitened {
         let (n, p) = (self.order(), self.velocities.free_gradient.len());
         let dot = |a: usize, b: usize| eliminated(mixed, solved, left, n, a, b);
-        let (mut free, mut data) = (DMatrix::zeros(p, p), DVector::zeros(p));
+        let mut data = DVector::zeros(p);
         for (group, weight) in self.groups(spring, held) {
-            free += &group.free_normal * weight;
             data += &group.free_data * weight;
         }
         Whitened {
-            free: DMatrix::from_fn(p, p, |a, b| free[(a, b)] - dot(a, b)),
+            free: self.schur(spring, held, dot),
             mixed: DVector::from_fn(p, |a, _| data[a] - dot(a, p)),
             data: self.groups(spring, held).map(|(group, weight)| weight * group.data).sum::<f64>()
                 - dot(p, p),

@@ -16,6 +16,9 @@ const ACTIVE: f64 = 1e-6;
 /// Points that are looked at together: each takes the memory of a factor.
 const TOGETHER: usize = 4;
 
+/// The same of points each of which takes a linearised problem of its own.
+pub(crate) const LINEARISED_TOGETHER: usize = 2;
+
 /// The linearised problem of all frames.
 #[derive(Debug)]
 pub(crate) struct NormalEquations {
@@ -147,7 +150,16 @@ impl NormalEquations {
         points: &[P],
         of: impl Fn(&P) -> Result<T, Error> + Sync,
     ) -> Result<Vec<T>, Error> {
-        let mut together = TOGETHER;
+        self.each_of(TOGETHER, points, of)
+    }
+
+    /// The same, at most so many at a time.
+    pub fn each_of<P: Sync, T: Send>(
+        &self,
+        mut together: usize,
+        points: &[P],
+        of: impl Fn(&P) -> Result<T, Error> + Sync,
+    ) -> Result<Vec<T>, Error> {
         for frame in &self.frames {
             together = if frame.is_large()? { 1 } else { together };
         }
@@ -184,12 +196,6 @@ impl NormalEquations {
     pub fn step(&self, damping: f64, held: &[f64]) -> Result<Step, Error> {
         let p = self.free.len();
         self.stepped(damping, held, &DMatrix::zeros(p, p), Accuracy::OfSteps)
-    }
-
-    /// The way to where the problem is least.
-    pub fn whole_step(&self) -> Result<Step, Error> {
-        let p = self.free.len();
-        self.step_near(0.0, &[], &DMatrix::zeros(p, p))
     }
 
     /// A step to be kept, with coefficients that are also known, to be what they are, with some information in units of 1/σ_v².
@@ -276,9 +282,15 @@ impl NormalEquations {
     /// Covariance of the two unknowns of a block where there is one part, all others free, in units of σ_v².
     pub fn covariance_of(&self, block: usize) -> Result<DMatrix<f64>, Error> {
         let Some(frame) = self.frames.first() else { return Err(Error::Degenerate) };
-        let (own, by_coefficients) = frame.of_block(self.spring, block)?;
-        let covariance = invert(self.reduced()?.information)?;
+        let [own, by_coefficients, information] = frame.of_block(self.spring, block)?;
+        let covariance = invert(&self.priors.normal + information)?;
         Ok(own + &by_coefficients * covariance * by_coefficients.transpose())
+    }
+
+    /// Half the decrease of Φ with the two unknowns of a block where there is one part, all others held.
+    pub fn pull_on(&self, block: usize) -> Result<DVector<f64>, Error> {
+        let Some(frame) = self.frames.first() else { return Err(Error::Degenerate) };
+        Ok(DVector::from_column_slice(&frame.pull(self.spring)[2 * block..2 * block + 2]))
     }
 
     /// The problem in β alone, with the nudges eliminated and priors included.

@@ -3,7 +3,7 @@
 use super::classes::Tested;
 use super::lineup::{critical_chi_squared, upper_chi_squared};
 use super::ranking::{self, by_evidence};
-use super::result::Ranked;
+use super::result::{Fate, Ranked};
 use super::steps::{Model, Setting};
 use crate::Estimate;
 use crate::tracks::{Alignment, Drive, Polarity};
@@ -11,16 +11,39 @@ use crate::tracks::{Alignment, Drive, Polarity};
 /// Least evidence of what turns a polarity, as a share of that of both together. How polarities turn is a model of the simplest kind, and less
 /// than this is what it may be wrong by.
 const LEAST_SHARE: f64 = 0.01;
+const TOO_LITTLE: &str = "it explains less than a hundredth of what the polarity does, whose own form is not known as well as that";
 
 /// Coefficients of a polarity: its speed and how fast it is forgotten; of what turns it: one.
 fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
     if setting.candidates[candidate].turns_polarity() { 1 } else { 2 }
 }
 
-/// In the ranking, by its evidence alone, as before one is fitted.
-pub(super) fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
+/// In the ranking, by its evidence alone.
+fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
     let dimension = coefficients(setting, candidate);
     by_evidence(setting, candidate, (evidence, dimension, p(evidence, dimension)))
+}
+
+/// What is no more than a hint beside a model: in the ranking, and whether a fit of it may find more than what is refused.
+pub(super) fn hinted(
+    setting: &Setting<'_>,
+    (candidate, hint): (usize, f64),
+    model: &Model,
+) -> (Ranked, bool) {
+    let mut ranked = ranked(setting, candidate, hint);
+    let polarity = model.followed.as_ref().and_then(|own| own.tracked.polarity.as_ref());
+    // Of drives the score, which is about what their fit finds; of others that of a few points, which is the least.
+    let is_too_little = setting.candidates[candidate].drives().any()
+        && polarity.is_some_and(|own| turns_too_little(own, hint));
+    if is_too_little && ranked.fate == Fate::Explained {
+        ranked.fate = Fate::NotConfirmed(TOO_LITTLE);
+    }
+    (ranked, !is_too_little)
+}
+
+/// Whether what turns a polarity explains so little of what both do.
+fn turns_too_little(polarity: &Polarity, evidence: f64) -> bool {
+    evidence < LEAST_SHARE * (polarity.evidence + evidence)
 }
 
 /// Probability of so much evidence if there is none. Its speed, or the rate at which it aligns, is then at its bound, and the rate at which
@@ -88,10 +111,7 @@ impl<'a> Crawling<'a> {
     /// or turns one too little.
     pub fn reason_against(&self, setting: &Setting<'_>, others: usize) -> Option<&'static str> {
         if let Some(Turn { evidence, .. }) = self.turn {
-            let all = self.polarity.evidence + evidence;
-            return (evidence < LEAST_SHARE * all).then_some(
-                "it explains less than a hundredth of what the polarity does, whose own form is not known as well as that",
-            );
+            return turns_too_little(self.polarity, evidence).then_some(TOO_LITTLE);
         }
         let level = setting.level(others) / setting.named(&[]).len() as f64;
         let lasts = self.polarity.evidence_of_memory >= critical_chi_squared(level, 1.0);

@@ -59,7 +59,8 @@ impl MovieObjective<'_> {
         Ok([contact_inhibition.then(|| drive(0)), velocity_alignment.then(|| drive(1))])
     }
 
-    /// What speaks for each of both drives, of polarities that have `present` ones already and may have both: a test by the score.
+    /// What speaks for each of both drives, of polarities that have `present` ones already and may have both: a test by the score. Only what pulls at
+    /// the drives themselves counts. Where contacts turn, a fit ends before places and polarities that a linear problem would still move.
     pub(super) fn hints_of_drives(
         &self,
         equations: &NormalEquations,
@@ -70,9 +71,8 @@ impl MovieObjective<'_> {
         else {
             return Ok(HintsOfDrives::default());
         };
-        let step = equations.whole_step()?.step;
-        let at = self.space.dimension() + 2 * block;
-        let (c, v) = ([step[at], step[at + 1]], covariance);
+        let pull = equations.pull_on(block)? / self.levels.velocity.powi(2);
+        let (c, v) = (&covariance * pull, covariance);
         // Each beside the other if that is there, and alone if it is not.
         let of = |k: usize, other_is_present: bool| {
             let other = 1 - k;

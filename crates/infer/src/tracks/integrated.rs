@@ -23,6 +23,7 @@ use super::states::Place;
 use crate::Error;
 use crate::least_squares::invert;
 use crate::linearisation::Held;
+use crate::normal_equations::{LINEARISED_TOGETHER, NormalEquations};
 use nalgebra::{DMatrix, DVector};
 
 /// Steps of the differences to either side, in standard errors of independent directions.
@@ -49,6 +50,8 @@ pub(crate) struct Integrated {
 struct Ridge<'a> {
     objective: MovieObjective<'a>,
     parameters: &'a [f64],
+    /// The problem linearised there.
+    equations: NormalEquations,
     /// Independent directions of the free coefficients, a standard error long.
     directions: DMatrix<f64>,
     /// Derivatives of all unknowns by these.
@@ -64,6 +67,7 @@ impl<'a> Ridge<'a> {
         Ok(Self {
             objective,
             parameters,
+            equations,
             directions: covariance.cholesky().ok_or(Error::Degenerate)?.unpack(),
             unknowns,
             held: objective.held_at_first(),
@@ -81,12 +85,14 @@ impl<'a> Ridge<'a> {
 
     /// Its slope along each direction.
     fn slope(&self) -> Result<DVector<f64>, Error> {
-        let mut along = DVector::zeros(self.directions.ncols());
-        for (k, direction) in self.directions.column_iter().enumerate() {
-            let step = direction * STEP;
-            along[k] = (self.determinant(&step)? - self.determinant(&-step)?) / (2.0 * STEP);
-        }
-        Ok(along)
+        let sides: Vec<DVector<f64>> = self
+            .directions
+            .column_iter()
+            .flat_map(|direction| [direction * STEP, direction * -STEP])
+            .collect();
+        let at = self.equations.each_of(LINEARISED_TOGETHER, &sides, |step| self.determinant(step))?;
+        let slopes = at.chunks_exact(2).map(|side| (side[0] - side[1]) / (2.0 * STEP));
+        Ok(DVector::from_iterator(self.directions.ncols(), slopes))
     }
 }
 
