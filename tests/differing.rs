@@ -7,7 +7,7 @@ use rand_pcg::Pcg64;
 use std::error::Error;
 use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
-use voronudge_infer::{CrossValidation, KnownNoise, Observation, Quantity, Request};
+use voronudge_infer::{CrossValidation, FitParameter, KnownNoise, Observation, Request};
 use voronudge_model::{CellFactors, CellParameter, Environment, Model, Parameters};
 use voronudge_simulate::{RandomPlacement, Simulation, generator};
 
@@ -101,13 +101,13 @@ impl Differing {
     }
 
     /// The true mean of a quantity in the units of the fit.
-    pub fn truth(&self, quantity: Quantity) -> f64 {
+    pub fn truth(&self, quantity: FitParameter) -> f64 {
         match quantity {
-            Quantity::AreaElasticity => MEAN.area_elasticity / self.rms,
-            Quantity::PerimeterElasticity => MEAN.perimeter_elasticity / self.rms,
-            Quantity::PreferredPerimeter => MEAN.preferred_perimeter,
-            Quantity::Chirality => MEAN.chirality,
-            Quantity::ChiralCoefficient => MEAN.perimeter_elasticity * MEAN.chirality / self.rms,
+            FitParameter::AreaElasticity => MEAN.area_elasticity / self.rms,
+            FitParameter::PerimeterElasticity => MEAN.perimeter_elasticity / self.rms,
+            FitParameter::PreferredPerimeter => MEAN.preferred_perimeter,
+            FitParameter::Chirality => MEAN.chirality,
+            FitParameter::ChiralCoefficient => MEAN.perimeter_elasticity * MEAN.chirality / self.rms,
         }
     }
 

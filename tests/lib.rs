@@ -11,7 +11,7 @@ use rand_pcg::Pcg64;
 use std::error::Error;
 use voronudge_geometry::{Domain, FieldOfView, Grid, PeriodicBox, Side, Tessellation, Vector};
 use voronudge_infer::{
-    Constraints, CrossValidation, Flow, KnownNoise, Observation, Quantity, Request, Velocities, Window,
+    Constraints, CrossValidation, FitParameter, Flow, KnownNoise, Observation, Request, Velocities, Window,
     WindowKind,
 };
 use voronudge_model::{Model, Parameters};
@@ -159,18 +159,18 @@ impl Tissue {
     /// A fit with K_A held at its true value, without cross-validation.
     pub fn request(&self, noise: KnownNoise) -> Request {
         let constraints =
-            Constraints::fixed([(Quantity::AreaElasticity, self.truth(Quantity::AreaElasticity))]);
+            Constraints::fixed([(FitParameter::AreaElasticity, self.truth(FitParameter::AreaElasticity))]);
         Request { noise, cross_validation: CrossValidation::Skipped, ..Request::new(constraints) }
     }
 
     /// The true value of a quantity in the units of the fit.
-    pub fn truth(&self, quantity: Quantity) -> f64 {
+    pub fn truth(&self, quantity: FitParameter) -> f64 {
         match quantity {
-            Quantity::AreaElasticity => TRUTH.area_elasticity / self.rms,
-            Quantity::PerimeterElasticity => TRUTH.perimeter_elasticity / self.rms,
-            Quantity::PreferredPerimeter => TRUTH.preferred_perimeter,
-            Quantity::Chirality => TRUTH.chirality,
-            Quantity::ChiralCoefficient => TRUTH.perimeter_elasticity * TRUTH.chirality / self.rms,
+            FitParameter::AreaElasticity => TRUTH.area_elasticity / self.rms,
+            FitParameter::PerimeterElasticity => TRUTH.perimeter_elasticity / self.rms,
+            FitParameter::PreferredPerimeter => TRUTH.preferred_perimeter,
+            FitParameter::Chirality => TRUTH.chirality,
+            FitParameter::ChiralCoefficient => TRUTH.perimeter_elasticity * TRUTH.chirality / self.rms,
         }
     }
 

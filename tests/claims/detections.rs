@@ -7,7 +7,9 @@ use rand_pcg::Pcg64;
 use std::ops::ControlFlow;
 use std::sync::Arc;
 use voronudge_geometry::{FieldOfView, Vector};
-use voronudge_infer::{ChangeKind, Completion, Kinds, KnownNoise, Observation, Quantity, complete, infer};
+use voronudge_infer::{
+    ChangeKind, Completion, FitParameter, Kinds, KnownNoise, Observation, complete, infer,
+};
 use voronudge_model::effect::{LabelParameter, LabelledParameter};
 use voronudge_model::{Environment, Model, velocities};
 
@@ -113,7 +115,7 @@ fn hidden_cells_are_found_and_no_others() {
         let fit = |frame: &Observation| {
             let fit =
                 infer(std::slice::from_ref(frame), &request, &mut |_| ControlFlow::Continue(())).unwrap();
-            fit.parameters.chiral_coefficient.value / set.tissue.truth(Quantity::ChiralCoefficient)
+            fit.parameters.chiral_coefficient.value / set.tissue.truth(FitParameter::ChiralCoefficient)
         };
         errors.push((fit(&completion.frames[0].observation) - 1.0).abs());
         without.push((fit(&set.observation) - 1.0).abs());
@@ -237,7 +239,7 @@ fn hidden_cells_have_the_label_of_their_kind() {
         }
     }
     let fit = infer(&[completion.frames[0].observation.clone()], &request, go_on).unwrap();
-    let truth = tissue.truth(Quantity::ChiralCoefficient);
+    let truth = tissue.truth(FitParameter::ChiralCoefficient);
     let own = fit.kinds.iter().map(|kind| kind.parameters.chiral_coefficient.value / truth);
     let errors: Vec<f64> = own.zip([1.0, 0.1]).map(|(value, share)| value - share).collect();
     assert!(errors.iter().all(|error| error.abs() < 0.05), "{errors:?}");

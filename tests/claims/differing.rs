@@ -5,7 +5,7 @@ use claims::differing::Differing;
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
 use voronudge_infer::discover::{Discovery, Search, Verdict, discover};
-use voronudge_infer::{Inference, Observation, Quantity, Unkept, infer};
+use voronudge_infer::{FitParameter, Inference, Observation, Unkept, infer};
 use voronudge_model::CellParameter::{self, Chirality, PreferredArea, PreferredPerimeter};
 
 const NOISE: Noise = Noise { position: 0.01, velocity: 0.05 };
@@ -38,8 +38,8 @@ fn a_spread_put_into_a_simulation_comes_out_of_the_fit() {
 #[ignore = "slow"]
 fn spreads_do_not_grow_at_the_cost_of_what_all_cells_share() {
     for (parameter, size, shared) in [
-        (PreferredArea, 0.2, Quantity::AreaElasticity),
-        (PreferredPerimeter, 0.04, Quantity::PerimeterElasticity),
+        (PreferredArea, 0.2, FitParameter::AreaElasticity),
+        (PreferredPerimeter, 0.04, FitParameter::PerimeterElasticity),
     ] {
         let tissue = Differing::new(196, 3, 2, &[(parameter, size)]).unwrap();
         let result = fit(&tissue, parameter);

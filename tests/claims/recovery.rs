@@ -4,7 +4,7 @@ use claims::{Noise, Tissue};
 use std::ops::ControlFlow;
 use voronudge_geometry::{FieldOfView, Vector};
 use voronudge_infer::{
-    Constraints, Error, Inference, KnownNoise, NoiseSource, Observation, Quantity, Request, infer,
+    Constraints, Error, FitParameter, Inference, KnownNoise, NoiseSource, Observation, Request, infer,
 };
 
 const LOW: Noise = Noise { position: 0.02, velocity: 0.05 };
@@ -25,7 +25,7 @@ fn exact_data_give_exact_parameters() {
     let known = KnownNoise { position: Some(1e-6), velocity: Some(1e-6) };
     let request = Request { constraints: Constraints::default(), ..tissue.request(known) };
     let result = fit(&[tissue.measured(exact, 1).unwrap()], &request);
-    for quantity in Quantity::ALL {
+    for quantity in FitParameter::ALL {
         let (found, truth) = (result.parameters.get(quantity).value, tissue.truth(quantity));
         assert!((found / truth - 1.0).abs() < 1e-7, "{quantity:?} {found} {truth}");
     }
@@ -47,7 +47,7 @@ fn the_search_recovers_what_noise_hides() {
         let before = observation.tessellation.clone();
         let result = fit(&[observation], &tissue.request(noise.known()));
         let after = &result.frames[0].tessellation;
-        let truth = tissue.truth(Quantity::ChiralCoefficient);
+        let truth = tissue.truth(FitParameter::ChiralCoefficient);
         let within = |value: f64| (value / truth - 1.0).abs() < 0.03;
         chiral += usize::from(within(result.parameters.chiral_coefficient.value));
         naive_chiral += usize::from(within(result.naive.perimeter_elasticity * result.naive.chirality));
@@ -88,7 +88,7 @@ fn a_grid_of_velocities_gives_the_chirality() {
     let noise = Noise { position: 0.02, velocity: 0.02 };
     let observation = tissue.on_grid(1.0, noise, 61).unwrap();
     let result = fit(&[observation], &tissue.request(noise.known()));
-    let ratio = result.parameters.chiral_coefficient.value / tissue.truth(Quantity::ChiralCoefficient);
+    let ratio = result.parameters.chiral_coefficient.value / tissue.truth(FitParameter::ChiralCoefficient);
     assert!((ratio - 1.0).abs() < 0.05, "{ratio}");
 }
 
@@ -151,10 +151,10 @@ fn impossible_requests_are_refused() {
     assert!(matches!(with(&|r| r.noise.position = Some(-1.0)), Error::Noise { name: "position", .. }));
     assert!(matches!(with(&|r| r.noise.velocity = Some(f64::NAN)), Error::Noise { name: "velocity", .. }));
     let nothing = Constraints::fixed([
-        (Quantity::AreaElasticity, 0.1),
-        (Quantity::PerimeterElasticity, 1.0),
-        (Quantity::PreferredPerimeter, 4.0),
-        (Quantity::Chirality, 1.0),
+        (FitParameter::AreaElasticity, 0.1),
+        (FitParameter::PerimeterElasticity, 1.0),
+        (FitParameter::PreferredPerimeter, 4.0),
+        (FitParameter::Chirality, 1.0),
     ]);
     assert_eq!(with(&|r| r.constraints = nothing.clone()), Error::NothingToFit);
     let mut still = frames[0].clone();

@@ -2,7 +2,7 @@
 
 use std::{f64::consts::TAU, ops::ControlFlow, sync::Arc};
 use voronudge::geometry::{FieldOfView, Grid};
-use voronudge::infer::{Constraints, KnownNoise, Observation, Quantity, Request, infer};
+use voronudge::infer::{Constraints, FitParameter, KnownNoise, Observation, Request, infer};
 use voronudge::model::effect::ExternalField;
 use voronudge::model::{Column, Environment, VectorMap};
 use voronudge::simulate::{RandomPlacement, Simulation, generator};
@@ -29,7 +29,7 @@ pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let seen =
         tissue.velocities().iter().enumerate().map(|(k, v)| Some(v + error(k as f64))).collect::<Vec<_>>();
     let frame = Observation::new(0, tissue.positions().to_vec(), seen, domain, FieldOfView::everywhere())?;
-    let mut request = Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.1)]));
+    let mut request = Request::new(Constraints::fixed([(FitParameter::AreaElasticity, 0.1)]));
     request.structure = request.structure.with(&[effect]);
     request.noise = KnownNoise { position: Some(1e-3), velocity: Some(ERROR / 2f64.sqrt()) };
     let found = infer(&[frame.within(surroundings)], &request, &mut |_| ControlFlow::Continue(()))?;

@@ -1,23 +1,23 @@
 //! The parameters of a tissue from positions and velocities with noise, by nudged inference, beside the truth and a naive fit.
 
 use std::ops::ControlFlow;
-use voronudge::infer::{Constraints, Quantity};
+use voronudge::infer::{Constraints, FitParameter};
 use voronudge::io::Source;
 use voronudge::problem::{Problem, Question};
 
 /// What the bundled tissue was simulated with.
-const TRUTH: [(Quantity, f64); 4] = [
-    (Quantity::ChiralCoefficient, 3.4),
-    (Quantity::PreferredPerimeter, 4.0),
-    (Quantity::Chirality, 3.4),
-    (Quantity::PerimeterElasticity, 1.0),
+const TRUTH: [(FitParameter, f64); 4] = [
+    (FitParameter::ChiralCoefficient, 3.4),
+    (FitParameter::PreferredPerimeter, 4.0),
+    (FitParameter::Chirality, 3.4),
+    (FitParameter::PerimeterElasticity, 1.0),
 ];
 
 /// Prints parameters with 95 % intervals in the units of the data, and the errors of the fits.
 pub fn main() -> Result<(), Box<dyn std::error::Error>> {
     let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/chiral-liquid");
     let data = Source::folder(folder).load()?;
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.1)]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.1)]);
     let mut problem = Problem::new(&data, &Question { constraints, ..Question::default() })?;
     let mut watch = |_: voronudge::infer::Progress<'_>| ControlFlow::Continue(());
     problem.understand(&mut watch)?; // cells that were not detected, centroids taken for sites

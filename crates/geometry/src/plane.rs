@@ -79,17 +79,17 @@ impl<S: Arithmetic> Corner<S> {
         Self { a, b, centre, inverse_cross }
     }
 
-    /// Forces on the two neighbours that a force `f` on the vertex transmits: `fᵀ ∂c/∂a` and `fᵀ ∂c/∂b`.
+    /// Forces on the two neighbours to which a force `f` on the vertex is pulled back: `fᵀ ∂c/∂a` and `fᵀ ∂c/∂b`.
     ///
     /// Differentiating `a·c = a²/2`, `b·c = b²/2` gives `∂c/∂a = −(ẑ×b)/(a×b) ⊗ (a − c)` and
     /// `∂c/∂b = (ẑ×a)/(a×b) ⊗ (b − c)`. The rest of `f` acts on the cell itself.
     #[inline(always)]
-    pub fn transmit(&self, f: Vector<S>) -> [Vector<S>; 2] {
+    pub fn pull_back(&self, f: Vector<S>) -> [Vector<S>; 2] {
         let (on_a, on_b) = (cross(f, self.b) * self.inverse_cross, cross(self.a, f) * self.inverse_cross);
         [(self.a - self.centre) * on_a, (self.b - self.centre) * on_b]
     }
 
-    /// How the circumcentre moves with each of the two neighbours: `∂c/∂a` and `∂c/∂b`, see [`Corner::transmit`].
+    /// How the circumcentre moves with each of the two neighbours: `∂c/∂a` and `∂c/∂b`, see [`Corner::pull_back`].
     #[inline(always)]
     pub fn centre_slopes(&self) -> [Outer<S>; 2] {
         [
@@ -98,7 +98,7 @@ impl<S: Arithmetic> Corner<S> {
         ]
     }
 
-    /// How the forces that [`Corner::transmit`] gives change with the two neighbours, if the force `f` on the vertex changes with each of them by
+    /// How the forces that [`Corner::pull_back`] gives change with the two neighbours, if the force `f` on the vertex changes with each of them by
     /// `slopes`: blocks `[xx, xy, yx, yy]` of the force on a by a, on a by b, on b by a, on b by b.
     ///
     /// With `k = 1/(a × b)` the forces are `g_a = s_a (a − c)` with `s_a = k f × b`, and `g_b = s_b (b − c)` with `s_b = k a × f`. From
@@ -109,7 +109,7 @@ impl<S: Arithmetic> Corner<S> {
     /// ∂s_b/∂a = k (a × u_a) w_a − k ẑ×f + s_b k ẑ×b     ∂s_b/∂b = k (a × u_b) w_b − s_b k ẑ×a
     /// ```
     #[inline(always)]
-    pub fn transmit_slopes(&self, f: Vector<S>, slopes: [Outer<S>; 2]) -> [[[S; 4]; 2]; 2] {
+    pub fn pull_back_slopes(&self, f: Vector<S>, slopes: [Outer<S>; 2]) -> [[[S; 4]; 2]; 2] {
         let (a, b, k) = (self.a, self.b, self.inverse_cross);
         let [by_a, by_b] = slopes;
         let (s_a, s_b) = (cross(f, b) * k, cross(a, f) * k);

@@ -29,7 +29,7 @@ impl Side {
         let [a, b, c] = [before, h, after].map(|h| tessellation.displacement(positions, cell, h));
         let t = side_direction(b);
         let (first, second) = (Corner::new(a, b), Corner::new(b, c));
-        let ([on_a, on_b], [also_on_b, on_c]) = (first.transmit(-t), second.transmit(t));
+        let ([on_a, on_b], [also_on_b, on_c]) = (first.pull_back(-t), second.pull_back(t));
         let on_b = on_b + also_on_b;
         Some(Self {
             cells: [

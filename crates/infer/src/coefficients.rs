@@ -5,7 +5,7 @@
 
 use crate::quadratic::HalfSpace;
 use crate::quantity::BASE;
-use crate::{Constraints, Error, Prior, Quantity};
+use crate::{Constraints, Error, FitParameter, Prior};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use voronudge_model::Parameters;
 
@@ -23,7 +23,7 @@ pub struct CoefficientSpace {
     basis: DMatrix<f64>,
     /// `aᵀc ≥ b`, in the coefficients of the base model.
     at_least: Vec<(Vector4<f64>, f64)>,
-    priors: Vec<(Quantity, Prior)>,
+    priors: Vec<(FitParameter, Prior)>,
 }
 
 impl CoefficientSpace {
@@ -78,7 +78,7 @@ impl CoefficientSpace {
     ///
     /// # Errors
     /// [`Error::Constraint`] if it has another value throughout.
-    pub fn hold(&self, quantity: Quantity, value: f64) -> Result<Self, Error> {
+    pub fn hold(&self, quantity: FitParameter, value: f64) -> Result<Self, Error> {
         let (normal, bound) = quantity.plane(value);
         let own = self.origin.fixed_rows::<BASE>(0);
         let rest = bound - normal.dot(&own);
@@ -176,13 +176,13 @@ impl CoefficientSpace {
     }
 
     /// Gaussian priors.
-    pub(crate) fn priors(&self) -> &[(Quantity, Prior)] {
+    pub(crate) fn priors(&self) -> &[(FitParameter, Prior)] {
         &self.priors
     }
 
     /// The penalty of the priors for given coefficients, `σ_v² Σ (q − m)² / s²`.
     pub(crate) fn penalty(&self, c: &DVector<f64>, velocity: f64) -> f64 {
-        let scaled = |(quantity, prior): &(Quantity, Prior)| {
+        let scaled = |(quantity, prior): &(FitParameter, Prior)| {
             (quantity.of(c.as_slice()) - prior.mean) * velocity / prior.standard_deviation
         };
         self.priors.iter().map(scaled).map(|rest| rest * rest).sum()
@@ -207,20 +207,22 @@ pub(crate) fn covariance_of(rows: &DMatrix<f64>, free: &DMatrix<f64>) -> Matrix4
 
 /// Parameters of the model from the coefficients of its terms; `P_0` and `α` are ratios to `K_P`.
 pub(crate) fn parameters(coefficients: &DVector<f64>) -> Parameters<f64> {
-    let value = |quantity: Quantity| quantity.of(coefficients.as_slice());
+    let value = |quantity: FitParameter| quantity.of(coefficients.as_slice());
     Parameters {
-        area_elasticity: value(Quantity::AreaElasticity),
-        perimeter_elasticity: value(Quantity::PerimeterElasticity),
-        preferred_perimeter: value(Quantity::PreferredPerimeter),
+        area_elasticity: value(FitParameter::AreaElasticity),
+        perimeter_elasticity: value(FitParameter::PerimeterElasticity),
+        preferred_perimeter: value(FitParameter::PreferredPerimeter),
         preferred_area: PREFERRED_AREA,
-        chirality: value(Quantity::Chirality),
+        chirality: value(FitParameter::Chirality),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Quantity::{AreaElasticity, ChiralCoefficient, Chirality, PerimeterElasticity, PreferredPerimeter};
+    use FitParameter::{
+        AreaElasticity, ChiralCoefficient, Chirality, PerimeterElasticity, PreferredPerimeter,
+    };
 
     #[test]
     fn a_fixed_ratio_moves_with_k_p() {
@@ -255,7 +257,7 @@ mod tests {
 
     #[test]
     fn contradictions_and_senseless_values_are_refused() {
-        let refused = |fixed: &[(Quantity, f64)]| {
+        let refused = |fixed: &[(FitParameter, f64)]| {
             CoefficientSpace::new(&Constraints::fixed(fixed.iter().copied())).unwrap_err()
         };
         let all =

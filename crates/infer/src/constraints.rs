@@ -1,6 +1,6 @@
 //! What is known of the parameters beforehand.
 
-use crate::{Error, Quantity, Scale};
+use crate::{Error, FitParameter, Scale};
 use std::collections::BTreeMap;
 
 /// A Gaussian prior.
@@ -16,24 +16,24 @@ pub struct Prior {
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Constraints {
     /// Held at a value; `K_P` not at zero.
-    pub fixed: BTreeMap<Quantity, f64>,
+    pub fixed: BTreeMap<FitParameter, f64>,
     /// Kept between two values, of which one may be infinite. Bounds on `P_0` or `α` imply `K_P ≥ 0`, because they are
     /// ratios to it.
-    pub bounds: BTreeMap<Quantity, [f64; 2]>,
+    pub bounds: BTreeMap<FitParameter, [f64; 2]>,
     /// Gaussian priors.
-    pub priors: BTreeMap<Quantity, Prior>,
+    pub priors: BTreeMap<FitParameter, Prior>,
 }
 
 impl Constraints {
     /// Parameters held, and nothing else.
-    pub fn fixed(fixed: impl IntoIterator<Item = (Quantity, f64)>) -> Self {
+    pub fn fixed(fixed: impl IntoIterator<Item = (FitParameter, f64)>) -> Self {
         Self { fixed: fixed.into_iter().collect(), ..Self::default() }
     }
 
     /// What is known in the units of the data, in those of a fit.
     #[must_use]
     pub fn scaled(&self, scale: &Scale) -> Self {
-        let unit = |quantity: &Quantity| scale.factor(*quantity);
+        let unit = |quantity: &FitParameter| scale.factor(*quantity);
         Self {
             fixed: self.fixed.iter().map(|(q, value)| (*q, value / unit(q))).collect(),
             bounds: self.bounds.iter().map(|(q, ends)| (*q, ends.map(|end| end / unit(q)))).collect(),
@@ -52,7 +52,7 @@ impl Constraints {
         if self.fixed.values().any(|value| !value.is_finite()) {
             return Err(Error::Constraint("a parameter is fixed to a value that is not finite"));
         }
-        if self.fixed.get(&Quantity::PerimeterElasticity) == Some(&0.0) {
+        if self.fixed.get(&FitParameter::PerimeterElasticity) == Some(&0.0) {
             return Err(Error::Constraint(
                 "K_P is fixed to zero, which leaves P_0 and alpha without meaning",
             ));
@@ -87,17 +87,17 @@ mod tests {
     fn constraints_are_scaled_like_the_quantities_they_hold() {
         let scale = Scale { length: 10.0, time: 4.0 };
         let given = Constraints {
-            fixed: [(Quantity::PreferredPerimeter, 38.0), (Quantity::Chirality, 2.0)].into(),
-            bounds: [(Quantity::AreaElasticity, [0.0, f64::INFINITY])].into(),
-            priors: [(Quantity::ChiralCoefficient, Prior { mean: 0.5, standard_deviation: 0.25 })].into(),
+            fixed: [(FitParameter::PreferredPerimeter, 38.0), (FitParameter::Chirality, 2.0)].into(),
+            bounds: [(FitParameter::AreaElasticity, [0.0, f64::INFINITY])].into(),
+            priors: [(FitParameter::ChiralCoefficient, Prior { mean: 0.5, standard_deviation: 0.25 })].into(),
         };
         let fit = given.scaled(&scale);
-        assert!((fit.fixed[&Quantity::PreferredPerimeter] - 3.8).abs() < 1e-12);
-        assert_eq!(fit.fixed[&Quantity::Chirality], 2.0);
-        assert_eq!(fit.bounds[&Quantity::AreaElasticity], [0.0, f64::INFINITY]);
-        let prior = fit.priors[&Quantity::ChiralCoefficient];
+        assert!((fit.fixed[&FitParameter::PreferredPerimeter] - 3.8).abs() < 1e-12);
+        assert_eq!(fit.fixed[&FitParameter::Chirality], 2.0);
+        assert_eq!(fit.bounds[&FitParameter::AreaElasticity], [0.0, f64::INFINITY]);
+        let prior = fit.priors[&FitParameter::ChiralCoefficient];
         assert!((prior.mean - 2.0).abs() < 1e-12 && (prior.standard_deviation - 1.0).abs() < 1e-12);
         // K_A per area and time.
-        assert!((scale.factor(Quantity::AreaElasticity) - 1.0 / 400.0).abs() < 1e-15);
+        assert!((scale.factor(FitParameter::AreaElasticity) - 1.0 / 400.0).abs() < 1e-15);
     }
 }

@@ -207,7 +207,7 @@ fn add_transposed(matrix: &BlockMatrix, row: usize, v: Vector<f64>, to: &mut [f6
 mod tests {
     use super::*;
     use crate::search::refine;
-    use crate::{CoefficientSpace, Constraints, NoiseLevels, Quantity, Velocities};
+    use crate::{CoefficientSpace, Constraints, FitParameter, NoiseLevels, Velocities};
     use voronudge_model::Structure;
 
     /// Data with errors of either sign: what is linear in these cancels in the mean of both fits.
@@ -215,7 +215,8 @@ mod tests {
     fn fits_of_many_draws_are_off_by_the_bias_on_average() {
         const PAIRS: usize = 100;
         let (noise, structure) = (0.01, Structure::base(1.0));
-        let space = CoefficientSpace::new(&Constraints::fixed([(Quantity::AreaElasticity, 0.1)])).unwrap();
+        let space =
+            CoefficientSpace::new(&Constraints::fixed([(FitParameter::AreaElasticity, 0.1)])).unwrap();
         let truth = crate::sample::observation(0.0, 0.0, 1);
         let levels = NoiseLevels { position: noise, velocity: noise };
         let free = space.nearest(&crate::sample::COEFFICIENTS);

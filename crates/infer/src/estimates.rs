@@ -3,7 +3,7 @@
 use crate::coefficients::covariance_of;
 use crate::quadratic::{Functional, Interval, Quadratic, Ratio};
 use crate::quantity::BASE;
-use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, ParameterEstimates, Quantity};
+use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, FitParameter, ParameterEstimates};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 
 /// A change of −2 log likelihood that one parameter exceeds by chance in 5 % of cases: the 95 % quantile of χ²₁.
@@ -62,8 +62,8 @@ impl Rows {
 
 /// Standard errors to first order, bounds apart; zero of what is held.
 pub(crate) struct StandardErrors {
-    /// Of each quantity of [`Quantity::ALL`].
-    pub parameters: [f64; Quantity::ALL.len()],
+    /// Of each quantity of [`FitParameter::ALL`].
+    pub parameters: [f64; FitParameter::ALL.len()],
     /// Of the coefficients of effects.
     pub effects: Vec<f64>,
 }
@@ -76,13 +76,13 @@ impl Fitted<'_> {
         let covariance = rows.covariance(&free);
         let effects = self.space.base_dimension()..self.free.len();
         Ok(StandardErrors {
-            parameters: Quantity::ALL.map(|quantity| self.standard_error(quantity, &rows, &covariance)),
+            parameters: FitParameter::ALL.map(|quantity| self.standard_error(quantity, &rows, &covariance)),
             effects: effects.map(|k| free[(k, k)].max(0.0).sqrt()).collect(),
         })
     }
 
     /// That of a quantity, from the covariance of the coefficients.
-    fn standard_error(&self, quantity: Quantity, rows: &Rows, covariance: &Matrix4<f64>) -> f64 {
+    fn standard_error(&self, quantity: FitParameter, rows: &Rows, covariance: &Matrix4<f64>) -> f64 {
         if self.held(quantity, rows) {
             return 0.0;
         }
@@ -117,7 +117,7 @@ impl Fitted<'_> {
         let coefficient = |index: usize| rows.functional(index);
         // Where K_P ends at zero, ratios to it have no value; what their intervals say stays true.
         let no_scale = c[2].abs() <= ROUNDING * covariance[(2, 2)].max(0.0).sqrt();
-        let estimate = |quantity: Quantity| {
+        let estimate = |quantity: FitParameter| {
             let value = if no_scale && quantity.is_ratio() { f64::NAN } else { quantity.of(c.as_slice()) };
             if self.held(quantity, rows) {
                 return Estimate { value, standard_error: 0.0, interval: [Some(value); 2] };
@@ -147,11 +147,11 @@ impl Fitted<'_> {
             }
         };
         Ok(ParameterEstimates {
-            area_elasticity: estimate(Quantity::AreaElasticity),
-            perimeter_elasticity: estimate(Quantity::PerimeterElasticity),
-            preferred_perimeter: estimate(Quantity::PreferredPerimeter),
-            chirality: estimate(Quantity::Chirality),
-            chiral_coefficient: estimate(Quantity::ChiralCoefficient),
+            area_elasticity: estimate(FitParameter::AreaElasticity),
+            perimeter_elasticity: estimate(FitParameter::PerimeterElasticity),
+            preferred_perimeter: estimate(FitParameter::PreferredPerimeter),
+            chirality: estimate(FitParameter::Chirality),
+            chiral_coefficient: estimate(FitParameter::ChiralCoefficient),
         })
     }
 
@@ -173,7 +173,7 @@ impl Fitted<'_> {
     }
 
     /// Whether a quantity has one value throughout the space.
-    fn held(&self, quantity: Quantity, rows: &Rows) -> bool {
+    fn held(&self, quantity: FitParameter, rows: &Rows) -> bool {
         let c = rows.coefficients(self.free);
         let mut normal = Vector4::ith(quantity.coefficient(), 1.0);
         if quantity.is_ratio() {

@@ -3,7 +3,7 @@
 use crate::estimates::Fitted;
 use crate::least_squares::invert;
 use crate::quantity::BASE;
-use crate::{Error, Estimate, NORMAL_95, ParameterEstimates, Quantity};
+use crate::{Error, Estimate, FitParameter, NORMAL_95, ParameterEstimates};
 use nalgebra::{DVector, RowDVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};
 use voronudge_model::Column;
@@ -29,7 +29,7 @@ pub struct KindEstimates {
     pub parameters: ParameterEstimates,
     /// By how much these exceed those of the reference, to first order; empty for the reference itself. Those that are the same by
     /// construction are left out.
-    pub differences: Vec<(Quantity, Estimate)>,
+    pub differences: Vec<(FitParameter, Estimate)>,
     /// Probability of so large differences if there are none (Wald's χ² of all coefficients of the label); one for the reference.
     pub p: f64,
 }
@@ -49,9 +49,9 @@ impl Kinds {
         let mut added = [None; BASE];
         for (k, parameter) in self.parameters.iter().enumerate() {
             let coefficient = match parameter {
-                LabelledParameter::Adhesion => Quantity::PreferredPerimeter,
-                LabelledParameter::Contractility => Quantity::PerimeterElasticity,
-                LabelledParameter::Chirality => Quantity::ChiralCoefficient,
+                LabelledParameter::Adhesion => FitParameter::PreferredPerimeter,
+                LabelledParameter::Contractility => FitParameter::PerimeterElasticity,
+                LabelledParameter::Chirality => FitParameter::ChiralCoefficient,
             };
             added[coefficient.coefficient()] = Some(label * self.parameters.len() + k);
         }
@@ -60,11 +60,11 @@ impl Kinds {
 }
 
 /// Quantities in which kinds may differ.
-const COMPARED: [Quantity; 4] = [
-    Quantity::PerimeterElasticity,
-    Quantity::PreferredPerimeter,
-    Quantity::Chirality,
-    Quantity::ChiralCoefficient,
+const COMPARED: [FitParameter; 4] = [
+    FitParameter::PerimeterElasticity,
+    FitParameter::PreferredPerimeter,
+    FitParameter::Chirality,
+    FitParameter::ChiralCoefficient,
 ];
 
 impl Fitted<'_> {
@@ -81,7 +81,7 @@ impl Fitted<'_> {
         let mut all = vec![reference];
         for (number, &label) in kinds.others.iter().enumerate() {
             let rows = self.rows(kinds.added(number));
-            let difference = |quantity: Quantity| {
+            let difference = |quantity: FitParameter| {
                 let [own, reference] = [&rows, &base].map(|rows| {
                     let c = rows.coefficients(self.free);
                     let gradient: RowDVector<f64> =

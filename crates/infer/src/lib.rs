@@ -81,7 +81,7 @@ pub use measurement::{Determined, KnownMeasurement, Measurement, RivalWindow, me
 pub use noise::{KnownNoise, NoiseLevels, NoiseSource};
 pub use observation::{Observation, Velocities};
 pub use prospects::{Ambiguity, Design, Prospect, Prospects, prospects};
-pub use quantity::Quantity;
+pub use quantity::FitParameter;
 pub use replicates::{Keeper, Known, Unkept};
 pub use request::{Activity, CrossValidation, Drives, Examination, Loss, Method, Request};
 pub use result::{Direction, Estimate, FrameResult, Inference, Nmse, ParameterEstimates, Status};

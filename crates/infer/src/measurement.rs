@@ -13,7 +13,8 @@ use crate::noisy_fit::{SETTLED, STEPS_PER_ROUND, first_levels, most_likely};
 use crate::objective::Objective;
 use crate::search::{Watch, follow, refine};
 use crate::{
-    Error, NORMAL_95, NoiseLevels, Observation, Progress, Quantity, Request, Velocities, Window, WindowKind,
+    Error, FitParameter, NORMAL_95, NoiseLevels, Observation, Progress, Request, Velocities, Window,
+    WindowKind,
 };
 use std::ops::ControlFlow;
 use voronudge_geometry::Grid;
@@ -291,7 +292,7 @@ fn settle(
         }
     }
     let coefficients = space.coefficients(&parameters[..space.dimension()]);
-    let chiral_coefficient = Quantity::ChiralCoefficient.of(coefficients.as_slice());
+    let chiral_coefficient = FitParameter::ChiralCoefficient.of(coefficients.as_slice());
     Ok(Settled { frames, found, criterion, chiral_coefficient })
 }
 

@@ -7,7 +7,7 @@ pub(crate) const BASE: usize = 4;
 
 /// A parameter, as a function of the coefficients `c = (K_A, K_P P_0, K_P, K_P α, …)`; what follows are effects.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
-pub enum Quantity {
+pub enum FitParameter {
     /// `K_A`
     AreaElasticity,
     /// `K_P`
@@ -20,7 +20,7 @@ pub enum Quantity {
     ChiralCoefficient,
 }
 
-impl Quantity {
+impl FitParameter {
     /// All of them.
     pub const ALL: [Self; 5] = [
         Self::AreaElasticity,
@@ -109,8 +109,8 @@ mod tests {
     fn planes_and_gradients_belong_to_the_values() {
         let c = [0.3, 7.0, 2.0, -5.0];
         let base = Vector4::from(c);
-        for quantity in Quantity::ALL {
-            assert_eq!(Quantity::from_name(quantity.name()), Some(quantity));
+        for quantity in FitParameter::ALL {
+            assert_eq!(FitParameter::from_name(quantity.name()), Some(quantity));
             let (normal, bound) = quantity.plane(quantity.of(&c));
             assert!((normal.dot(&base) - bound).abs() < 1e-14, "{quantity:?}");
             for k in 0..4 {

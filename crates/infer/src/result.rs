@@ -1,7 +1,7 @@
 //! What a fit answers.
 
 use crate::spread::surroundings;
-use crate::{Doubt, Error, KindEstimates, NoiseLevels, NoiseSource, Observation, Quantity, Spread};
+use crate::{Doubt, Error, FitParameter, KindEstimates, NoiseLevels, NoiseSource, Observation, Spread};
 use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::{CellParameter, Parameters};
@@ -62,13 +62,13 @@ pub struct ParameterEstimates {
 
 impl ParameterEstimates {
     /// The estimate of a quantity.
-    pub fn get(&self, quantity: Quantity) -> &Estimate {
+    pub fn get(&self, quantity: FitParameter) -> &Estimate {
         match quantity {
-            Quantity::AreaElasticity => &self.area_elasticity,
-            Quantity::PerimeterElasticity => &self.perimeter_elasticity,
-            Quantity::PreferredPerimeter => &self.preferred_perimeter,
-            Quantity::Chirality => &self.chirality,
-            Quantity::ChiralCoefficient => &self.chiral_coefficient,
+            FitParameter::AreaElasticity => &self.area_elasticity,
+            FitParameter::PerimeterElasticity => &self.perimeter_elasticity,
+            FitParameter::PreferredPerimeter => &self.preferred_perimeter,
+            FitParameter::Chirality => &self.chirality,
+            FitParameter::ChiralCoefficient => &self.chiral_coefficient,
         }
     }
 }

@@ -1,6 +1,6 @@
 //! Between the units of the data and the scales of the tissue.
 
-use crate::{Error, Observation, Quantity};
+use crate::{Error, FitParameter, Observation};
 use nalgebra::Vector4;
 use voronudge_geometry::{Visibility, areas};
 use voronudge_model::effect::Unit;
@@ -70,14 +70,14 @@ impl Scale {
     }
 
     /// A quantity in the units of the data, per unit of the fit.
-    pub fn factor(&self, quantity: Quantity) -> f64 {
+    pub fn factor(&self, quantity: FitParameter) -> f64 {
         let coefficients = self.coefficients();
         match quantity {
-            Quantity::AreaElasticity => coefficients[0],
-            Quantity::PerimeterElasticity => coefficients[2],
-            Quantity::PreferredPerimeter => self.length,
-            Quantity::Chirality => 1.0,
-            Quantity::ChiralCoefficient => coefficients[3],
+            FitParameter::AreaElasticity => coefficients[0],
+            FitParameter::PerimeterElasticity => coefficients[2],
+            FitParameter::PreferredPerimeter => self.length,
+            FitParameter::Chirality => 1.0,
+            FitParameter::ChiralCoefficient => coefficients[3],
         }
     }
 }

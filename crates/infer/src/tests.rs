@@ -2,8 +2,8 @@
 
 use crate::sample::{COEFFICIENTS, flow, observation};
 use crate::{
-    Constraints, CrossValidation, Error, Inference, Keeper, Known, KnownNoise, Loss, Method, Observation,
-    Prior, Quantity, Request, Unkept, Window, WindowKind, bootstrap, infer, landscape, profile,
+    Constraints, CrossValidation, Error, FitParameter, Inference, Keeper, Known, KnownNoise, Loss, Method,
+    Observation, Prior, Request, Unkept, Window, WindowKind, bootstrap, infer, landscape, profile,
 };
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
@@ -29,7 +29,7 @@ fn a_bound_holds_the_estimate_and_ends_the_interval() {
     for (bound, active) in
         [(k_a.value + 0.5 * k_a.standard_error, true), (k_a.value - 9.0 * k_a.standard_error, false)]
     {
-        let bounds = [(Quantity::AreaElasticity, [bound, f64::INFINITY])].into();
+        let bounds = [(FitParameter::AreaElasticity, [bound, f64::INFINITY])].into();
         let bounded = fit(&frames, &request(Constraints { bounds, ..Constraints::default() }));
         let found = bounded.parameters.area_elasticity;
         if active {
@@ -48,7 +48,7 @@ fn a_prior_pulls_and_narrows() {
     let free = fit(&frames, &request(Constraints::default())).parameters.preferred_perimeter;
     let mean = free.value + free.standard_error;
     let prior = Prior { mean, standard_deviation: free.standard_error };
-    let priors = [(Quantity::PreferredPerimeter, prior)].into();
+    let priors = [(FitParameter::PreferredPerimeter, prior)].into();
     let pulled = fit(&frames, &request(Constraints { priors, ..Constraints::default() }))
         .parameters
         .preferred_perimeter;
@@ -65,27 +65,28 @@ fn a_profile_is_about_the_parabola_of_its_interval() {
     let frames = [observation(0.01, 0.05, 5)];
     let request = Request {
         noise: KnownNoise { position: Some(0.01), velocity: Some(0.05) },
-        ..request(Constraints::fixed([(Quantity::AreaElasticity, COEFFICIENTS[0])]))
+        ..request(Constraints::fixed([(FitParameter::AreaElasticity, COEFFICIENTS[0])]))
     };
     let result = fit(&frames, &request);
-    let quantity = Quantity::ChiralCoefficient;
+    let quantity = FitParameter::ChiralCoefficient;
     let curve = profile(&frames, &request, &result, quantity, 9, &mut |_| ControlFlow::Continue(())).unwrap();
     let expected = result.parameters.chiral_coefficient;
     for (found, linear) in curve.interval.into_iter().zip(expected.interval) {
         let (found, linear) = (found.unwrap(), linear.unwrap());
         assert!((found - linear).abs() < 0.4 * expected.standard_error, "{curve:?} {expected:?}");
     }
-    let held =
-        profile(&frames, &request, &result, Quantity::AreaElasticity, 9, &mut |_| ControlFlow::Continue(()));
+    let held = profile(&frames, &request, &result, FitParameter::AreaElasticity, 9, &mut |_| {
+        ControlFlow::Continue(())
+    });
     assert!(matches!(held, Err(Error::Constraint(_))));
 }
 
 #[test]
 fn refitted_landscapes_lie_below_those_with_fixed_nudges() {
     let frames = [observation(0.02, 0.05, 6)];
-    let request = request(Constraints::fixed([(Quantity::AreaElasticity, COEFFICIENTS[0])]));
+    let request = request(Constraints::fixed([(FitParameter::AreaElasticity, COEFFICIENTS[0])]));
     let result = fit(&frames, &request);
-    let quantities = [Quantity::PreferredPerimeter, Quantity::Chirality];
+    let quantities = [FitParameter::PreferredPerimeter, FitParameter::Chirality];
     let map =
         landscape(&frames, &request, &result, quantities, 5, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!((map.fixed.len(), map.refitted.len()), (25, 25));
@@ -128,7 +129,7 @@ impl Keeper for Kept {
 #[test]
 fn the_bootstrap_spreads_like_the_standard_error_and_repeats() {
     let frames = [observation(0.02, 0.05, 7)];
-    let request = request(Constraints::fixed([(Quantity::AreaElasticity, COEFFICIENTS[0])]));
+    let request = request(Constraints::fixed([(FitParameter::AreaElasticity, COEFFICIENTS[0])]));
     let result = fit(&frames, &request);
     let mut kept = Kept::default();
     let again =
@@ -144,7 +145,7 @@ fn the_bootstrap_spreads_like_the_standard_error_and_repeats() {
         bootstrap(&frames, &request, &result, 60, &mut Unkept, &mut |_| ControlFlow::Continue(())).unwrap();
     assert_eq!(first, second);
     assert_eq!(first.failed, 0);
-    let values = first.values(Quantity::ChiralCoefficient);
+    let values = first.values(FitParameter::ChiralCoefficient);
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     let spread = (values.iter().map(|v| (v - mean).powi(2)).sum::<f64>() / (values.len() - 1) as f64).sqrt();
     let ratio = spread / result.parameters.chiral_coefficient.standard_error;
@@ -173,7 +174,7 @@ fn a_flow_field_without_noise_gives_the_coefficients() {
 #[test]
 fn the_search_finds_a_lower_objective_than_first_order_descent() {
     let frames = [observation(0.05, 0.02, 8)];
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, COEFFICIENTS[0])]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, COEFFICIENTS[0])]);
     let search =
         Request { noise: KnownNoise { position: Some(0.05), velocity: Some(0.02) }, ..request(constraints) };
     let found = fit(&frames, &search);
@@ -224,7 +225,7 @@ fn a_smooth_background_is_no_concern_of_the_model() {
         *v += voronudge_geometry::Vector::new(3.0 - r.y + 0.2 * r.x * r.y, 0.7 * r.x - 0.1 * r.y * r.y);
     }
     let flowing = fit(&[flowing.with_background(Some(2))], &request(Constraints::default()));
-    for quantity in Quantity::ALL {
+    for quantity in FitParameter::ALL {
         let (a, b) = (plain.parameters.get(quantity), flowing.parameters.get(quantity));
         assert!((a.value - b.value).abs() < 1e-3 * a.standard_error, "{quantity:?}");
     }

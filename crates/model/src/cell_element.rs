@@ -92,7 +92,7 @@ impl<S: Arithmetic> RingForces<'_, S> {
     /// A force on vertex `m` of the polygon, handed on to the two neighbours there and to the cell.
     pub fn on_vertex(&mut self, polygon: &CellPolygon<S>, m: usize, force: Vector<S>) {
         let next = if m + 1 == self.on_ring.len() { 0 } else { m + 1 };
-        let [on_this, on_next] = polygon.corners()[m].transmit(force);
+        let [on_this, on_next] = polygon.corners()[m].pull_back(force);
         self.on_ring[m] += on_this;
         self.on_ring[next] += on_next;
         *self.on_cell -= on_this + on_next;

@@ -11,7 +11,7 @@ pub struct VertexForces<S> {
     /// Multiple of `∂P/∂r_v`: minus a tension.
     pub perimeter: S,
     /// Multiple of `ẑ × ∂P/∂r_v`: a torque of the cortex.
-    pub turned_perimeter: S,
+    pub chiral_tension: S,
 }
 
 impl<S: Arithmetic> VertexForces<S> {
@@ -19,7 +19,7 @@ impl<S: Arithmetic> VertexForces<S> {
     #[inline(always)]
     pub fn of(terms: &[WeightedTerm<S>], shape: Shape<S>) -> Self {
         let zero = S::constant(0.0);
-        let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
+        let mut forces = Self { area: zero, perimeter: zero, chiral_tension: zero };
         for weighted in terms {
             weighted.term.act_on_shape(shape, weighted.coefficient, &mut forces);
         }
@@ -36,7 +36,7 @@ impl<S: Arithmetic> VertexForces<S> {
             return Self::of(&model.terms, shape);
         }
         let zero = S::constant(0.0);
-        let mut forces = Self { area: zero, perimeter: zero, turned_perimeter: zero };
+        let mut forces = Self { area: zero, perimeter: zero, chiral_tension: zero };
         for weighted in &model.terms {
             let (term, coefficient) = match weighted.term.modulated(&site) {
                 Some((term, weight)) => (term, weighted.coefficient * weight),
@@ -65,7 +65,7 @@ impl<S: Arithmetic> VertexForces<S> {
     /// Adds `factor · ẑ × ∂P/∂r_v` to every vertex.
     #[inline(always)]
     pub fn along_turned_perimeter_gradient(&mut self, factor: S) {
-        self.turned_perimeter += factor;
+        self.chiral_tension += factor;
     }
 
     /// The force on a vertex with the given gradients of the cell's area and perimeter.
@@ -75,10 +75,10 @@ impl<S: Arithmetic> VertexForces<S> {
         Vector::new(
             area_gradient.x * self.area
                 + perimeter_gradient.x * self.perimeter
-                + turned.x * self.turned_perimeter,
+                + turned.x * self.chiral_tension,
             area_gradient.y * self.area
                 + perimeter_gradient.y * self.perimeter
-                + turned.y * self.turned_perimeter,
+                + turned.y * self.chiral_tension,
         )
     }
 
@@ -92,7 +92,7 @@ impl<S: Arithmetic> VertexForces<S> {
         let ring_forces = &mut ring_forces[..corners.len()];
         for m in 0..corners.len() {
             let force = self.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
-            let [on_this, on_next] = corners[m].transmit(force);
+            let [on_this, on_next] = corners[m].pull_back(force);
             ring_forces[m] = carried + on_this;
             carried = on_next;
             on_cell -= on_this + on_next;

@@ -1,6 +1,6 @@
 //! The exact derivative of one cell's element with respect to the positions of its ring.
 //!
-//! With the multiples `q = (q_A, q_P, q_T)` of the vertex forces held, what a corner transmits depends on its own two
+//! With the multiples `q = (q_A, q_P, q_T)` of the vertex forces held, what a corner pulls back depends on its own two
 //! neighbours and, through the area's gradient, linearly on the two vertices beside it. The multiples depend on the ring
 //! through the cell's area and perimeter alone. So
 //!
@@ -9,7 +9,7 @@
 //! ```
 //!
 //! needs dual numbers along two directions for the terms, whatever the number of sides; the derivatives of the geometry at a corner are
-//! [`Corner::transmit_slopes`]. All of it is generic, so it works on several cells at once.
+//! [`Corner::pull_back_slopes`]. All of it is generic, so it works on several cells at once.
 
 use crate::VertexForces;
 use voronudge_geometry::{
@@ -34,7 +34,7 @@ pub(crate) fn held<S: Arithmetic>(multiples: &VertexForces<ByShape<S>>) -> Verte
     VertexForces {
         area: multiples.area.value,
         perimeter: multiples.perimeter.value,
-        turned_perimeter: multiples.turned_perimeter.value,
+        chiral_tension: multiples.chiral_tension.value,
     }
 }
 
@@ -47,7 +47,7 @@ pub(crate) fn along<S: Arithmetic>(
     VertexForces {
         area: multiples.area.slopes[direction],
         perimeter: multiples.perimeter.slopes[direction],
-        turned_perimeter: multiples.turned_perimeter.slopes[direction],
+        chiral_tension: multiples.chiral_tension.slopes[direction],
     }
 }
 
@@ -55,7 +55,7 @@ pub(crate) fn along<S: Arithmetic>(
 #[inline(always)]
 pub(crate) fn turn<S: Arithmetic>(polygon: &CellPolygon<S>, m: usize, held: &VertexForces<S>) -> Outer<S> {
     let Outer { column, row } = side_direction_slope(polygon.ring()[m], polygon.directions()[m]);
-    Outer { column: column * held.perimeter + quarter_turn(column) * held.turned_perimeter, row }
+    Outer { column: column * held.perimeter + quarter_turn(column) * held.chiral_tension, row }
 }
 
 /// Buffers for the derivative of one element after another.
@@ -113,7 +113,7 @@ impl<S: Arithmetic> ElementJacobian<S> {
         let sides = polygon.len();
         let (zero, one) = (S::constant(0.0), S::constant(1.0));
         let [of_area, of_perimeter, turned] = &mut self.units;
-        let unit = |area, perimeter, turned_perimeter| VertexForces { area, perimeter, turned_perimeter };
+        let unit = |area, perimeter, chiral_tension| VertexForces { area, perimeter, chiral_tension };
         unit(one, zero, zero).on_ring(polygon, of_area);
         unit(zero, one, zero).on_ring(polygon, of_perimeter);
         unit(zero, zero, one).on_ring(polygon, turned);
@@ -122,7 +122,7 @@ impl<S: Arithmetic> ElementJacobian<S> {
             let [by_area, by_perimeter] = [0, 1].map(|by| {
                 of_area[a] * multiples.area.slopes[by]
                     + of_perimeter[a] * multiples.perimeter.slopes[by]
-                    + turned[a] * multiples.turned_perimeter.slopes[by]
+                    + turned[a] * multiples.chiral_tension.slopes[by]
             });
             let row = &mut blocks[a * sides..][..sides];
             // The unit forces are the gradients of area and perimeter by the ring.
@@ -157,7 +157,7 @@ impl<S: Arithmetic> ElementJacobian<S> {
             let next = if m + 1 == sides { 0 } else { m + 1 };
             let force = held.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
             let by_next = Outer { column: -turns[next].column, row: turns[next].row };
-            let [on_this, on_next] = corner.transmit_slopes(force, [turns[m], by_next]);
+            let [on_this, on_next] = corner.pull_back_slopes(force, [turns[m], by_next]);
             for (on, at) in [(on_this, m), (on_next, next)] {
                 add(&mut blocks[at * sides + m], &on[0]);
                 add(&mut blocks[at * sides + next], &on[1]);
@@ -177,7 +177,7 @@ impl<S: Arithmetic> ElementJacobian<S> {
             let next = step(m, 1);
             for (beside, weight) in [(step(m, sides - 1), half), (next, -half)] {
                 for (moved, b) in vertices[beside].iter().zip([beside, step(beside, 1)]) {
-                    let [on_this, on_next] = corner.transmit(quarter_turn(moved.column) * weight);
+                    let [on_this, on_next] = corner.pull_back(quarter_turn(moved.column) * weight);
                     for (on, at) in [(on_this, m), (on_next, next)] {
                         let (x, y) = (moved.row.x, moved.row.y);
                         add(&mut blocks[at * sides + b], &[on.x * x, on.x * y, on.y * x, on.y * y]);

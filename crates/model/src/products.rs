@@ -204,7 +204,7 @@ impl<S: Arithmetic> Backwards<S> {
         let [by_area, by_perimeter] = [0, 1].map(|by| {
             of_area * multiples.area.slopes[by]
                 + of_perimeter * multiples.perimeter.slopes[by]
-                + turned * multiples.turned_perimeter.slopes[by]
+                + turned * multiples.chiral_tension.slopes[by]
         });
         let mut on_cell = Vector::new(zero, zero);
         for m in 0..sides {
@@ -213,10 +213,10 @@ impl<S: Arithmetic> Backwards<S> {
                 (polygon.area_gradient(m), polygon.perimeter_gradient(m));
             let beside = quarter_turn(moved[before] - moved[after]) * (held.area * 0.5);
             let on_vertex = area_gradient * by_area + perimeter_gradient * by_perimeter + beside;
-            let [mut on_this, mut on_next] = corners[m].transmit(on_vertex);
+            let [mut on_this, mut on_next] = corners[m].pull_back(on_vertex);
             let by_next = Outer { column: -turns[after].column, row: turns[after].row };
             let force = held.on_vertex(area_gradient, perimeter_gradient);
-            let [of_this, of_next] = corners[m].transmit_slopes(force, [turns[m], by_next]);
+            let [of_this, of_next] = corners[m].pull_back_slopes(force, [turns[m], by_next]);
             let back = |block: [S; 4], u: Vector<S>| {
                 Vector::new(block[0] * u.x + block[2] * u.y, block[1] * u.x + block[3] * u.y)
             };

@@ -6,7 +6,7 @@ use claims::{Noise, TRUTH, Tissue};
 use std::error::Error;
 use std::ops::ControlFlow;
 use voronudge_geometry::{Tessellation, Vector};
-use voronudge_infer::{Constraints, Inference, Observation, Prior, Quantity, Request, infer};
+use voronudge_infer::{Constraints, FitParameter, Inference, Observation, Prior, Request, infer};
 use voronudge_model::{Model, Parameters, velocities};
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::Palette;
@@ -202,17 +202,18 @@ fn nudged_loss(size: Size) -> Result<Made, Box<dyn Error>> {
     let count = size.pick(5, 25);
     let chiralities: Vec<f64> = (0..count).map(|k| 1.0 + 5.0 * k as f64 / (count - 1) as f64).collect();
     let measured: f64 = tissue.velocities.iter().map(Vector::norm_squared).sum();
-    let known = [Quantity::PerimeterElasticity, Quantity::PreferredPerimeter];
+    let known = [FitParameter::PerimeterElasticity, FitParameter::PreferredPerimeter];
     let (mut quenched, mut nudged) = (Vec::new(), Vec::new());
     for &chirality in &chiralities {
         let sum: Vec<Vector<f64>> = parts[0].iter().zip(&parts[1]).map(|(a, b)| a + b * chirality).collect();
         quenched.push([chirality, relative_loss(&tissue, &sum)]);
         let held = known.map(|quantity| (quantity, tissue.truth(quantity)));
-        let mut constraints = Constraints::fixed(held.into_iter().chain([(Quantity::Chirality, chirality)]));
+        let mut constraints =
+            Constraints::fixed(held.into_iter().chain([(FitParameter::Chirality, chirality)]));
         // A fit needs something to fit: K_A, which is known to one per cent.
-        let area = tissue.truth(Quantity::AreaElasticity);
+        let area = tissue.truth(FitParameter::AreaElasticity);
         let prior = Prior { mean: area, standard_deviation: 0.01 * area };
-        constraints.priors.insert(Quantity::AreaElasticity, prior);
+        constraints.priors.insert(FitParameter::AreaElasticity, prior);
         let fit = fitted(&tissue, &frame, constraints)?;
         nudged.push([chirality, (fit.objective * NOISE.velocity.powi(2) / measured).sqrt()]);
     }
@@ -246,7 +247,7 @@ fn nudged_loss(size: Size) -> Result<Made, Box<dyn Error>> {
 fn fits(_: Size) -> Result<Made, Box<dyn Error>> {
     let tissue = Tissue::new(100, 1)?;
     let frame = tissue.measured(NOISE, 1)?;
-    let held = (Quantity::AreaElasticity, tissue.truth(Quantity::AreaElasticity));
+    let held = (FitParameter::AreaElasticity, tissue.truth(FitParameter::AreaElasticity));
     let fit = fitted(&tissue, &frame, Constraints::fixed([held]))?;
     let naive_model = Model::chiral_voronoi(&fit.naive);
     let measured_topology = Tessellation::new(&frame.positions, tissue.tessellation.domain())?;

@@ -157,9 +157,9 @@ impl Oracle {
             for corner in 0..3 {
                 let rotated = [0, 1, 2].map(|k| centres[(corner + k) % 3]);
                 let slope = vertex_derivative(rotated, here);
-                let transmitted = slope.transpose() * force;
-                fields.velocities[owners[corner]] += transmitted;
-                for (row, f) in [transmitted.x, transmitted.y].into_iter().enumerate() {
+                let pulled_back = slope.transpose() * force;
+                fields.velocities[owners[corner]] += pulled_back;
+                for (row, f) in [pulled_back.x, pulled_back.y].into_iter().enumerate() {
                     fields.stress[row][0] += f * centres[corner].x;
                     fields.stress[row][1] += f * centres[corner].y;
                 }

@@ -28,7 +28,7 @@ pub struct Corner {
 impl Oracle {
     /// Velocities of the centres under forces on vertices: `Σ_v (∂r_v/∂r_i)ᵀ f_v`, with `f_v` the sum of what the
     /// polygons that share the vertex contribute.
-    pub fn transmit(&self, force: impl Fn(&Corner) -> Vector2<f64>) -> Vec<Vector2<f64>> {
+    pub fn pull_back(&self, force: impl Fn(&Corner) -> Vector2<f64>) -> Vec<Vector2<f64>> {
         let mut velocities = vec![Vector2::zeros(); self.positions.len()];
         for cell in 0..self.positions.len() {
             for (m, corner) in self.corners(cell).iter().enumerate() {

@@ -5,7 +5,7 @@ use crate::Outcome;
 use claims::{Noise, Tissue};
 use std::ops::ControlFlow;
 use std::time::Instant;
-use voronudge_infer::{KnownNoise, Quantity, infer};
+use voronudge_infer::{FitParameter, KnownNoise, infer};
 
 const CELLS: usize = 100;
 const NOISE: [Noise; 4] = [
@@ -16,12 +16,12 @@ const NOISE: [Noise; 4] = [
 ];
 
 /// What is counted, in the order of the columns.
-const QUANTITIES: [Quantity; 5] = [
-    Quantity::ChiralCoefficient,
-    Quantity::Chirality,
-    Quantity::PerimeterElasticity,
-    Quantity::PreferredPerimeter,
-    Quantity::AreaElasticity,
+const QUANTITIES: [FitParameter; 5] = [
+    FitParameter::ChiralCoefficient,
+    FitParameter::Chirality,
+    FitParameter::PerimeterElasticity,
+    FitParameter::PreferredPerimeter,
+    FitParameter::AreaElasticity,
 ];
 
 /// One fit.

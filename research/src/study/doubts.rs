@@ -9,7 +9,7 @@ use rand_pcg::Pcg64;
 use std::error::Error;
 use std::ops::ControlFlow;
 use voronudge_geometry::{CellPolygon, FieldOfView, Vector};
-use voronudge_infer::{KnownNoise, Observation, Part, Quantity, infer};
+use voronudge_infer::{FitParameter, KnownNoise, Observation, Part, infer};
 
 const CELLS: usize = 225;
 
@@ -76,7 +76,7 @@ fn fit(noise: Noise, known: KnownNoise, fault: Fault, seed: u64) -> Result<Fitte
     let frame = observed(&tissue, noise, fault, seed)?;
     let result = infer(&[frame], &tissue.request(known), &mut |_| ControlFlow::Continue(()))?;
     let found = result.parameters.chiral_coefficient;
-    let off = (found.value - tissue.truth(Quantity::ChiralCoefficient)).abs();
+    let off = (found.value - tissue.truth(FitParameter::ChiralCoefficient)).abs();
     Ok(Fitted {
         is_off: off > OFF * found.standard_error,
         doubtful: result.doubts.iter().map(voronudge_infer::Doubt::part).collect(),

@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox};
 use voronudge_infer::forecast::{Ahead, Forecast, Forecaster, check, forecast};
 use voronudge_infer::{
-    Activity, Constraints, CrossValidation, Drift, KnownNoise, Movie, Polarity, Quantity, Request,
+    Activity, Constraints, CrossValidation, Drift, FitParameter, KnownNoise, Movie, Polarity, Request,
     infer_tracks,
 };
 use voronudge_model::Structure;
@@ -119,7 +119,7 @@ fn judge(seed: u64, cells: usize) -> Result<Judged, Box<dyn Error>> {
         noise: KnownNoise::default(),
         cross_validation: CrossValidation::Skipped,
         structure: structure.clone(),
-        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, elasticity)]))
+        ..Request::new(Constraints::fixed([(FitParameter::AreaElasticity, elasticity)]))
     };
     let beginning = self::movie(&set, FITTED)?;
     let fit = |activity| {

@@ -10,7 +10,7 @@ use std::ops::ControlFlow;
 use std::path::Path;
 use std::time::Instant;
 use voronudge_infer::{
-    CrossValidation, Inference, KnownNoise, Loss, Method, Observation, Progress, Quantity, Request, infer,
+    CrossValidation, FitParameter, Inference, KnownNoise, Loss, Method, Observation, Progress, Request, infer,
 };
 
 const POSITION_NOISE: [f64; 5] = [0.0, 0.01, 0.02, 0.05, 0.1];
@@ -128,7 +128,7 @@ fn row(cells: usize, noise: Noise, seed: u64) -> Result<Row, Box<dyn std::error:
 }
 
 fn outcomes(tissue: &Tissue, fit: &Inference, noise: Noise, seconds: f64) -> Outcomes {
-    let (chiral, perimeter) = (Quantity::ChiralCoefficient, Quantity::PreferredPerimeter);
+    let (chiral, perimeter) = (FitParameter::ChiralCoefficient, FitParameter::PreferredPerimeter);
     let estimate = |quantity| fit.parameters.get(quantity);
     let error = |quantity| (estimate(quantity).value / tissue.truth(quantity) - 1.0).abs();
     let covers = |quantity| estimate(quantity).covers(tissue.truth(quantity));
@@ -151,8 +151,8 @@ fn naive(tissue: &Tissue, measured: &Observation, fit: &Inference, noise: Noise)
     let naive = &fit.naive;
     let chiral = naive.perimeter_elasticity * naive.chirality;
     Outcomes {
-        chiral: (chiral / tissue.truth(Quantity::ChiralCoefficient) - 1.0).abs(),
-        perimeter: (naive.preferred_perimeter / tissue.truth(Quantity::PreferredPerimeter) - 1.0).abs(),
+        chiral: (chiral / tissue.truth(FitParameter::ChiralCoefficient) - 1.0).abs(),
+        perimeter: (naive.preferred_perimeter / tissue.truth(FitParameter::PreferredPerimeter) - 1.0).abs(),
         covered: None,
         deviation: f64::NAN,
         wrong_edges: tissue.wrong_edges(&measured.tessellation),

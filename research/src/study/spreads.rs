@@ -7,7 +7,7 @@ use claims::differing::Differing;
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_infer::discover::{Discovery, Search, discover};
-use voronudge_infer::{Quantity, Unkept, infer};
+use voronudge_infer::{FitParameter, Unkept, infer};
 use voronudge_model::CellParameter::{self, AreaElasticity, Chirality, PreferredArea, PreferredPerimeter};
 
 const CELLS: usize = 324;
@@ -26,11 +26,11 @@ struct Row {
     seconds: f64,
 }
 
-const MEANS: [Quantity; 4] = [
-    Quantity::AreaElasticity,
-    Quantity::PerimeterElasticity,
-    Quantity::PreferredPerimeter,
-    Quantity::Chirality,
+const MEANS: [FitParameter; 4] = [
+    FitParameter::AreaElasticity,
+    FitParameter::PerimeterElasticity,
+    FitParameter::PreferredPerimeter,
+    FitParameter::Chirality,
 ];
 
 /// `searching`: whether the sets are given to the search for what is missing, instead of a fit in which cells differ.

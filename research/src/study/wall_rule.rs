@@ -45,7 +45,7 @@ impl Papers {
                     continue;
                 }
                 let force = forces.on_vertex(polygon.area_gradient(m), polygon.perimeter_gradient(m));
-                let handed = corner.transmit(force);
+                let handed = corner.pull_back(force);
                 for (neighbour, on) in pair.into_iter().zip(handed) {
                     v[neighbour] += on;
                     v[cell] -= on;

@@ -2,7 +2,7 @@
 
 use super::Problem;
 use voronudge_geometry::Vector;
-use voronudge_infer::{Estimate, Inference, ParameterEstimates, Quantity, Velocities};
+use voronudge_infer::{Estimate, FitParameter, Inference, ParameterEstimates, Velocities};
 use voronudge_model::Parameters;
 
 /// No vector.
@@ -10,12 +10,12 @@ const NOWHERE: Vector<f64> = Vector::new(f64::NAN, f64::NAN);
 
 impl Problem {
     /// A parameter in the units of the data. What was given keeps its last digit.
-    pub fn estimate(&self, result: &Inference, quantity: Quantity) -> Estimate {
+    pub fn estimate(&self, result: &Inference, quantity: FitParameter) -> Estimate {
         self.in_units(&result.parameters, quantity)
     }
 
     /// The same of parameters of some of the cells.
-    pub fn in_units(&self, estimates: &ParameterEstimates, quantity: Quantity) -> Estimate {
+    pub fn in_units(&self, estimates: &ParameterEstimates, quantity: FitParameter) -> Estimate {
         let fitted = estimates.get(quantity).in_unit(self.scale.factor(quantity));
         let given = self.constraints.fixed.get(&quantity).filter(|_| fitted.standard_error == 0.0);
         Estimate { value: given.copied().unwrap_or(fitted.value), ..fitted }
@@ -25,11 +25,11 @@ impl Problem {
     pub fn parameters(&self, result: &Inference) -> Parameters<f64> {
         let value = |quantity| self.estimate(result, quantity).value;
         Parameters {
-            area_elasticity: value(Quantity::AreaElasticity),
-            perimeter_elasticity: value(Quantity::PerimeterElasticity),
-            preferred_perimeter: value(Quantity::PreferredPerimeter),
+            area_elasticity: value(FitParameter::AreaElasticity),
+            perimeter_elasticity: value(FitParameter::PerimeterElasticity),
+            preferred_perimeter: value(FitParameter::PreferredPerimeter),
             preferred_area: self.scale.length * self.scale.length,
-            chirality: value(Quantity::Chirality),
+            chirality: value(FitParameter::Chirality),
         }
     }
 

@@ -7,18 +7,18 @@
 //!
 //! ```
 //! use std::ops::ControlFlow;
-//! use voronudge::infer::{Constraints, Quantity};
+//! use voronudge::infer::{Constraints, FitParameter};
 //! use voronudge::io::Source;
 //! use voronudge::problem::{Problem, Question};
 //!
 //! let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/../../fixtures/chiral-liquid");
 //! let data = Source::folder(folder).load()?;
-//! let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.1)]);
+//! let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.1)]);
 //! let mut problem = Problem::new(&data, &Question { constraints, ..Question::default() })?;
 //! let mut watch = |_: voronudge::infer::Progress<'_>| ControlFlow::Continue(());
 //! problem.understand(&mut watch)?;
 //! let (found, _) = problem.infer(&mut watch)?;
-//! assert!(problem.estimate(&found, Quantity::ChiralCoefficient).covers(3.4)); // K_P α, per unit of time
+//! assert!(problem.estimate(&found, FitParameter::ChiralCoefficient).covers(3.4)); // K_P α, per unit of time
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 

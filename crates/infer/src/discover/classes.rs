@@ -1,14 +1,14 @@
 //! What was added against everything that could stand in its place.
 
 use super::chance::Chance;
-use super::crawling::Crawling;
+use super::crawling::{Crawling, TOO_LITTLE, is_too_little};
 use super::heterogeneity::Heterogeneity;
 use super::lineup::added_places;
 use super::resilience::{Member, partial};
 use super::result::Selected;
 use super::steps::{Model, Setting};
 use crate::search::Watch;
-use crate::{Error, Quantity};
+use crate::{Error, FitParameter};
 use voronudge_model::Effect;
 
 /// Lead in `−2 log L` below which another effect could as well be the right one: under it, so large a lead of a wrong one has a
@@ -113,6 +113,7 @@ pub(super) fn without_each(
             // What is no more than chance need not be looked at.
             weakness: match adjusted_p < setting.level(others.len()) {
                 true if !is_there => Some(NOT_THERE),
+                true if is_too_little(model, score.statistic) => Some(TOO_LITTLE),
                 true => member.weakness(setting, base, model)?,
                 false => None,
             },
@@ -145,7 +146,9 @@ pub(super) fn selection(
             columns: candidate.columns.clone().unwrap_or_default(),
             coefficients: match Crawling::of(setting, tested.candidate, model) {
                 Some(crawling) => crawling.estimates(),
-                None => places.iter().map(|k| model.inference.effects[k - Quantity::COEFFICIENTS]).collect(),
+                None => {
+                    places.iter().map(|k| model.inference.effects[k - FitParameter::COEFFICIENTS]).collect()
+                }
             },
             adjusted_p: tested.adjusted_p,
             share_of_excess: (tested.statistic / excess.before).clamp(0.0, 1.0),

@@ -8,10 +8,10 @@ use super::steps::{Model, Setting};
 use crate::Estimate;
 use crate::tracks::{Alignment, Drive, Polarity};
 
-/// Least evidence of what turns a polarity, as a share of that of both together. How polarities turn is a model of the simplest kind, and less
-/// than this is what it may be wrong by.
+/// Least evidence of what is found beside a polarity, or turns it, as a share of that of both together. How polarities turn is a model of the
+/// simplest kind, and less than this is what it may be wrong by.
 const LEAST_SHARE: f64 = 0.01;
-const TOO_LITTLE: &str = "it explains less than a hundredth of what the polarity does, whose own form is not known as well as that";
+pub(super) const TOO_LITTLE: &str = "it explains less than a hundredth of what the polarity does, whose own form is not known as well as that";
 
 /// Coefficients of a polarity: its speed and how fast it is forgotten; of what turns it: one.
 fn coefficients(setting: &Setting<'_>, candidate: usize) -> usize {
@@ -31,19 +31,26 @@ pub(super) fn hinted(
     model: &Model,
 ) -> (Ranked, bool) {
     let mut ranked = ranked(setting, candidate, hint);
-    let polarity = model.followed.as_ref().and_then(|own| own.tracked.polarity.as_ref());
     // Of drives the score, which is about what their fit finds; of others that of a few points, which is the least.
-    let is_too_little = setting.candidates[candidate].drives().any()
-        && polarity.is_some_and(|own| turns_too_little(own, hint));
+    let is_too_little = setting.candidates[candidate].drives().any() && is_too_little(model, hint);
     if is_too_little && ranked.fate == Fate::Explained {
         ranked.fate = Fate::NotConfirmed(TOO_LITTLE);
     }
     (ranked, !is_too_little)
 }
 
-/// Whether what turns a polarity explains so little of what both do.
-fn turns_too_little(polarity: &Polarity, evidence: f64) -> bool {
-    evidence < LEAST_SHARE * (polarity.evidence + evidence)
+/// The polarity of a fitted model, if it has one.
+fn polarity(model: &Model) -> Option<&Polarity> {
+    model.followed.as_ref()?.tracked.polarity.as_ref()
+}
+
+/// Whether something with so much evidence explains too little beside the polarity of a model, if that has one.
+pub(super) fn is_too_little(model: &Model, evidence: f64) -> bool {
+    polarity(model).is_some_and(|own| is_little(evidence, own))
+}
+
+fn is_little(evidence: f64, beside: &Polarity) -> bool {
+    evidence < LEAST_SHARE * (beside.evidence + evidence)
 }
 
 /// Probability of so much evidence if there is none. Its speed, or the rate at which it aligns, is then at its bound, and the rate at which
@@ -84,7 +91,7 @@ pub(super) struct Crawling<'a> {
 impl<'a> Crawling<'a> {
     /// If a candidate is the polarity, and the model has one.
     pub fn of(setting: &Setting<'_>, candidate: usize, model: &'a Model) -> Option<Self> {
-        let polarity = model.followed.as_ref()?.tracked.polarity.as_ref()?;
+        let polarity = polarity(model)?;
         let inference = &model.inference;
         let own = &setting.candidates[candidate];
         let drives = own.drives();
@@ -111,7 +118,7 @@ impl<'a> Crawling<'a> {
     /// or turns one too little.
     pub fn reason_against(&self, setting: &Setting<'_>, others: usize) -> Option<&'static str> {
         if let Some(Turn { evidence, .. }) = self.turn {
-            return turns_too_little(self.polarity, evidence).then_some(TOO_LITTLE);
+            return is_little(evidence, self.polarity).then_some(TOO_LITTLE);
         }
         let level = setting.level(others) / setting.named(&[]).len() as f64;
         let lasts = self.polarity.evidence_of_memory >= critical_chi_squared(level, 1.0);

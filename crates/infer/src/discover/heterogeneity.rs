@@ -13,7 +13,7 @@ use super::result::{Fate, Ranked, Selected};
 use super::steps::{Model, Setting};
 use crate::search::Watch;
 use crate::spread::{evidence, evidence_of_field, probability};
-use crate::{Error, Estimate, Inference, Observation, Quantity};
+use crate::{Error, Estimate, FitParameter, Inference, Observation};
 use voronudge_geometry::Vector;
 use voronudge_model::CellParameter;
 
@@ -159,7 +159,7 @@ impl Heterogeneity {
         let places = added_places(&setting.search.fit.structure, setting.candidates, added).effects;
         let p = |places: &Vec<usize>| {
             let of = |place: &usize| {
-                let own = &inference.effects[place - Quantity::COEFFICIENTS];
+                let own = &inference.effects[place - FitParameter::COEFFICIENTS];
                 upper_chi_squared((own.value / own.standard_error).powi(2), 1.0)
             };
             let least = places.iter().map(of).fold(1.0, f64::min);

@@ -7,7 +7,7 @@ use super::steps::{Model, Setting};
 use crate::cross_validation::without;
 use crate::least_squares::{invert, residuals};
 use crate::uncertainty::nudges;
-use crate::{Error, Observation, Quantity, Velocities};
+use crate::{Error, FitParameter, Observation, Velocities};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::{Vector, Visibility};
 
@@ -259,7 +259,7 @@ pub(super) fn partial(
     let frames = setting.frames;
     let objective = model.objective(frames);
     let coefficients = model.inference.coefficients.as_slice();
-    let base = Quantity::COEFFICIENTS;
+    let base = FitParameter::COEFFICIENTS;
     let (mut rows, mut targets) = (Vec::new(), Vec::new());
     for (index, nudges) in nudges(frames, &model.inference).iter().enumerate() {
         let evaluated = objective.place(index, nudges)?.evaluate(coefficients);

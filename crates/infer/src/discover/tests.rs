@@ -7,7 +7,7 @@ use crate::coefficients::PREFERRED_AREA;
 use crate::sample::observation;
 use crate::search::Watch;
 use crate::tracks::sample::{Filmed, TRUTH};
-use crate::{Constraints, CrossValidation, KnownNoise, Observation, Quantity, Request, Unkept};
+use crate::{Constraints, CrossValidation, FitParameter, KnownNoise, Observation, Request, Unkept};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 use voronudge_geometry::Vector;
@@ -19,7 +19,7 @@ fn search(effects: &[&str]) -> Search {
         noise: KnownNoise { position: Some(0.02), velocity: Some(0.05) },
         cross_validation: CrossValidation::Skipped,
         structure: Structure::base(PREFERRED_AREA),
-        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.1)]))
+        ..Request::new(Constraints::fixed([(FitParameter::AreaElasticity, 0.1)]))
     };
     let candidates = effects.iter().filter_map(|id| Effect::from_id(id)).collect();
     Search { candidates, null_sets: Some(0), ..Search::new(fit) }
@@ -106,7 +106,7 @@ fn tracks_tell_whether_cells_crawl() {
         search(&["polarity", "polarity_alignment", "persistence", "drift", "alpha_area", "nematic_stress"]);
     search.fit.noise = KnownNoise::default();
     search.fit.cross_validation = CrossValidation::Done;
-    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    search.fit.constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
     let (movie, [_, speed, _]) = filmed.movie_of_crawling(2.0, 1.0);
     let found = discover_in_tracks(&movie, &search, &mut silent).unwrap();
@@ -157,7 +157,7 @@ fn tracks_tell_whether_polarities_align() {
     let mut search = search(&["polarity", "polarity_alignment", "alpha_area"]);
     search.fit.noise = KnownNoise::default();
     search.fit.cross_validation = CrossValidation::Skipped;
-    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    search.fit.constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     let driving = Driving { speed: 1.0, rotational_diffusion: 1.0, alignment: 3.0, ..Driving::default() };
     let (movie, [_, unit, _]) = filmed.movie_of_driven(driving);
     let found = discover_in_tracks(&movie, &search, &mut |_| ControlFlow::Continue(())).unwrap();
@@ -181,7 +181,7 @@ fn tracks_tell_what_drives_polarities() {
     ]);
     search.fit.noise = KnownNoise::default();
     search.fit.cross_validation = CrossValidation::Skipped;
-    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    search.fit.constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     let crawling = Driving { speed: 1.0, rotational_diffusion: 2.0, free_speed: true, ..Driving::default() };
     for [b, kappa] in [[0.0, 0.0], [30.0, 0.0], [0.0, 0.7]] {
         let driving = Driving { contact_inhibition: b, velocity_alignment: kappa, ..crawling };
@@ -209,7 +209,7 @@ fn tracks_tell_whether_cells_move_at_random() {
     let mut search = search(&["polarity", "alpha_area", "random_motion"]);
     search.fit.noise = KnownNoise::default();
     search.fit.cross_validation = CrossValidation::Skipped;
-    search.fit.constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    search.fit.constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     for (diffusion, speed, named) in
         [(0.0, 0.0, &[][..]), (0.03, 0.0, &["random_motion"]), (0.0, 2.0, &["polarity"])]
     {

@@ -1,6 +1,8 @@
 use super::*;
 use crate::tracks::sample::{Filmed, TRUTH};
-use crate::{Activity, Constraints, CrossValidation, Inference, KnownNoise, Quantity, Request, infer_tracks};
+use crate::{
+    Activity, Constraints, CrossValidation, FitParameter, Inference, KnownNoise, Request, infer_tracks,
+};
 use voronudge_observables::Quantity as Observed;
 use voronudge_simulate::Driving;
 
@@ -64,7 +66,7 @@ impl Crawling {
             noise: KnownNoise::default(),
             cross_validation: CrossValidation::Skipped,
             structure: Structure::base(1.0),
-            ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
+            ..Request::new(Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]))
         };
         let beginning = movie.beginning(FITTED);
         let fit = |activity| {

@@ -35,7 +35,7 @@ fn request() -> Request {
     Request {
         noise: KnownNoise { position: Some(0.01), velocity: Some(0.03) },
         cross_validation: CrossValidation::Skipped,
-        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, COEFFICIENTS[0])]))
+        ..Request::new(Constraints::fixed([(FitParameter::AreaElasticity, COEFFICIENTS[0])]))
     }
 }
 

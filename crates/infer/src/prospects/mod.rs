@@ -19,7 +19,7 @@ pub use snapshots::prospects;
 
 use crate::estimates::{Fitted, StandardErrors};
 use crate::least_squares::invert;
-use crate::{CoefficientSpace, Constraints, Error, Inference, Quantity};
+use crate::{CoefficientSpace, Constraints, Error, FitParameter, Inference};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Domain;
 
@@ -57,8 +57,8 @@ impl Design {
 pub struct Prospect {
     /// The design.
     pub design: Design,
-    /// Standard error of each quantity of [`Quantity::ALL`] as a share of the present one; NaN for those that are held.
-    pub parameters: [f64; Quantity::ALL.len()],
+    /// Standard error of each quantity of [`FitParameter::ALL`] as a share of the present one; NaN for those that are held.
+    pub parameters: [f64; FitParameter::ALL.len()],
     /// The same of the coefficients of effects, in the order of the structure; of a search, of those of the effects that were added, one after
     /// the other, NaN of what has no column.
     pub effects: Vec<f64>,
@@ -163,7 +163,7 @@ fn corrected(result: &Inference) -> Vec<f64> {
         all[..base.len()].copy_from_slice(&base);
     }
     for (k, effect) in result.effects.iter().enumerate() {
-        all[Quantity::COEFFICIENTS + k] = effect.value;
+        all[FitParameter::COEFFICIENTS + k] = effect.value;
     }
     all
 }

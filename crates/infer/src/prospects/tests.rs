@@ -7,7 +7,7 @@ use crate::{
 use std::ops::ControlFlow;
 
 fn request(noise: KnownNoise) -> Request {
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.1)]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.1)]);
     Request { noise, cross_validation: CrossValidation::Skipped, ..Request::new(constraints) }
 }
 
@@ -21,7 +21,7 @@ fn frames(count: u64, position: f64) -> Vec<Observation> {
 }
 
 fn errors(result: &Inference) -> [f64; 2] {
-    [Quantity::PreferredPerimeter, Quantity::ChiralCoefficient]
+    [FitParameter::PreferredPerimeter, FitParameter::ChiralCoefficient]
         .map(|quantity| result.parameters.get(quantity).standard_error)
 }
 
@@ -58,7 +58,7 @@ fn what_is_foreseen_of_snapshots_comes_true() {
 fn what_is_foreseen_of_tracks_comes_true() {
     let seen = |frames: usize, step: f64| {
         let (movie, _) = Filmed { size: [100, frames], step, error: 0.02, seed: 3 }.movie();
-        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+        let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
         let request = Request { cross_validation: CrossValidation::Skipped, ..Request::new(constraints) };
         infer_tracks(&movie, &request, &mut |_| ControlFlow::Continue(())).unwrap()
     };

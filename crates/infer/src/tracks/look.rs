@@ -1,6 +1,6 @@
 //! The likelihood of noise levels and memory about a point: from factors at points around it, or from one factor and draws.
 
-use super::likely::{Place, Spaced, held};
+use super::likely::{Place, Spaced};
 use super::memory::Memory;
 use super::objective::MovieObjective;
 use super::surface::{CLOSE, Matrix, PAIRS_OF_SIDES, POINTS, Point, Surface};
@@ -15,10 +15,6 @@ use rayon::prelude::*;
 const FEWEST_FOR_PRODUCTS: usize = 3;
 const FOR_PRODUCTS: usize = 50_000;
 
-/// Draws for intervals; standard errors, in spacings, from which on a likelihood is not what it is like at its top alone.
-const DRAWS_FOR_INTERVALS: usize = 48;
-const WIDE: f64 = 0.3;
-
 /// A linearised problem and what is known of its noise.
 #[derive(Clone, Copy)]
 pub(super) struct Seen<'a> {
@@ -31,8 +27,8 @@ pub(super) struct Seen<'a> {
 /// How a likelihood is looked at.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Way {
-    /// For intervals: by its derivatives, but at points a spacing away along unknowns that are hardly better known than that.
-    Wide,
+    /// At points a spacing away: for intervals, which are as wide.
+    Points,
     /// By its derivatives, of which traces are found from so many draws of the unknowns: they err by standard errors over the root of that number.
     Draws(usize),
 }
@@ -53,25 +49,26 @@ impl Seen<'_> {
     pub fn look(&self, spaced: &Spaced, way: Way) -> Result<Look, Error> {
         match way {
             Way::Draws(count) => self.derivatives(spaced, count),
-            Way::Wide => self.widened(spaced, self.derivatives(spaced, DRAWS_FOR_INTERVALS)?),
+            Way::Points => {
+                let values = self.at_points(spaced, &POINTS.map(Point::from))?;
+                let criteria: Vec<f64> = values.iter().map(|own| own.criterion).collect();
+                let variances: Vec<f64> = values.iter().map(|own| own.variance.ln()).collect();
+                let log_variance = Surface::new(&variances).slope;
+                Ok(Look { here: values[0], criterion: Surface::new(&criteria), log_variance })
+            }
         }
     }
 
-    /// With what points a spacing away tell along unknowns that are hardly better known than that.
-    fn widened(&self, spaced: &Spaced, mut look: Look) -> Result<Look, Error> {
-        let covariance =
-            look.criterion.covariance(held(&self.known, self.objective.states.polarities.align()));
-        let is_wide = |k: &usize| covariance[(*k, *k)].sqrt() > WIDE;
-        let wide: Vec<usize> = self.unknown().into_iter().filter(is_wide).collect();
-        let sides: Vec<usize> = wide.iter().flat_map(|k| PAIRS_OF_SIDES[*k]).collect();
-        let found = self.equations.each(&sides, |side| self.likelihood(spaced.at(POINTS[*side].into())))?;
-        for (k, sides) in wide.into_iter().zip(found.chunks_exact(2)) {
-            let [above, below] = [0, 1].map(|side| sides[side].criterion);
-            look.criterion.slope[k] = 0.5 * (above - below);
-            look.criterion.bend[(k, k)] = above + below - 2.0 * look.here.criterion;
-            look.log_variance[k] = 0.5 * (sides[0].variance / sides[1].variance).ln();
-        }
-        Ok(look)
+    /// At some points; those that differ in an alignment alone that is none are one.
+    fn at_points(&self, spaced: &Spaced, points: &[Point]) -> Result<Vec<Likelihood>, Error> {
+        let own = |point: &Point| match self.objective.states.polarities.align() {
+            true => *point,
+            false => Point::new(point[0], point[1], point[2], 0.0),
+        };
+        let first = |point: &Point| points.iter().position(|other| *other == own(point)).unwrap_or(0);
+        let needed: Vec<usize> = (0..points.len()).filter(|k| first(&points[*k]) == *k).collect();
+        let found = self.equations.each(&needed, |k| self.likelihood(spaced.at(points[*k])))?;
+        Ok(points.iter().map(|point| found[needed.binary_search(&first(point)).unwrap_or(0)]).collect())
     }
 
     /// Which of the unknowns the likelihood depends on.
@@ -216,8 +213,7 @@ mod tests {
                 let memory = Memory { times: 1.5 * memory.times + 0.05, alignment, ..memory };
                 let spaced = seen.about(memory);
                 let look = seen.look(&spaced, Way::Draws(4000)).unwrap();
-                let near =
-                    POINTS.map(|point| seen.likelihood(spaced.at(Point::from(point) * CLOSE)).unwrap());
+                let near = seen.at_points(&spaced, &POINTS.map(|point| Point::from(point) * CLOSE)).unwrap();
                 let exact = |of: fn(&Likelihood) -> f64| {
                     Surface::new(&near.iter().map(of).collect::<Vec<_>>()).seen_from(CLOSE)
                 };

@@ -292,7 +292,7 @@ mod tests {
     use crate::tracks::Drift;
     use crate::tracks::infer_tracks;
     use crate::tracks::sample::{Filmed, TRUTH};
-    use crate::{Constraints, Quantity};
+    use crate::{Constraints, FitParameter};
     use voronudge_geometry::FieldOfView;
 
     /// Two cells are never seen, one is lost after the first frame, and one comes back under another name.
@@ -309,7 +309,7 @@ mod tests {
         }
         let times = (0..5).map(|frame| 0.1 * f64::from(frame)).collect();
         let movie = Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap();
-        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+        let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
         let request = Request::new(constraints);
         let (completed, latent) =
             complete_tracks(&movie, &request, None, &mut |_| ControlFlow::Continue(())).unwrap();
@@ -341,7 +341,7 @@ mod tests {
     fn cells_that_crawl_hide_no_others() {
         let (movie, _) =
             Filmed { size: [64, 5], step: 0.1, error: 0.01, seed: 3 }.movie_of_crawling(0.5, 1.0);
-        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+        let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
         let noise = KnownNoise { position: Some(0.01), velocity: Some(0.02) };
         let request = Request { noise, ..Request::new(constraints) };
         let (completed, _) =

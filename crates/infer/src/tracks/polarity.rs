@@ -89,7 +89,7 @@ impl Seen<'_> {
     pub fn polarity(&self, displacements: &[f64]) -> Result<Option<Polarity>, Error> {
         let objective = &self.objective;
         let Some(memory) = objective.memory else { return Ok(None) };
-        let Likely { covariance, of_variance: (of_variance, further), .. } = self.likely(Way::Wide)?;
+        let Likely { covariance, of_variance: (of_variance, further), .. } = self.likely(Way::Points)?;
         let interval = objective.movie.interval();
         let root_mean_square = |memory: Memory| -> Result<f64, Error> {
             Ok(memory.root_mean_square() * objective.states.polarities.mean_variance(memory)?.sqrt())

@@ -4,7 +4,7 @@ use super::follow;
 use super::inference::Followed;
 use super::movie::{Drift, Movie};
 use crate::search::Watch;
-use crate::{Activity, Constraints, CrossValidation, Quantity, Request};
+use crate::{Activity, Constraints, CrossValidation, FitParameter, Request};
 use rand_distr::{Distribution, Normal};
 use std::ops::ControlFlow;
 use voronudge_geometry::{CellPolygon, Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
@@ -121,7 +121,7 @@ pub fn followed(activity: Activity) -> (Movie, Request, Followed) {
     let request = Request {
         activity,
         cross_validation: CrossValidation::Skipped,
-        ..Request::new(Constraints::fixed([(Quantity::AreaElasticity, 0.0)]))
+        ..Request::new(Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]))
     };
     let mut silent = |_: crate::Progress<'_>| ControlFlow::Continue(());
     let (_, followed) = follow(&movie, &request, None, &mut Watch { observe: &mut silent }).unwrap();

@@ -1,6 +1,6 @@
 use super::sample::{Filmed, TRUTH};
 use super::{infer_tracks, measure_tracks};
-use crate::{Activity, Constraints, Drives, KnownMeasurement, Quantity, Request};
+use crate::{Activity, Constraints, Drives, FitParameter, KnownMeasurement, Request};
 use std::ops::ControlFlow;
 use voronudge_simulate::Driving;
 
@@ -8,7 +8,7 @@ use voronudge_simulate::Driving;
 #[test]
 fn large_steps_do_not_bias_the_parameters() {
     let (movie, chiral) = Filmed { size: [100, 4], step: 0.19, error: 0.02, seed: 3 }.movie();
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     let (found, tracked) =
         infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
     let p = &found.parameters;
@@ -28,7 +28,7 @@ fn large_steps_do_not_bias_the_parameters() {
 fn errors_held_out_are_those_of_noise() {
     for seed in [3, 4] {
         let (movie, _) = Filmed { size: [100, 5], step: 0.06, error: 0.02, seed }.movie();
-        let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+        let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
         let (found, _) =
             infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
         let [held_out, spread] = found.nmse.cross_validated.unwrap();
@@ -41,7 +41,7 @@ fn errors_held_out_are_those_of_noise() {
 #[ignore = "slow"]
 fn centroids_are_told_from_sites() {
     let filmed = Filmed { size: [144, 4], step: 0.1, error: 0.01, seed: 4 };
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     let request = Request::new(constraints);
     let mut observe = |_: crate::Progress<'_>| ControlFlow::Continue(());
     for (share, (movie, chiral)) in [(0.0, filmed.movie()), (1.0, filmed.movie_of_centroids())] {
@@ -65,7 +65,7 @@ fn centroids_are_told_from_sites() {
 fn motions_of_centroids_are_predicted() {
     let filmed = Filmed { size: [100, 4], step: 0.1, error: 0.005, seed: 4 };
     let movie = filmed.movie_of_centroids().0.with_positions_at(1.0);
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     let (found, _) =
         infer_tracks(&movie, &Request::new(constraints), &mut |_| ControlFlow::Continue(())).unwrap();
     let [held_out, _] = found.nmse.cross_validated.unwrap();
@@ -74,7 +74,7 @@ fn motions_of_centroids_are_predicted() {
 }
 
 fn crawling() -> Request {
-    let constraints = Constraints::fixed([(Quantity::AreaElasticity, 0.0)]);
+    let constraints = Constraints::fixed([(FitParameter::AreaElasticity, 0.0)]);
     Request { activity: Activity::Polarity, ..Request::new(constraints) }
 }
 

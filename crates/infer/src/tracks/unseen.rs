@@ -112,7 +112,7 @@ mod tests {
     use crate::tracks::movie::{Drift, Movie};
     use crate::tracks::rule::Rule;
     use crate::tracks::sample::{Filmed, TRUTH};
-    use crate::{CoefficientSpace, Constraints, NoiseLevels, Quantity};
+    use crate::{CoefficientSpace, Constraints, FitParameter, NoiseLevels};
     use voronudge_geometry::FieldOfView;
     use voronudge_model::Structure;
 
@@ -129,7 +129,8 @@ mod tests {
         let times = (0..5).map(|frame| 0.1 * f64::from(frame)).collect();
         let movie = Movie::new(times, &film, domain, FieldOfView::default(), Drift::None).unwrap();
         let movie = lengthen(movie).unwrap();
-        let space = CoefficientSpace::new(&Constraints::fixed([(Quantity::AreaElasticity, 0.0)])).unwrap();
+        let space =
+            CoefficientSpace::new(&Constraints::fixed([(FitParameter::AreaElasticity, 0.0)])).unwrap();
         let states = States::new(&movie).unwrap();
         let objective = MovieObjective {
             movie: &movie,

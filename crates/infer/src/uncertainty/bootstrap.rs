@@ -5,8 +5,8 @@ use crate::replicates::{Keeper, Series};
 use crate::search::Watch;
 use crate::seeds::{Purpose, seed_of};
 use crate::{
-    CrossValidation, Error, Examination, Flow, Inference, Observation, Prior, Quantity, Request, Velocities,
-    infer,
+    CrossValidation, Error, Examination, FitParameter, Flow, Inference, Observation, Prior, Request,
+    Velocities, infer,
 };
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
@@ -16,7 +16,7 @@ use voronudge_geometry::Vector;
 /// Estimates from synthetic data sets.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Bootstrap {
-    /// One set of parameters for each replicate that could be fitted, in the order of [`Quantity::ALL`].
+    /// One set of parameters for each replicate that could be fitted, in the order of [`FitParameter::ALL`].
     pub replicates: Vec<[f64; 5]>,
     /// Replicates that could not be fitted.
     pub failed: usize,
@@ -24,15 +24,15 @@ pub struct Bootstrap {
 
 impl Bootstrap {
     /// The estimates of a quantity, ascending.
-    pub fn values(&self, quantity: Quantity) -> Vec<f64> {
-        let index = Quantity::ALL.iter().position(|q| *q == quantity).unwrap_or(0);
+    pub fn values(&self, quantity: FitParameter) -> Vec<f64> {
+        let index = FitParameter::ALL.iter().position(|q| *q == quantity).unwrap_or(0);
         let mut values: Vec<f64> = self.replicates.iter().map(|replicate| replicate[index]).collect();
         values.sort_unstable_by(f64::total_cmp);
         values
     }
 
     /// The central 95 % of the estimates of a quantity; `None` with fewer than 40 replicates.
-    pub fn interval(&self, quantity: Quantity) -> Option<[f64; 2]> {
+    pub fn interval(&self, quantity: FitParameter) -> Option<[f64; 2]> {
         let values = self.values(quantity);
         let quantile = |p: f64| {
             let at = p * (values.len() - 1) as f64;
@@ -78,7 +78,7 @@ fn replicate(
     let scatter = result.noise.velocity * result.excess().sqrt();
     let (synthetic, request) = synthetic(frames, request, result, scatter, number)?;
     let refit = infer(&synthetic, &request, observe)?;
-    Ok(Quantity::ALL.map(|quantity| refit.parameters.get(quantity).value))
+    Ok(FitParameter::ALL.map(|quantity| refit.parameters.get(quantity).value))
 }
 
 /// Data that a fit could have made, with noise of the velocities as given, and the request to fit them in the same way; another set for every number.

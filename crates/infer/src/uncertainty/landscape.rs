@@ -5,7 +5,7 @@ use crate::least_squares::residuals;
 use crate::objective::{Nudged, Objective};
 use crate::position_rows;
 use crate::search::Watch;
-use crate::{Error, Inference, Observation, Progress, Quantity, Request};
+use crate::{Error, FitParameter, Inference, Observation, Progress, Request};
 use nalgebra::DVector;
 use std::ops::ControlFlow;
 
@@ -13,7 +13,7 @@ use std::ops::ControlFlow;
 #[derive(Debug, Clone, PartialEq)]
 pub struct Landscape {
     /// Parameters along x and y.
-    pub quantities: [Quantity; 2],
+    pub quantities: [FitParameter; 2],
     /// Their values, ascending.
     pub values: [Vec<f64>; 2],
     /// With nudges and other parameters as fitted: the paper's slices. Row by row, rows along y.
@@ -30,7 +30,7 @@ pub fn landscape(
     frames: &[Observation],
     request: &Request,
     result: &Inference,
-    quantities: [Quantity; 2],
+    quantities: [FitParameter; 2],
     points: usize,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Landscape, Error> {
@@ -46,7 +46,7 @@ pub fn landscape(
         watch.each("landscape", &places, point.level(), |at| point.refitted(&[(x, at[0]), (y, at[1])]))?;
     let slice = Slice::new(&point)?;
     // K_P first: the ratios are kept when it changes.
-    let order = if y == Quantity::PerimeterElasticity { [1, 0] } else { [0, 1] };
+    let order = if y == FitParameter::PerimeterElasticity { [1, 0] } else { [0, 1] };
     let fixed: Vec<f64> = places
         .iter()
         .map(|at| order.iter().fold(result.coefficients.clone(), |c, k| with(&c, quantities[*k], at[*k])))

@@ -11,7 +11,7 @@ pub use profile::{Profile, profile};
 
 use crate::objective::Objective;
 use crate::search::refine;
-use crate::{CoefficientSpace, Error, FrameResult, Inference, Observation, Quantity, Request};
+use crate::{CoefficientSpace, Error, FitParameter, FrameResult, Inference, Observation, Request};
 use nalgebra::DVector;
 use voronudge_model::Structure;
 
@@ -56,7 +56,7 @@ impl<'a> Point<'a> {
     }
 
     /// −2 log likelihood with quantities held, everything else refitted.
-    fn refitted(&self, held: &[(Quantity, f64)]) -> Result<f64, Error> {
+    fn refitted(&self, held: &[(FitParameter, f64)]) -> Result<f64, Error> {
         let mut space = self.space.clone();
         for (quantity, value) in held {
             space = space.hold(*quantity, *value)?;
@@ -67,7 +67,7 @@ impl<'a> Point<'a> {
     }
 
     /// Values around that of a quantity where Φ is least, ascending. The estimate is off from there by the bias that was taken off.
-    fn range(&self, quantity: Quantity, points: usize) -> Result<Vec<f64>, Error> {
+    fn range(&self, quantity: FitParameter, points: usize) -> Result<Vec<f64>, Error> {
         let estimate = self.result.parameters.get(quantity);
         if !estimate.value.is_finite() {
             return Err(Error::Constraint("a ratio to K_P has no profile where K_P is zero"));
@@ -106,10 +106,12 @@ pub(crate) fn nudges(frames: &[Observation], result: &Inference) -> Vec<Vec<f64>
 }
 
 /// Coefficients with one quantity changed and the other parameters kept.
-fn with(c: &DVector<f64>, quantity: Quantity, value: f64) -> DVector<f64> {
+fn with(c: &DVector<f64>, quantity: FitParameter, value: f64) -> DVector<f64> {
     let mut changed = c.clone();
     match quantity {
-        Quantity::PerimeterElasticity => changed.rows_mut(1, 3).copy_from(&(c.rows(1, 3) * (value / c[2]))),
+        FitParameter::PerimeterElasticity => {
+            changed.rows_mut(1, 3).copy_from(&(c.rows(1, 3) * (value / c[2])))
+        }
         ratio if ratio.is_ratio() => changed[ratio.coefficient()] = value * c[2],
         other => changed[other.coefficient()] = value,
     }
@@ -123,11 +125,13 @@ mod tests {
     #[test]
     fn changing_a_quantity_keeps_the_other_parameters() {
         let c = DVector::from_column_slice(&[0.1, 8.0, 2.0, 6.0]);
-        for quantity in Quantity::ALL {
+        for quantity in FitParameter::ALL {
             let changed = with(&c, quantity, 5.0);
             assert!((quantity.of(changed.as_slice()) - 5.0).abs() < 1e-12);
-            for other in [Quantity::AreaElasticity, Quantity::PreferredPerimeter, Quantity::Chirality] {
-                let coupled = other == Quantity::Chirality && quantity == Quantity::ChiralCoefficient;
+            for other in
+                [FitParameter::AreaElasticity, FitParameter::PreferredPerimeter, FitParameter::Chirality]
+            {
+                let coupled = other == FitParameter::Chirality && quantity == FitParameter::ChiralCoefficient;
                 if other != quantity && !coupled {
                     assert!(
                         (other.of(changed.as_slice()) - other.of(c.as_slice())).abs() < 1e-12,

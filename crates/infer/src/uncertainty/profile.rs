@@ -3,14 +3,14 @@
 use super::Point;
 use crate::estimates::CHI_SQUARED_95;
 use crate::search::Watch;
-use crate::{Error, Inference, Observation, Progress, Quantity, Request};
+use crate::{Error, FitParameter, Inference, Observation, Progress, Request};
 use std::ops::ControlFlow;
 
 /// How −2 log likelihood rises when one parameter is held away from its estimate and everything else is fitted again.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Profile {
     /// The parameter.
-    pub quantity: Quantity,
+    pub quantity: FitParameter,
     /// Values, ascending, and the rise above the least of all.
     pub points: Vec<(f64, f64)>,
     /// Where the rise crosses 3.84; `None` where it does not within the range.
@@ -25,7 +25,7 @@ pub fn profile(
     frames: &[Observation],
     request: &Request,
     result: &Inference,
-    quantity: Quantity,
+    quantity: FitParameter,
     points: usize,
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Profile, Error> {

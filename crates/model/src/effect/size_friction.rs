@@ -46,7 +46,7 @@ impl FlowResponse for SizeFriction {
             let v = flow.velocities[cell] * (coefficient * scale);
             let sides = polygon.len();
             for (m, corner) in polygon.corners().iter().enumerate() {
-                let gradients = corner.transmit(polygon.area_gradient(m));
+                let gradients = corner.pull_back(polygon.area_gradient(m));
                 for (g, side) in gradients.iter().zip([m, (m + 1) % sides]) {
                     let block = [v.x * g.x, v.x * g.y, v.y * g.x, v.y * g.y];
                     row.add(flow.tessellation.neighbours(cell)[side] as usize, &block);

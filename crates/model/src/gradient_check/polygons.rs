@@ -56,7 +56,7 @@ pub(super) fn rows(sample: &Sample) -> Vec<GradientRow> {
             for component in Axis::BOTH {
                 let at = component.index();
                 let unit = Vector::new((1 - at) as f64, at as f64);
-                let [on_a, on_b] = corner.transmit(unit);
+                let [on_a, on_b] = corner.pull_back(unit);
                 vertices.add_vector(on_a, gradient(centre[at], 0), place);
                 vertices.add_vector(on_b, gradient(centre[at], 2), place);
             }

@@ -14,7 +14,7 @@ pub enum Strain {
 }
 
 impl Strain {
-    /// All, in the order of the columns of [`Response`](super::Response).
+    /// All, in the order of the columns of [`StressResponse`](super::StressResponse).
     pub const ALL: [Self; 3] = [Self::Dilation, Self::PureShear1, Self::PureShear2];
 
     /// The stretch `U = exp(E)`, `E` the symmetric gradient of displacement of an amount; shears keep the area.
@@ -83,7 +83,7 @@ impl Deformation {
     }
 }
 
-/// The parts of a stress (row = component of the force), in the order of the rows of [`Response`](super::Response):
+/// The parts of a stress (row = component of the force), in the order of the rows of [`StressResponse`](super::StressResponse):
 /// `(σ_xx + σ_yy)/2`, `(σ_yx − σ_xy)/2`, `(σ_xx − σ_yy)/2`, `(σ_xy + σ_yx)/2`.
 pub fn parts(s: [[f64; 2]; 2]) -> [f64; 4] {
     [

@@ -3,7 +3,7 @@
 use super::deformation::{Deformation, Strain, parts};
 use super::relaxation::SparseJacobian;
 use super::settled::Settled;
-use super::{Moduli, Motion, Observer, Response, Stop, deformed, standard_error, stress_of};
+use super::{Moduli, Motion, Observer, Stop, StressResponse, deformed, standard_error, stress_of};
 use crate::simulation::derivatives;
 use crate::{Direction, Driving, Error, Shear, Simulation};
 use rayon::prelude::*;
@@ -115,7 +115,7 @@ impl Settled {
     ///
     /// # Errors
     /// [`Error::Response`]; the errors of [`Simulation::step`].
-    pub fn linear_response(&self, frequency: f64, strain: f64) -> Result<[Response; 2], Error> {
+    pub fn linear_response(&self, frequency: f64, strain: f64) -> Result<[StressResponse; 2], Error> {
         Linear::new(self.simulation(), strain)?.response(frequency)
     }
 }
@@ -127,12 +127,12 @@ struct Linear<'a> {
     /// Derivatives of velocities by each strain, with cells that follow it.
     forces: [Vec<Vector<f64>>; 3],
     /// Derivatives of the stress by each strain, with cells that follow it.
-    affine: Response,
+    affine: StressResponse,
 }
 
 impl<'a> Linear<'a> {
     fn new(base: &'a Simulation, strain: f64) -> Result<Self, Error> {
-        let mut affine = Response::default();
+        let mut affine = StressResponse::default();
         let mut forces = [const { Vec::new() }; 3];
         for (k, own) in Strain::ALL.into_iter().enumerate() {
             let side = |amount: f64| -> Result<_, Error> {
@@ -159,12 +159,12 @@ impl<'a> Linear<'a> {
     }
 
     /// Derivatives of stresses by strains, in phase and out of phase.
-    fn response(&self, frequency: f64) -> Result<[Response; 2], Error> {
+    fn response(&self, frequency: f64) -> Result<[StressResponse; 2], Error> {
         // (J − iω) u = −f
         let system =
             LinearSystem::new(&self.jacobian.matrix, Complex64::new(0.0, frequency), &self.jacobian.places)
                 .map_err(|source| Error::Response { frequency, source })?;
-        let (mut storage, mut loss) = (self.affine, Response::default());
+        let (mut storage, mut loss) = (self.affine, StressResponse::default());
         for (k, force) in self.forces.iter().enumerate() {
             let mut displacements: Vec<Complex64> =
                 force.iter().flat_map(|f| [-f.x, -f.y]).map(Complex64::from).collect();

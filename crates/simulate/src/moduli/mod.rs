@@ -99,11 +99,11 @@ pub struct Moduli {
 
 /// Derivatives of stresses, row = `(σ_xx + σ_yy)/2`, `(σ_yx − σ_xy)/2`, `(σ_xx − σ_yy)/2`, `(σ_xy + σ_yx)/2`, by strains without
 /// rotation, column = `∇·u`, `e_1`, `e_2` (rate: friction is absorbed).
-pub type Response = [[f64; 3]; 4];
+pub type StressResponse = [[f64; 3]; 4];
 
 impl Moduli {
     /// The isotropic part of a response: `μ` and `Kᵒ` are means of both shears.
-    pub fn of(response: &Response) -> Self {
+    pub fn of(response: &StressResponse) -> Self {
         Self {
             bulk: response[0][0],
             odd_bulk: response[1][0],
@@ -151,7 +151,7 @@ pub struct Elastic {
     /// Moduli for displacements that follow the strain, without relaxation, at the smaller strain.
     pub affine: Moduli,
     /// All responses after relaxation, which tell how far the state is from isotropic.
-    pub response: Response,
+    pub response: StressResponse,
     /// The stress before, row = component of the force.
     pub prestress: [[f64; 2]; 2],
     /// Whether the tissue came to rest.
@@ -241,7 +241,7 @@ fn measured(settled: &Settled, settings: &Settings, observer: Observer<'_>) -> R
             ends.iter().map(|end| end.after[k]).sum::<f64>() / ends.len() as f64
         })),
     };
-    let slopes = |share: usize, of: fn(&StrainedState) -> [f64; 4]| -> Response {
+    let slopes = |share: usize, of: fn(&StrainedState) -> [f64; 4]| -> StressResponse {
         std::array::from_fn(|part| {
             std::array::from_fn(|strain| {
                 let (plus, minus) = (&ends[4 * strain + 2 * share], &ends[4 * strain + 2 * share + 1]);
@@ -250,7 +250,7 @@ fn measured(settled: &Settled, settings: &Settings, observer: Observer<'_>) -> R
         })
     };
     let (large, small) = (slopes(0, |end| end.after), slopes(1, |end| end.after));
-    let response: Response =
+    let response: StressResponse =
         std::array::from_fn(|i| std::array::from_fn(|j| 0.5 * (large[i][j] + small[i][j])));
     let moduli = Moduli::of(&response);
     let errors = match motion {

@@ -1,7 +1,7 @@
 //! The stress after a step strain, in time.
 
 use super::deformation::{Deformation, Strain, parts};
-use super::{Moduli, Motion, Observer, Relaxation, Response, Settled, Stop, deformed, stress_of};
+use super::{Moduli, Motion, Observer, Relaxation, Settled, Stop, StressResponse, deformed, stress_of};
 use crate::{Error, Simulation};
 use rayon::prelude::*;
 
@@ -45,7 +45,7 @@ pub fn after_a_step(
         })
         .collect::<Result<_, Error>>()?;
     let at = |k: usize| {
-        let response: Response = std::array::from_fn(|part| {
+        let response: StressResponse = std::array::from_fn(|part| {
             std::array::from_fn(|own| {
                 (series[2 * own][k][part] - series[2 * own + 1][k][part]) / (2.0 * strain)
             })

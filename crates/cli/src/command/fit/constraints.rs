@@ -3,32 +3,32 @@
 use crate::failure::Failure;
 use clap::Args;
 use std::collections::BTreeMap;
-use voronudge_infer::{CoefficientSpace, Constraints, Prior, Quantity};
+use voronudge_infer::{CoefficientSpace, Constraints, FitParameter, Prior};
 
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Fit")]
 pub(crate) struct ConstraintArguments {
     /// Hold a parameter: `--fix K_A=0.1` (repeatable), in the units of the data.
     #[arg(long, value_name = "NAME=VALUE", value_parser = fixed, allow_hyphen_values = true)]
-    fix: Vec<(Quantity, f64)>,
+    fix: Vec<(FitParameter, f64)>,
     /// Keep a parameter between two values: `--bounds K_A=0..0.5`, `K_A=0..`, `P_0=..4.2` (repeatable).
     #[arg(long, value_name = "NAME=LOW..HIGH", value_parser = bounds, allow_hyphen_values = true)]
-    bounds: Vec<(Quantity, [f64; 2])>,
+    bounds: Vec<(FitParameter, [f64; 2])>,
     /// Weigh in what is known beforehand: `--prior P_0=3.9±0.2` or `P_0=3.9,0.2` (repeatable).
     #[arg(long, value_name = "NAME=MEAN±SD", value_parser = prior, allow_hyphen_values = true)]
-    prior: Vec<(Quantity, Prior)>,
+    prior: Vec<(FitParameter, Prior)>,
     /// Stiffnesses are not negative: short for `--bounds K_A=0.. --bounds K_P=0..`.
     #[arg(long)]
     stable: bool,
 }
 
 /// The quantity of a name.
-pub(crate) fn quantity(name: &str) -> Result<Quantity, String> {
-    Quantity::from_name(name)
+pub(crate) fn quantity(name: &str) -> Result<FitParameter, String> {
+    FitParameter::from_name(name)
         .ok_or_else(|| format!("{name} is not a parameter; there are K_A, K_P, P_0, alpha and K_P_alpha"))
 }
 
-fn named<'t>(text: &'t str, example: &str) -> Result<(Quantity, &'t str), String> {
+fn named<'t>(text: &'t str, example: &str) -> Result<(FitParameter, &'t str), String> {
     let (name, value) = text.split_once('=').ok_or_else(|| format!("write {example}"))?;
     Ok((quantity(name)?, value.trim()))
 }
@@ -38,12 +38,12 @@ fn number(text: &str) -> Result<f64, String> {
     if value.is_finite() { Ok(value) } else { Err(format!("{text} is not finite")) }
 }
 
-fn fixed(text: &str) -> Result<(Quantity, f64), String> {
+fn fixed(text: &str) -> Result<(FitParameter, f64), String> {
     let (quantity, value) = named(text, "NAME=VALUE, for example K_A=0.1")?;
     Ok((quantity, number(value)?))
 }
 
-fn bounds(text: &str) -> Result<(Quantity, [f64; 2]), String> {
+fn bounds(text: &str) -> Result<(FitParameter, [f64; 2]), String> {
     const EXAMPLE: &str = "NAME=LOW..HIGH, for example K_A=0..0.5, K_A=0.. or P_0=..4.2";
     let (quantity, range) = named(text, EXAMPLE)?;
     let (low, high) = range.split_once("..").ok_or_else(|| format!("write {EXAMPLE}"))?;
@@ -55,7 +55,7 @@ fn bounds(text: &str) -> Result<(Quantity, [f64; 2]), String> {
     }
 }
 
-fn prior(text: &str) -> Result<(Quantity, Prior), String> {
+fn prior(text: &str) -> Result<(FitParameter, Prior), String> {
     const EXAMPLE: &str = "NAME=MEAN±SD, for example P_0=3.9±0.2 or P_0=3.9,0.2";
     let (quantity, value) = named(text, EXAMPLE)?;
     let parts = ["±", "+-", ","].into_iter().find_map(|sign| value.split_once(sign));
@@ -70,8 +70,8 @@ fn prior(text: &str) -> Result<(Quantity, Prior), String> {
 
 fn once<T: Copy>(
     option: &str,
-    entries: impl IntoIterator<Item = (Quantity, T)>,
-) -> Result<BTreeMap<Quantity, T>, Failure> {
+    entries: impl IntoIterator<Item = (FitParameter, T)>,
+) -> Result<BTreeMap<FitParameter, T>, Failure> {
     let mut table = BTreeMap::new();
     for (quantity, value) in entries {
         if table.insert(quantity, value).is_some() {
@@ -85,7 +85,7 @@ fn once<T: Copy>(
 impl ConstraintArguments {
     /// What is known of the parameters, in the units of the data.
     pub fn constraints(&self) -> Result<Constraints, Failure> {
-        let positive = [Quantity::AreaElasticity, Quantity::PerimeterElasticity];
+        let positive = [FitParameter::AreaElasticity, FitParameter::PerimeterElasticity];
         let stable = positive.map(|quantity| (quantity, [0.0, f64::INFINITY]));
         let bounds = self.bounds.iter().copied().chain(stable.into_iter().filter(|_| self.stable));
         let constraints = Constraints {
@@ -122,7 +122,7 @@ mod tests {
     fn priors_may_be_written_in_three_ways() {
         let expected = Prior { mean: -3.9, standard_deviation: 0.2 };
         for text in ["alpha=-3.9±0.2", "alpha=-3.9 ± 0.2", "alpha=-3.9+-0.2", "alpha=-3.9,0.2"] {
-            assert_eq!(prior(text), Ok((Quantity::Chirality, expected)), "{text}");
+            assert_eq!(prior(text), Ok((FitParameter::Chirality, expected)), "{text}");
         }
         for wrong in ["alpha=1", "alpha=1±0", "alpha=1±-2", "alpha=1±x", "alpha", "beta=1±1", "alpha=inf±1"]
         {

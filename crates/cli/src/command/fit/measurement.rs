@@ -2,7 +2,7 @@
 
 use crate::problem::Problem;
 use crate::run::Run;
-use voronudge_infer::{Determined, Measurement, Quantity};
+use voronudge_infer::{Determined, FitParameter, Measurement};
 use voronudge_report::infer_report::{self as told, MeasurementSource, PositionKind};
 use voronudge_report::numbers::significant;
 
@@ -55,7 +55,7 @@ pub(super) fn positions(prepared: &Problem) -> told::MeasuredPositions {
 pub(super) fn window(prepared: &Problem) -> Option<told::MeasuredWindow> {
     let Measurement { rivals, width, .. } = &prepared.measurement;
     let (length, grid) = (prepared.scale.length, super::flow::described(prepared.velocities.flow()?));
-    let rate = prepared.scale.factor(Quantity::ChiralCoefficient);
+    let rate = prepared.scale.factor(FitParameter::ChiralCoefficient);
     let tried = rivals.iter().map(|rival| told::TriedWindow {
         kind: super::flow::told(rival.window.kind),
         width: rival.window.width * length,

@@ -7,8 +7,8 @@ use crate::problem::Problem;
 use std::collections::BTreeMap;
 use voronudge_geometry::{Certainty, Visibility};
 use voronudge_infer::{
-    Constraints, Estimate, Inference, Method, NoiseSource as Source, Observation, ParameterEstimates, Prior,
-    Profile, Quantity as What, Status, Velocities,
+    Constraints, Estimate, FitParameter as What, Inference, Method, NoiseSource as Source, Observation,
+    ParameterEstimates, Prior, Profile, Status, Velocities,
 };
 use voronudge_io::DataSet;
 use voronudge_report::Units;

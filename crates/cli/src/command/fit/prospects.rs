@@ -3,7 +3,7 @@
 use super::units::{symbol, unit};
 use crate::problem::Problem;
 use std::collections::BTreeMap;
-use voronudge_infer::{Ambiguity, Inference, Prospects, Quantity};
+use voronudge_infer::{Ambiguity, FitParameter, Inference, Prospects};
 use voronudge_report::Units;
 use voronudge_report::infer_report::{AmbiguityReport, DESIGNS, ProspectOf, ProspectsReport};
 use voronudge_report::numbers::significant;
@@ -48,7 +48,7 @@ pub(crate) fn report(
     };
     let size = result.parameters.perimeter_elasticity.value.abs();
     let (mut quantities, mut uncertain) = (Vec::new(), Vec::new());
-    for (k, quantity) in Quantity::ALL.into_iter().enumerate() {
+    for (k, quantity) in FitParameter::ALL.into_iter().enumerate() {
         let estimate = result.parameters.get(quantity);
         let shares = shares(&|own| own.parameters[k]);
         if estimate.standard_error == 0.0 || shares.is_empty() {
@@ -59,10 +59,10 @@ pub(crate) fn report(
         // Ratios follow from the others; what is small beside K_P does little, however large its error beside itself.
         let own = estimate.value.abs();
         let (usual, beside) = match quantity {
-            Quantity::AreaElasticity | Quantity::ChiralCoefficient if size > own => (size, " of K_P"),
+            FitParameter::AreaElasticity | FitParameter::ChiralCoefficient if size > own => (size, " of K_P"),
             _ => (own, ""),
         };
-        if quantity != Quantity::Chirality {
+        if quantity != FitParameter::Chirality {
             let relative = estimate.standard_error / usual;
             uncertain.push(Uncertain {
                 name: name.clone(),

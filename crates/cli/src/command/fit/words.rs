@@ -1,7 +1,7 @@
 //! What a fit and its uncertainty mean, in plain words.
 
 use voronudge_infer::{
-    Direction, Doubt, Estimate, Inference, Method, ParameterEstimates, Profile, Quantity, Voids,
+    Direction, Doubt, Estimate, FitParameter, Inference, Method, ParameterEstimates, Profile, Voids,
 };
 use voronudge_report::numbers::significant;
 
@@ -21,9 +21,9 @@ const COEFFICIENTS: [&str; 4] = ["K_A", "K_P P_0", "K_P", "K_P alpha"];
 const DENOMINATOR: usize = 2;
 
 /// A quantity as it is spoken of.
-pub(crate) fn spoken(quantity: Quantity) -> &'static str {
+pub(crate) fn spoken(quantity: FitParameter) -> &'static str {
     match quantity {
-        Quantity::ChiralCoefficient => "K_P alpha",
+        FitParameter::ChiralCoefficient => "K_P alpha",
         other => other.name(),
     }
 }
@@ -116,7 +116,7 @@ pub(crate) fn doubts(
 }
 
 /// How well a quantity is known.
-pub(crate) fn parameter(quantity: Quantity, estimate: &Estimate) -> String {
+pub(crate) fn parameter(quantity: FitParameter, estimate: &Estimate) -> String {
     let name = spoken(quantity);
     let Estimate { value, standard_error, interval } = estimate;
     if *standard_error == 0.0 {
@@ -209,7 +209,7 @@ fn combination(components: &[f64; 4], estimates: &ParameterEstimates) -> String 
 /// What a direction does to those ratios to K_P that are known: where both coefficients follow the sign of their ratio, it
 /// stays much as it is, and otherwise it changes.
 fn told_ratios(chosen: &[usize], components: &[f64; 4], estimates: &ParameterEstimates) -> String {
-    let ratios = [(1, Quantity::PreferredPerimeter), (3, Quantity::Chirality)];
+    let ratios = [(1, FitParameter::PreferredPerimeter), (3, FitParameter::Chirality)];
     let (mut kept, mut changed) = (Vec::new(), Vec::new());
     for (index, quantity) in ratios {
         let ratio = estimates.get(quantity);
@@ -258,7 +258,7 @@ mod tests {
 
     #[test]
     fn a_parameter_is_known_or_not_identified() {
-        let say = |estimate: Estimate| parameter(Quantity::ChiralCoefficient, &estimate);
+        let say = |estimate: Estimate| parameter(FitParameter::ChiralCoefficient, &estimate);
         assert_eq!(say(estimate(-3.4, 0.06)), "K_P alpha is known to 2 %");
         assert_eq!(say(estimate(3.4, 0.68)), "K_P alpha is known to 20 %");
         assert_eq!(

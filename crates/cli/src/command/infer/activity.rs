@@ -3,7 +3,7 @@
 use crate::command::fit::outcome;
 use crate::failure::Failure;
 use crate::problem::{Problem, Tracks};
-use voronudge_infer::{Drive, Inference, Polarity, Quantity, Tracked};
+use voronudge_infer::{Drive, FitParameter, Inference, Polarity, Tracked};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{ActivityReport, Parameter};
 
@@ -27,7 +27,7 @@ pub(super) fn check(movie: Option<&Tracks>) -> Result<(), Failure> {
 /// What to mind of a K_P that was fitted where a polarity shows.
 pub(super) fn caution(result: &Inference, tracked: &Tracked) -> Option<&'static str> {
     let shows = tracked.polarity.as_ref()?.rate_interval.is_some();
-    let fitted = result.parameters.get(Quantity::PerimeterElasticity).standard_error > 0.0;
+    let fitted = result.parameters.get(FitParameter::PerimeterElasticity).standard_error > 0.0;
     (shows && fitted).then_some(
         "K_P of cells that crawl comes out too small, and alpha too large: by some 5 to 10 % in tissues that flow, by a quarter \
          to a half in solid ones, beyond the interval. Quote K_P_alpha, P_0 and v_0, which suffer less",

@@ -3,7 +3,7 @@
 use super::questions::Answers;
 use crate::command::fit::units::{symbol, unit};
 use std::collections::BTreeMap;
-use voronudge_infer::{Bootstrap, Inference, Landscape, Profile, Quantity, Scale};
+use voronudge_infer::{Bootstrap, FitParameter, Inference, Landscape, Profile, Scale};
 use voronudge_report::figure::{self, BootstrapHistogram, LandscapeAxis, ProfileCurve};
 use voronudge_report::infer_report::{BootstrapResult, LandscapeResult, ProfileResult};
 use voronudge_report::{Uncertainty, Units};
@@ -41,13 +41,13 @@ fn values(landscape: &Landscape, scale: &Scale) -> [Vec<f64>; 2] {
 }
 
 /// The parameters that were fitted.
-fn free(result: &Inference) -> impl Iterator<Item = Quantity> + '_ {
-    Quantity::ALL.into_iter().filter(|quantity| result.parameters.get(*quantity).standard_error > 0.0)
+fn free(result: &Inference) -> impl Iterator<Item = FitParameter> + '_ {
+    FitParameter::ALL.into_iter().filter(|quantity| result.parameters.get(*quantity).standard_error > 0.0)
 }
 
 /// The bootstrap for the report.
 pub(super) fn bootstrap(bootstrap: &Bootstrap, result: &Inference, scale: &Scale) -> BootstrapResult {
-    let named = |quantity: Quantity| quantity.name().to_owned();
+    let named = |quantity: FitParameter| quantity.name().to_owned();
     BootstrapResult {
         replicates: bootstrap.replicates.len(),
         failed: bootstrap.failed,
@@ -68,8 +68,9 @@ fn standard_deviation(values: &[f64]) -> f64 {
 
 /// The answers as figures show them.
 pub(super) fn figures(answers: &Answers, result: &Inference, scale: &Scale, units: &Units) -> Uncertainty {
-    let best = |quantity: Quantity| result.parameters.get(quantity).value * scale.factor(quantity);
-    let error = |quantity: Quantity| result.parameters.get(quantity).standard_error * scale.factor(quantity);
+    let best = |quantity: FitParameter| result.parameters.get(quantity).value * scale.factor(quantity);
+    let error =
+        |quantity: FitParameter| result.parameters.get(quantity).standard_error * scale.factor(quantity);
     let curve = |of: &Profile| {
         let told = profile(of, scale);
         ProfileCurve {
@@ -84,7 +85,7 @@ pub(super) fn figures(answers: &Answers, result: &Inference, scale: &Scale, unit
     let slices = |of: &Landscape| {
         let [x, y] = of.quantities;
         let [along_x, along_y] = values(of, scale);
-        let axis = |quantity: Quantity, values: &[f64]| LandscapeAxis {
+        let axis = |quantity: FitParameter, values: &[f64]| LandscapeAxis {
             label: symbol(quantity).into(),
             unit: unit(quantity, units),
             values: values.to_vec(),
@@ -101,7 +102,7 @@ pub(super) fn figures(answers: &Answers, result: &Inference, scale: &Scale, unit
             }
         })
     };
-    let histogram = |bootstrap: &Bootstrap, quantity: Quantity| {
+    let histogram = |bootstrap: &Bootstrap, quantity: FitParameter| {
         let factor = scale.factor(quantity);
         BootstrapHistogram {
             parameter: symbol(quantity).into(),

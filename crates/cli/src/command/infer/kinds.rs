@@ -5,7 +5,7 @@ use crate::command::fit::units::symbol;
 use crate::failure::Failure;
 use crate::problem::Problem;
 use std::collections::BTreeMap;
-use voronudge_infer::{Estimate, Inference, KindEstimates, Kinds, Method, Quantity};
+use voronudge_infer::{Estimate, FitParameter, Inference, KindEstimates, Kinds, Method};
 use voronudge_io::DataSet;
 use voronudge_model::effect::LabelledParameter;
 use voronudge_report::Units;
@@ -152,9 +152,9 @@ fn in_words(own: &KindEstimates, reference: Option<i64>, (p, differs): (f64, boo
             own.label
         );
     }
-    let clear = |(_, difference): &&(Quantity, Estimate)| !difference.covers(0.0);
+    let clear = |(_, difference): &&(FitParameter, Estimate)| !difference.covers(0.0);
     let said: Vec<String> = (own.differences.iter().filter(clear))
-        .filter(|(quantity, _)| *quantity != Quantity::ChiralCoefficient)
+        .filter(|(quantity, _)| *quantity != FitParameter::ChiralCoefficient)
         .map(|(quantity, difference)| {
             format!("{} {}", symbol(*quantity), if difference.value > 0.0 { "higher" } else { "lower" })
         })

@@ -8,7 +8,7 @@ use crate::command::fit::{spreads, views};
 use crate::failure::Failure;
 use crate::problem::{Measured, Problem};
 use voronudge_geometry::Domain;
-use voronudge_infer::{Inference, Quantity};
+use voronudge_infer::{FitParameter, Inference};
 use voronudge_io::{DataSet, Difference};
 use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
@@ -97,7 +97,7 @@ fn paragraphs(data: &DataSet, prepared: &Problem, report: &InferReport) -> Vec<S
 
 /// What the constraints were, in a sentence, if there were bounds or priors.
 fn beforehand(report: &InferReport) -> Option<String> {
-    let printed = |name: &str| Quantity::from_name(name).map_or("", symbol);
+    let printed = |name: &str| FitParameter::from_name(name).map_or("", symbol);
     let bounds =
         report.constraints.bounds.iter().map(|(name, [low, high])| match (printed(name), low, high) {
             (name, low, high) if high.is_infinite() => format!("{name} at least {}", as_given(*low)),

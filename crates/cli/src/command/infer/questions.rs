@@ -8,7 +8,7 @@ use crate::problem::Problem;
 use crate::progress::Progress;
 use clap::Args;
 use voronudge_infer::{
-    Bootstrap, CoefficientSpace, Constraints, Error, Inference, Landscape, Profile, Quantity, bootstrap,
+    Bootstrap, CoefficientSpace, Constraints, Error, FitParameter, Inference, Landscape, Profile, bootstrap,
     landscape, profile,
 };
 
@@ -23,10 +23,10 @@ pub(super) struct UncertaintyArguments {
     bootstrap: usize,
     /// Hold a parameter at several values and fit all else again (repeatable).
     #[arg(long, value_name = "NAME", value_parser = quantity)]
-    profile: Vec<Quantity>,
+    profile: Vec<FitParameter>,
     /// The objective over two parameters: `--landscape P_0,alpha` (repeatable).
     #[arg(long, value_name = "NAME,NAME", value_parser = two_quantities)]
-    landscape: Vec<[Quantity; 2]>,
+    landscape: Vec<[FitParameter; 2]>,
     /// Values of each parameter in profiles and landscapes, 5 to 101.
     #[arg(long, value_name = "N", default_value_t = 15, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(5..=101))]
     points: u64,
@@ -48,14 +48,14 @@ fn replicates(text: &str) -> Result<usize, String> {
     }
 }
 
-fn two_quantities(text: &str) -> Result<[Quantity; 2], String> {
+fn two_quantities(text: &str) -> Result<[FitParameter; 2], String> {
     let (x, y) = text.split_once(',').ok_or("write NAME,NAME, for example P_0,alpha")?;
     let [x, y] = [quantity(x.trim())?, quantity(y.trim())?];
     if x == y { Err(format!("{} is named twice", x.name())) } else { Ok([x, y]) }
 }
 
 /// Whether a quantity can still vary in a space: whether it differs between two of its points.
-fn varies(space: &CoefficientSpace, quantity: Quantity) -> bool {
+fn varies(space: &CoefficientSpace, quantity: FitParameter) -> bool {
     let at = |step: f64| -> f64 {
         let free: Vec<f64> = (0..space.dimension()).map(|k| 1.3 + step * (k as f64 + 0.7)).collect();
         quantity.of(space.coefficients(&free).as_slice())
@@ -72,7 +72,7 @@ impl UncertaintyArguments {
                 .with_hint("leave out --shard, or add --bootstrap N"));
         }
         let space = CoefficientSpace::new(constraints)?;
-        let refuse = |place: &str, held: Quantity| {
+        let refuse = |place: &str, held: FitParameter| {
             Err(Failure::new(format!("{place}: {} is held", held.name()))
                 .with_hint("leave it free, or ask about another parameter"))
         };

@@ -7,7 +7,7 @@ use crate::command::fit::flow::described;
 use crate::command::fit::{Stated, implied, outcome, prospects};
 use crate::problem::Problem;
 use crate::run::Run;
-use voronudge_infer::{Inference, NoiseSource, Prospects, Quantity as What};
+use voronudge_infer::{FitParameter as What, Inference, NoiseSource, Prospects};
 use voronudge_io::DataSet;
 use voronudge_report::infer_report::{
     ActivityReport, InferReport, Measurement, NaiveParameters, Nmse, Quantity, TracksReport,

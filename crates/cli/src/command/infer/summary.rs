@@ -3,7 +3,7 @@
 use crate::command::fit::words;
 use std::fmt::Write as _;
 use std::path::Path;
-use voronudge_infer::Quantity;
+use voronudge_infer::FitParameter;
 use voronudge_report::InferReport;
 use voronudge_report::infer_report::Parameter;
 use voronudge_report::numbers::{interval_text, significant};
@@ -137,7 +137,7 @@ fn detections(report: &InferReport) -> String {
 /// Intervals of profiles and of the bootstrap, a line each.
 fn answers(report: &InferReport) -> String {
     let mut text = String::new();
-    let spoken = |name: &str| Quantity::from_name(name).map_or("", words::spoken);
+    let spoken = |name: &str| FitParameter::from_name(name).map_or("", words::spoken);
     let p = &report.parameters;
     let best = |name: &str| {
         let parameters = [("K_A", &p.K_A), ("K_P", &p.K_P), ("P_0", &p.P_0), ("alpha", &p.alpha)];
