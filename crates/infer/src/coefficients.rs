@@ -3,8 +3,8 @@
 //! Velocities are linear in the coefficients `c = (K_A, K_P P_0, K_P, K_P α)`. Holding a parameter confines c to an affine
 //! space `c = c₀ + B β`, in which β is fitted; bounds confine β to half-spaces.
 
+use crate::fit_parameter::BASE;
 use crate::quadratic::HalfSpace;
-use crate::quantity::BASE;
 use crate::{Constraints, Error, FitParameter, Prior};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 use voronudge_model::Parameters;

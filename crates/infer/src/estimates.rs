@@ -1,8 +1,8 @@
 //! From fitted coefficients and their information matrix to estimates and directions.
 
 use crate::coefficients::covariance_of;
+use crate::fit_parameter::BASE;
 use crate::quadratic::{Functional, Interval, Quadratic, Ratio};
-use crate::quantity::BASE;
 use crate::{CoefficientSpace, Constraints, Direction, Error, Estimate, FitParameter, ParameterEstimates};
 use nalgebra::{DMatrix, DVector, Matrix4, Vector4};
 

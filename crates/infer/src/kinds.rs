@@ -1,8 +1,8 @@
 //! Kinds of cells, told by labels: parameters that the cells of a label have of their own.
 
 use crate::estimates::Fitted;
+use crate::fit_parameter::BASE;
 use crate::least_squares::invert;
-use crate::quantity::BASE;
 use crate::{Error, Estimate, FitParameter, NORMAL_95, ParameterEstimates};
 use nalgebra::{DVector, RowDVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -24,19 +24,15 @@ fn ranked(setting: &Setting<'_>, candidate: usize, evidence: f64) -> Ranked {
     by_evidence(setting, candidate, (evidence, dimension, p(evidence, dimension)))
 }
 
-/// What is no more than a hint beside a model: in the ranking, and whether a fit of it may find more than what is refused.
-pub(super) fn hinted(
-    setting: &Setting<'_>,
-    (candidate, hint): (usize, f64),
-    model: &Model,
-) -> (Ranked, bool) {
+/// What is no more than a hint beside a model, in the ranking: explained, if a fit of it may find more than what is refused.
+pub(super) fn hinted(setting: &Setting<'_>, (candidate, hint): (usize, f64), model: &Model) -> Ranked {
     let mut ranked = ranked(setting, candidate, hint);
     // Of drives the score, which is about what their fit finds; of others that of a few points, which is the least.
     let is_too_little = setting.candidates[candidate].drives().any() && is_too_little(model, hint);
     if is_too_little && ranked.fate == Fate::Explained {
         ranked.fate = Fate::NotConfirmed(TOO_LITTLE);
     }
-    (ranked, !is_too_little)
+    ranked
 }
 
 /// The polarity of a fitted model, if it has one.

@@ -107,11 +107,6 @@ impl<'a> Growth<'a> {
             let (own, others): (Vec<Ranked>, Vec<Ranked>) =
                 hinted.into_iter().partition(|ranked| ranked.effect.id == id);
             others.into_iter().for_each(|ranked| self.ranking.put(ranked));
-            if let Some(ranked) = self.tried(current, candidate, watch)? {
-                self.ranking.put(ranked);
-                refused.push(candidate);
-                continue;
-            }
             let added = current.added.iter().copied().chain([candidate]).collect();
             let model = match self.setting.fit(added, Some(current), watch) {
                 Ok(model) => model,
@@ -215,8 +210,8 @@ impl<'a> Growth<'a> {
         let best = setting.lacking(model, refused, watch)?;
         let (mut hints, mut ranked) = (Vec::new(), Vec::new());
         for hint in setting.of_polarity(model, refused)? {
-            let (own, is_open) = crawling::hinted(&setting, hint, model);
-            if is_open {
+            let own = crawling::hinted(&setting, hint, model);
+            if own.fate == Fate::Explained {
                 hints.push(hint);
             }
             if setting.candidates[hint.0].turns_polarity() || model.added.is_empty() {
@@ -231,13 +226,6 @@ impl<'a> Growth<'a> {
         };
         let polarity = hints.iter().filter(enough).max_by(|a, b| a.1.total_cmp(&b.1));
         Ok((polarity.map(|(k, _)| *k).or(best), ranked))
-    }
-
-    /// A drive of polarities that comes to nothing in a few steps, and needs no fit.
-    fn tried(&self, model: &Model, candidate: usize, watch: &mut Watch<'_>) -> Result<Option<Ranked>, Error> {
-        let Some(evidence) = self.setting.tried(model, candidate, watch)? else { return Ok(None) };
-        let (ranked, is_open) = crawling::hinted(&self.setting, (candidate, evidence), model);
-        Ok((!is_open).then_some(ranked))
     }
 
     /// Takes back the effect with the largest p among those against which a reason speaks, as long as there is one. `fitted` are models

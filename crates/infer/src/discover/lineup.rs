@@ -11,8 +11,8 @@
 //! candidate by positions is needed. Where σ_v was estimated, T is compared with what is left (an F test).
 
 use super::candidate::Candidate;
+use crate::fit_parameter::BASE;
 use crate::objective::Objective;
-use crate::quantity::BASE;
 use crate::tracks::{Beside, Followed, Movie};
 use crate::uncertainty::nudges;
 use crate::whitened::Whitened;

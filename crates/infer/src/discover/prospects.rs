@@ -3,8 +3,8 @@
 use super::lineup::added_places;
 use super::result::Selected;
 use super::steps::{Model, Setting};
+use crate::fit_parameter::BASE;
 use crate::prospects::{Ambiguity, Informed, Prospects, informed, prospects};
-use crate::quantity::BASE;
 use crate::{CoefficientSpace, Error};
 use voronudge_model::Structure;
 

@@ -260,28 +260,6 @@ impl Setting<'_> {
         open.iter().map(|k| Ok((*k, hint(k)?))).collect()
     }
 
-    /// What speaks for a drive of polarities after a few steps of a fit with it; `None` of other candidates, and where these steps lead nowhere.
-    pub fn tried(
-        &self,
-        model: &Model,
-        candidate: usize,
-        watch: &mut Watch<'_>,
-    ) -> Result<Option<f64>, Error> {
-        let drives = self.candidates[candidate].drives();
-        let (Some(movie), Some(followed), true) = (self.movie, &model.followed, drives.any()) else {
-            return Ok(None);
-        };
-        let added: Vec<usize> = model.added.iter().copied().chain([candidate]).collect();
-        match followed.drives_tried(movie, &self.request(&added), &model.space, watch) {
-            Ok([away, along]) => {
-                let own = if drives.contact_inhibition { away } else { along };
-                Ok(own.map(|drive| drive.evidence))
-            }
-            Err(Error::Interrupted) => Err(Error::Interrupted),
-            Err(_) => Ok(None),
-        }
-    }
-
     /// What the dynamics of a model scatter by, beside what it knows; `None` without tracks.
     pub fn scatter(&self, model: &Model) -> Result<Option<Scatter>, Error> {
         match (self.movie, &model.followed) {

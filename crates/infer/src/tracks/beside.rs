@@ -1,7 +1,7 @@
 //! Further terms beside the fit of a movie, in one linear problem.
 
 use super::anchors::Share;
-use super::driven::{Drive, HintsOfDrives};
+use super::driven::HintsOfDrives;
 use super::inference::Followed;
 use super::look::Seen;
 use super::memory::Memory;
@@ -9,14 +9,14 @@ use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::own_motion::OwnMotion;
 use super::states::States;
-use crate::quantity::BASE;
-use crate::search::{Optimum, Watch, optimise_knowing};
+use crate::fit_parameter::BASE;
+use crate::search::{Watch, optimise_knowing};
 use crate::{CoefficientSpace, Drives, Error, NoiseLevels, Request};
 use nalgebra::{DMatrix, DVector};
 use std::ops::ControlFlow;
 use voronudge_model::Structure;
 
-/// Steps in which a fit settles at other noise levels or with something more, and the relative decrease that counts as none.
+/// Steps in which a fit settles at other noise levels, and the relative decrease that counts as none.
 const STEPS: u64 = 8;
 const TOLERANCE: f64 = 1e-4;
 
@@ -32,18 +32,6 @@ pub(crate) struct Beside {
     pub normal: DMatrix<f64>,
     /// Measured components that the model explains.
     pub components: f64,
-}
-
-impl MovieObjective<'_> {
-    /// Where a few steps lead.
-    fn in_a_few_steps(&self, start: Vec<f64>, watch: &mut Watch<'_>) -> Result<Optimum, Error> {
-        let expected = self.expected();
-        let mut observer = |_: u64, value: f64| match watch.tell("tracks", (1, 1), value / expected) {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(_) => ControlFlow::Break(()),
-        };
-        optimise_knowing(self, (start, None), STEPS, TOLERANCE, &mut observer)
-    }
 }
 
 impl Followed {
@@ -95,7 +83,13 @@ impl Followed {
         watch: &mut Watch<'_>,
     ) -> Result<f64, Error> {
         let objective = MovieObjective { levels, ..self.objective(movie, structure, space) };
-        let optimum = objective.in_a_few_steps(self.fit.parameters.clone(), watch)?;
+        let expected = objective.expected();
+        let mut observer = |_: u64, value: f64| match watch.tell("tracks", (1, 1), value / expected) {
+            Ok(()) => ControlFlow::Continue(()),
+            Err(_) => ControlFlow::Break(()),
+        };
+        let start = (self.fit.parameters.clone(), None);
+        let optimum = optimise_knowing(&objective, start, STEPS, TOLERANCE, &mut observer)?;
         Ok(optimum.value / levels.velocity.powi(2))
     }
 
@@ -144,27 +138,6 @@ impl Followed {
         at.resize(space.dimension() + 2 * states.blocks(), 0.0);
         let equations = objective.linearise(&at)?;
         objective.hints_of_drives(&equations, own.polarities.drives)
-    }
-
-    /// What a fit with further drives of polarities finds of these in a few steps, at the noise levels and the memory of this one.
-    pub fn drives_tried(
-        &self,
-        movie: &Movie,
-        request: &Request,
-        space: &CoefficientSpace,
-        watch: &mut Watch<'_>,
-    ) -> Result<[Option<Drive>; 2], Error> {
-        let states = self.fit.states.clone().driven_by(request.drives);
-        let objective =
-            MovieObjective { states: &states, ..self.objective(movie, &request.structure, space) };
-        let mut at = self.fit.parameters.clone();
-        at.resize(space.dimension() + 2 * states.blocks(), 0.0);
-        let optimum = objective.in_a_few_steps(at, watch)?;
-        let equations = match optimum.equations {
-            Some(equations) => equations,
-            None => objective.linearise(&optimum.parameters)?,
-        };
-        objective.drives_found(&equations, objective.drives(objective.split(&optimum.parameters).1))
     }
 
     /// Where the fit of a model with the same unknowns beside the coefficients may begin; `None` if it has others.

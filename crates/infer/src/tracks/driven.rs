@@ -59,8 +59,8 @@ impl MovieObjective<'_> {
         Ok([contact_inhibition.then(|| drive(0)), velocity_alignment.then(|| drive(1))])
     }
 
-    /// What speaks for each of both drives, of polarities that have `present` ones already and may have both: a test by the score. Only what pulls at
-    /// the drives themselves counts. Where contacts turn, a fit ends before places and polarities that a linear problem would still move.
+    /// What speaks for each of both drives, of polarities that have `present` ones already and may have both: a test by the score. All else
+    /// counts as being at its minimum, so that only what pulls at the drives themselves is asked.
     pub(super) fn hints_of_drives(
         &self,
         equations: &NormalEquations,

@@ -6,7 +6,7 @@ use super::movie::Movie;
 use super::objective::MovieObjective;
 use super::rule::Rule;
 use super::states::States;
-use crate::quantity::BASE;
+use crate::fit_parameter::BASE;
 use crate::search::optimise;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use std::ops::ControlFlow;
