@@ -58,6 +58,8 @@ mod arguments;
 #[cfg(feature = "cli")]
 mod boundary;
 #[cfg(feature = "cli")]
+mod browser;
+#[cfg(feature = "cli")]
 mod command;
 #[cfg(feature = "cli")]
 mod configuration;
@@ -75,6 +77,8 @@ pub mod program;
 mod progress;
 #[cfg(feature = "cli")]
 mod rehearsal;
+#[cfg(feature = "cli")]
+mod reporting;
 #[cfg(feature = "cli")]
 mod run;
 #[cfg(feature = "cli")]

@@ -1,6 +1,7 @@
 //! The program `voronudge`: its commands as the command line has them.
 
 use crate::failure::Failure;
+use crate::reporting::{Answer, Command, Described};
 use crate::{command, configuration, terminal};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
@@ -13,41 +14,55 @@ use std::sync::OnceLock;
 #[command(name = "voronudge", version, propagate_version = true, arg_required_else_help = true)]
 struct Arguments {
     #[command(subcommand)]
-    command: Command,
+    command: AnyCommand,
 }
 
-#[derive(Debug, Subcommand)]
-pub(crate) enum Command {
-    Infer(Box<command::infer::Arguments>),
-    Discover(Box<command::discover::Arguments>),
-    Evaluate(command::evaluate::Arguments),
-    Spectrum(Box<command::spectrum::Arguments>),
-    Observe(command::observe::Arguments),
-    Simulate(command::simulate::Arguments),
-    PhaseDiagram(Box<command::phase_diagram::Arguments>),
-    Merge(command::merge::Arguments),
-    Moduli(Box<command::moduli::Arguments>),
-    Channel(Box<command::channel::Arguments>),
-    EquationOfState(command::equation_of_state::Arguments),
-    EstimateChirality(command::estimate_chirality::Arguments),
-    CheckGradients(command::check_gradients::Arguments),
-    Import(Box<command::import::Arguments>),
-    Info(command::info::Arguments),
-    PhaseDiffusion(command::phase_diffusion::Arguments),
-    Rheology(Box<command::rheology::Arguments>),
-    Waves(command::waves::Arguments),
-    Schema(command::schema::Arguments),
-    Completions(command::completions::Arguments),
-    Man(command::man::Arguments),
+/// The commands: of each its name and the module below `command` with its `Arguments`.
+macro_rules! commands {
+    ($($name:ident: $module:ident,)*) => {
+        /// A command as clap read it.
+        #[derive(Debug, Subcommand)]
+        pub(crate) enum AnyCommand {
+            $($name(Box<command::$module::Arguments>),)*
+        }
+
+        impl AnyCommand {
+            fn run(self) -> Result<Answer, Failure> {
+                match self {
+                    $(Self::$name(arguments) => (*arguments).run(),)*
+                }
+            }
+        }
+
+        /// The reports that commands write.
+        pub(crate) fn described() -> Vec<Described> {
+            [$(<command::$module::Arguments as Command>::described()),*].concat()
+        }
+    };
 }
 
-/// What a command that ran has to say.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Answer {
-    /// Exit code 0.
-    Positive,
-    /// Exit code 1: it ran, but found no acceptable fit, or a check failed.
-    Negative,
+commands! {
+    Infer: infer,
+    Discover: discover,
+    Evaluate: evaluate,
+    Spectrum: spectrum,
+    Observe: observe,
+    Simulate: simulate,
+    PhaseDiagram: phase_diagram,
+    Merge: merge,
+    Moduli: moduli,
+    Channel: channel,
+    EquationOfState: equation_of_state,
+    EstimateChirality: estimate_chirality,
+    CheckGradients: check_gradients,
+    Import: import,
+    Info: info,
+    PhaseDiffusion: phase_diffusion,
+    Rheology: rheology,
+    Waves: waves,
+    Schema: schema,
+    Completions: completions,
+    Man: man,
 }
 
 /// The words of the command line that runs, those of a file of --config among them.
@@ -80,7 +95,7 @@ pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
         return failed(failure);
     }
     match Arguments::try_parse_from(words) {
-        Ok(arguments) => match call(arguments.command) {
+        Ok(arguments) => match arguments.command.run() {
             Ok(Answer::Positive) => 0,
             Ok(Answer::Negative) => 1,
             Err(end) if end.exit_code() == 0 => match terminal::print(end.message()) {
@@ -114,32 +129,6 @@ pub fn description() -> clap::Command {
 }
 
 /// The command that was typed in these words, the first of which is the program's name.
-pub(crate) fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<Command, clap::Error> {
+pub(crate) fn parse<'a>(words: impl Iterator<Item = &'a str>) -> Result<AnyCommand, clap::Error> {
     Ok(Arguments::try_parse_from(words)?.command)
-}
-
-fn call(command: Command) -> Result<Answer, Failure> {
-    match command {
-        Command::Infer(arguments) => command::infer::run(*arguments),
-        Command::Discover(arguments) => command::discover::run(*arguments),
-        Command::Evaluate(arguments) => command::evaluate::run(arguments),
-        Command::Spectrum(arguments) => command::spectrum::run(*arguments),
-        Command::Observe(arguments) => command::observe::run(arguments),
-        Command::Simulate(arguments) => command::simulate::run(arguments),
-        Command::PhaseDiagram(arguments) => command::phase_diagram::run(*arguments),
-        Command::Merge(arguments) => command::merge::run(arguments),
-        Command::Moduli(arguments) => command::moduli::run(*arguments),
-        Command::Channel(arguments) => command::channel::run(*arguments),
-        Command::EquationOfState(arguments) => command::equation_of_state::run(arguments),
-        Command::EstimateChirality(arguments) => command::estimate_chirality::run(arguments),
-        Command::CheckGradients(arguments) => command::check_gradients::run(arguments),
-        Command::Import(arguments) => command::import::run(*arguments),
-        Command::Info(arguments) => command::info::run(&arguments),
-        Command::PhaseDiffusion(arguments) => command::phase_diffusion::run(arguments),
-        Command::Rheology(arguments) => command::rheology::run(*arguments),
-        Command::Waves(arguments) => command::waves::run(arguments),
-        Command::Schema(arguments) => command::schema::run(&arguments),
-        Command::Completions(arguments) => command::completions::run(&arguments),
-        Command::Man(arguments) => command::man::run(&arguments),
-    }
 }

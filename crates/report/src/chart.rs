@@ -1,19 +1,15 @@
-//! The frame of a chart: axes and ticks drawn by plotters; marks are added on top as compact paths
-//! in the same coordinates.
-
-use std::ops::Range;
-
-use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, Ranged, ValueFormatter};
-use plotters::prelude::*;
+//! The frame of a chart: axes with ticks and a grid. Marks are added on top in the same coordinates.
 
 use crate::colour::INK;
 use crate::numbers::{Ticks, as_given, superscript, ticks};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
-/// Plotters counts in whole pixels: it draws this many times larger and is scaled down.
-const DETAIL: f64 = 8.0;
-/// Plotters divides font sizes by this before it writes them.
-const PLOTTERS_FONT: f64 = 1.24;
+/// Room above and to the right of the plotting area.
+const MARGINS: [f64; 2] = [10.0, 14.0];
+/// Room below it, without and with a label.
+const BELOW: [f64; 2] = [24.0, 44.0];
+/// Length of a tick, and the distance of its label.
+const TICK: [f64; 2] = [4.0, 8.0];
 
 /// How values are spread along an axis.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -144,7 +140,7 @@ pub struct Chart {
 }
 
 impl Chart {
-    /// Draws the axes. `None` if a range is empty or not finite, or plotters refuses.
+    /// Draws the axes. `None` if a range is empty or not finite, or there is no room.
     #[must_use]
     pub fn new(layout: ChartLayout<'_>) -> Option<Self> {
         let ChartLayout { title, size, left, x, y } = layout;
@@ -152,35 +148,51 @@ impl Chart {
             let ends = axis.range.map(|value| axis.share(value));
             ends.iter().all(|end| end.is_finite()) && axis.range[0] < axis.range[1]
         };
-        if !usable(&x) || !usable(&y) {
+        let below = BELOW[usize::from(!x.label.is_empty())];
+        let plot = [[left, MARGINS[0]], [size[0] - MARGINS[1], size[1] - below]];
+        let is_roomy = plot[0][0] < plot[1][0] && plot[0][1] < plot[1][1];
+        if !(usable(&x) && usable(&y) && is_roomy) {
             return None;
         }
-        let mut axes = String::new();
-        let plot = draw_axes(&mut axes, (size, left), (&x, &y)).ok()?;
-        let mut svg = Svg::new(size, title);
-        let inner = axes.find('>').map_or("", |end| &axes[end + 1..]);
-        let inner = inner.trim_end().trim_end_matches("</svg>");
-        let inner = inner.replace(r#" font-family="sans-serif""#, "").replace(r#" opacity="1""#, "");
-        svg.raw(&format!("<g transform=\"scale({})\">{inner}</g>\n", 1.0 / DETAIL));
-        let mut chart = Self { svg, x, y, plot };
-        chart.label_axes();
+        let mut chart = Self { svg: Svg::new(size, title), x, y, plot };
+        chart.draw_axes();
         Some(chart)
     }
 
-    fn label_axes(&mut self) {
+    fn draw_axes(&mut self) {
         let [[left, top], [right, bottom]] = self.plot;
-        let style = TextStyle { size: 12.0, ..TextStyle::label(Anchor::Middle) };
-        let [(.., x), (.., y)] = [&self.x, &self.y].map(Axis::ticks);
-        if !self.x.label.is_empty() {
-            self.svg.text([(left + right) / 2.0, bottom + 37.0], &x, style);
+        let (across, across_labels, across_label) = self.x.ticks();
+        let (up, up_labels, up_label) = self.y.ticks();
+        let across: Vec<f64> = across.into_iter().map(|x| self.to_pixel([x, self.y.range[0]])[0]).collect();
+        let up: Vec<f64> = up.into_iter().map(|y| self.to_pixel([self.x.range[0], y])[1]).collect();
+        let [mut grid, mut lines] = [PathData::new(), PathData::new()];
+        lines.line(&[[left, top], [left, bottom], [right, bottom]]);
+        for &x in &across {
+            grid.line(&[[x, bottom], [x, top]]);
+            lines.line(&[[x, bottom], [x, bottom + TICK[0]]]);
         }
-        if self.y.label.is_empty() {
-            return;
+        for &y in &up {
+            grid.line(&[[left, y], [right, y]]);
+            lines.line(&[[left - TICK[0], y], [left, y]]);
         }
-        let middle = (top + bottom) / 2.0;
-        self.svg.raw(&format!("<g transform=\"rotate(-90 13 {middle:.1})\">"));
-        self.svg.text([13.0, middle], &y, style);
-        self.svg.raw("</g>\n");
+        self.svg.path(&grid, r##"fill="none" stroke="#e8e8e8" stroke-width=".8""##);
+        self.svg.path(&lines, &format!(r#"fill="none" stroke="{INK}" stroke-width=".9""#));
+        let style = |size, anchor| TextStyle { size, ..TextStyle::label(anchor) };
+        for (x, text) in across.iter().zip(&across_labels) {
+            self.svg.text([*x, bottom + TICK[1] + 8.4], text, style(11.0, Anchor::Middle));
+        }
+        for (y, text) in up.iter().zip(&up_labels) {
+            self.svg.text([left - TICK[1], y + 3.9], text, style(11.0, Anchor::End));
+        }
+        if !across_label.is_empty() {
+            self.svg.text([(left + right) / 2.0, bottom + 37.0], &across_label, style(12.0, Anchor::Middle));
+        }
+        if !up_label.is_empty() {
+            let middle = (top + bottom) / 2.0;
+            self.svg.raw(&format!("<g transform=\"rotate(-90 13 {middle:.1})\">"));
+            self.svg.text([13.0, middle], &up_label, style(12.0, Anchor::Middle));
+            self.svg.raw("</g>\n");
+        }
     }
 
     /// Pixel position of a point in axis coordinates.
@@ -249,77 +261,6 @@ impl Chart {
     pub fn finish(self) -> String {
         self.svg.finish()
     }
-}
-
-/// An axis as plotters sees it, with our tick positions and labels.
-#[derive(Clone)]
-struct TickedAxis {
-    axis: Axis,
-    positions: Vec<f64>,
-    labels: Vec<String>,
-}
-
-impl TickedAxis {
-    fn new(axis: &Axis) -> Self {
-        let (positions, labels, _) = axis.ticks();
-        Self { axis: axis.clone(), positions, labels }
-    }
-}
-
-impl Ranged for TickedAxis {
-    type FormatOption = NoDefaultFormatting;
-    type ValueType = f64;
-
-    fn map(&self, value: &f64, (from, to): (i32, i32)) -> i32 {
-        (f64::from(from) + self.axis.share(*value) * f64::from(to - from)).round() as i32
-    }
-
-    fn key_points<Hint: KeyPointHint>(&self, _hint: Hint) -> Vec<f64> {
-        self.positions.clone()
-    }
-
-    fn range(&self) -> Range<f64> {
-        self.axis.range[0]..self.axis.range[1]
-    }
-}
-
-impl ValueFormatter<f64> for TickedAxis {
-    fn format_ext(&self, value: &f64) -> String {
-        let index = self.positions.iter().position(|position| position == value);
-        index.and_then(|index| self.labels.get(index)).cloned().unwrap_or_default()
-    }
-}
-
-type DrawingFailed = DrawingAreaErrorKind<std::io::Error>;
-
-/// Draws the axes `DETAIL` times enlarged; returns the plotting area in nominal pixels.
-fn draw_axes(
-    target: &mut String,
-    (size, left): ([f64; 2], f64),
-    (x, y): (&Axis, &Axis),
-) -> Result<[[f64; 2]; 2], DrawingFailed> {
-    let large = |length: f64| (length * DETAIL).round() as u32;
-    let font = |nominal: f64| ("sans-serif", nominal * DETAIL * PLOTTERS_FONT);
-    let ink = RGBColor(0x22, 0x22, 0x22);
-    let root = SVGBackend::with_string(target, (large(size[0]), large(size[1]))).into_drawing_area();
-    let mut chart = ChartBuilder::on(&root)
-        .margin_top(large(10.0))
-        .margin_right(large(14.0))
-        .x_label_area_size(large(if x.label.is_empty() { 24.0 } else { 44.0 }))
-        .y_label_area_size(large(left))
-        .build_cartesian_2d(TickedAxis::new(x), TickedAxis::new(y))?;
-    chart
-        .configure_mesh()
-        .bold_line_style(RGBColor(0xe8, 0xe8, 0xe8).stroke_width(large(0.8)))
-        .light_line_style(TRANSPARENT)
-        .axis_style(ink.stroke_width(large(0.9)))
-        .set_all_tick_mark_size(large(4.0))
-        .label_style(font(11.0).into_font().color(&ink))
-        .draw()?;
-    let (across, down) = chart.plotting_area().get_pixel_range();
-    root.present()?;
-    let small = |pixel: i32| f64::from(pixel) / DETAIL;
-    Ok([[small(across.start), small(down.start)], [small(across.end), small(down.end)]])
 }
 
 /// Powers of ten, thinned to `count`; with 2 and 5 times them where the range is short, and evenly

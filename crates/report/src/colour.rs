@@ -1,8 +1,5 @@
 //! Colours that survive colour blindness and print, and the mapping from numbers to them.
 
-use plotters::style::RGBColor;
-use plotters::style::colors::colormaps::{ColorMap, ViridisRGB};
-
 use crate::numbers::quantile;
 
 /// Blue of the house palette (Okabe–Ito).
@@ -15,6 +12,18 @@ pub const GREEN: &str = "#009e73";
 pub const GREY: &str = "#8a8a8a";
 /// Near black of lines and arrows.
 pub const INK: &str = "#222222";
+
+/// Stops of the map "viridis" of S. van der Walt and N. Smith (public domain), evenly spaced.
+const VIRIDIS: [[u8; 3]; 8] = [
+    [68, 1, 84],
+    [70, 50, 127],
+    [54, 92, 141],
+    [39, 127, 143],
+    [31, 162, 136],
+    [74, 194, 110],
+    [160, 219, 57],
+    [254, 232, 37],
+];
 
 /// Stops of the diverging map "vik" of F. Crameri (public domain data), evenly spaced.
 const VIK: [[u8; 3]; 10] = [
@@ -110,10 +119,7 @@ impl ColourScale {
     pub fn colour(&self, level: usize) -> String {
         let share = level.min(Self::LEVELS - 1) as f64 / (Self::LEVELS - 1) as f64;
         let [red, green, blue] = match self.palette {
-            Palette::Sequential => {
-                let RGBColor(red, green, blue) = ViridisRGB.get_color(share as f32);
-                [red, green, blue]
-            }
+            Palette::Sequential => between(&VIRIDIS, share),
             Palette::Diverging { .. } => diverging(share),
         };
         format!("#{red:02x}{green:02x}{blue:02x}")
@@ -123,11 +129,16 @@ impl ColourScale {
 /// The diverging map at `share` in 0..1.
 #[must_use]
 pub fn diverging(share: f64) -> [u8; 3] {
-    let place = share.clamp(0.0, 1.0) * (VIK.len() - 1) as f64;
-    let below = (place.floor() as usize).min(VIK.len() - 2);
+    between(&VIK, share)
+}
+
+/// The colour at `share` in 0..1 of the way along stops.
+fn between(stops: &[[u8; 3]], share: f64) -> [u8; 3] {
+    let place = share.clamp(0.0, 1.0) * (stops.len() - 1) as f64;
+    let below = (place.floor() as usize).min(stops.len() - 2);
     let weight = place - below as f64;
     let mix = |channel: usize| {
-        let [low, high] = [below, below + 1].map(|stop| f64::from(VIK[stop][channel]));
+        let [low, high] = [below, below + 1].map(|stop| f64::from(stops[stop][channel]));
         (low + (high - low) * weight).round() as u8
     };
     [mix(0), mix(1), mix(2)]

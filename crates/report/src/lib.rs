@@ -4,7 +4,7 @@
 //! [`FrameView`] and [`InferReport`], [`DiscoverReport`] or [`SpectrumReport`] and gets back text:
 //!
 //! - [`figure`]: one function per figure, each a stand-alone SVG. Charts stand on [`chart::Chart`]
-//!   (axes by plotters), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
+//!   (axes, ticks, grid), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
 //! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
 //! - [`movie`]: cells of many frames, for the player of a page and as an animated image.
 //! - [`infer_report`], [`discover_report`], [`spectrum_report`] and their like: what `report.json` holds, described by [`schema_of`].

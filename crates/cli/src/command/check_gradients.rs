@@ -3,7 +3,7 @@
 use crate::arguments::{CommonArguments, DataSetArguments, EffectArguments, ParameterArguments};
 use crate::boundary::domain;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Answer, Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use schemars::JsonSchema;
@@ -66,69 +66,73 @@ struct Check {
     passed: bool,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let run = Run::begin("check-gradients", &arguments.common)?;
-    let parameters = arguments.parameters.resolve()?;
-    let effects = arguments.effects.resolve()?;
-    let given = arguments.data.dataset.is_some() || arguments.data.positions.is_some();
-    let data = given.then(|| arguments.data.load()).transpose()?;
-    let inputs = data.iter().flat_map(|data| &data.inputs).map(AsRef::as_ref);
-    let mut out = match &arguments.common.out {
-        Some(_) => Some(arguments.common.output(inputs.chain(arguments.parameters.file()))?),
-        None => arguments.common.rehearse(inputs.chain(arguments.parameters.file())).map(|()| None)?,
-    };
-    let mut subjects: Vec<(String, Snapshot, Domain)> = Vec::new();
-    match &data {
-        Some(data) => {
-            let file = arguments.data.positions_file();
-            let frames = match &arguments.frames {
-                Some(selection) => selection
-                    .resolve(data.frames())
-                    .map_err(|error| Failure::from(error).at(file.display()))?,
-                None => vec![0],
-            };
-            for frame in frames {
-                let name = format!("{}, frame {frame}", file.display());
-                subjects.push((name, Snapshot::new(data, frame), domain(data)?));
+impl Reporting for Arguments {
+    const NAME: &'static str = "check-gradients";
+    type Report = Report;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let parameters = self.parameters.resolve()?;
+        let effects = self.effects.resolve()?;
+        let given = self.data.dataset.is_some() || self.data.positions.is_some();
+        let data = given.then(|| self.data.load()).transpose()?;
+        let inputs = data.iter().flat_map(|data| &data.inputs).map(AsRef::as_ref);
+        let out = match &self.common.out {
+            Some(_) => Some(self.common.output(inputs.chain(self.parameters.file()))?),
+            None => self.common.rehearse(inputs.chain(self.parameters.file())).map(|()| None)?,
+        };
+        let mut subjects: Vec<(String, Snapshot, Domain)> = Vec::new();
+        match &data {
+            Some(data) => {
+                let file = self.data.positions_file();
+                let frames = match &self.frames {
+                    Some(selection) => selection
+                        .resolve(data.frames())
+                        .map_err(|error| Failure::from(error).at(file.display()))?,
+                    None => vec![0],
+                };
+                for frame in frames {
+                    let name = format!("{}, frame {frame}", file.display());
+                    subjects.push((name, Snapshot::new(data, frame), domain(data)?));
+                }
+            }
+            None => {
+                let side = (BUILT_IN_CELLS as f64).sqrt();
+                let cell_box = PeriodicBox::new([side, side])?;
+                let positions =
+                    RandomPlacement::new(BUILT_IN_CELLS, cell_box).draw(&mut generator(self.common.seed))?;
+                for (name, domain) in [("periodic", Domain::Periodic(cell_box)), ("open", Domain::Open)] {
+                    let snapshot =
+                        Snapshot { cells: (0..BUILT_IN_CELLS).collect(), positions: positions.clone() };
+                    subjects.push((format!("{BUILT_IN_CELLS} random cells, {name}"), snapshot, domain));
+                }
             }
         }
-        None => {
-            let side = (BUILT_IN_CELLS as f64).sqrt();
-            let cell_box = PeriodicBox::new([side, side])?;
-            let positions =
-                RandomPlacement::new(BUILT_IN_CELLS, cell_box).draw(&mut generator(arguments.common.seed))?;
-            for (name, domain) in [("periodic", Domain::Periodic(cell_box)), ("open", Domain::Open)] {
-                let snapshot =
-                    Snapshot { cells: (0..BUILT_IN_CELLS).collect(), positions: positions.clone() };
-                subjects.push((format!("{BUILT_IN_CELLS} random cells, {name}"), snapshot, domain));
+        let mut reports = Vec::new();
+        for (name, snapshot, domain) in subjects {
+            let mut report = check(&snapshot.positions, domain, &parameters)
+                .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(&name))?;
+            if !effects.is_empty() {
+                let environment = made_up_environment(&snapshot.positions, domain)?;
+                let model = effects.add_to(Model::chiral_voronoi(&parameters), environment, domain)?;
+                report.rows.extend(check_model(&snapshot.positions, domain, &model)?.rows);
             }
+            if matches!(domain, Domain::Periodic(_)) {
+                report.rows.extend(check_run(&snapshot.positions, domain, &parameters)?);
+            }
+            for row in &mut report.rows {
+                renumber(&mut row.place, &snapshot.cells);
+            }
+            reports.push((name, report));
         }
+        let passed = reports.iter().all(|(_, report)| report.passed());
+        let checks = reports.iter().flat_map(|(name, report)| rows(name, report)).collect();
+        let report = Report { run: run.record(data.as_ref()), passed, checks };
+        Ok(Rendered::new(out, &report, table(&reports))?.with_answer(Answer::of(passed)))
     }
-    let mut reports = Vec::new();
-    for (name, snapshot, domain) in subjects {
-        let mut report = check(&snapshot.positions, domain, &parameters)
-            .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(&name))?;
-        if !effects.is_empty() {
-            let environment = made_up_environment(&snapshot.positions, domain)?;
-            let model = effects.add_to(Model::chiral_voronoi(&parameters), environment, domain)?;
-            report.rows.extend(check_model(&snapshot.positions, domain, &model)?.rows);
-        }
-        if matches!(domain, Domain::Periodic(_)) {
-            report.rows.extend(check_run(&snapshot.positions, domain, &parameters)?);
-        }
-        for row in &mut report.rows {
-            renumber(&mut row.place, &snapshot.cells);
-        }
-        reports.push((name, report));
-    }
-    let passed = reports.iter().all(|(_, report)| report.passed());
-    let checks = reports.iter().flat_map(|(name, report)| rows(name, report)).collect();
-    let json = serde_json::to_string_pretty(&Report { run: run.record(data.as_ref()), passed, checks })?;
-    if let Some(out) = &mut out {
-        out.write_text("report.json", &json)?;
-    }
-    run.finish(out, &json, &table(&reports))?;
-    Ok(if passed { Answer::Positive } else { Answer::Negative })
 }
 
 /// Numbers the cells of a place as in the file, where absent cells count.

@@ -1,8 +1,8 @@
 //! `voronudge completions`: what a shell needs to complete commands and options.
 
 use crate::failure::Failure;
-use crate::program::{Answer, description};
-use crate::terminal;
+use crate::program::description;
+use crate::reporting::{Answer, Command};
 use clap::Args;
 use clap_complete::{Shell, generate};
 
@@ -14,11 +14,10 @@ pub(crate) struct Arguments {
     shell: Shell,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    let mut script = Vec::new();
-    generate(arguments.shell, &mut description(), "voronudge", &mut script);
-    terminal::print(&String::from_utf8_lossy(&script)).map_err(|error| {
-        Failure::new(format!("stdout: {error}")).with_hint("make room, or print elsewhere")
-    })?;
-    Ok(Answer::Positive)
+impl Command for Arguments {
+    fn run(self) -> Result<Answer, Failure> {
+        let mut script = Vec::new();
+        generate(self.shell, &mut description(), "voronudge", &mut script);
+        Answer::printed(&String::from_utf8_lossy(&script))
+    }
 }

@@ -7,7 +7,7 @@ use crate::arguments::{
 use crate::boundary::domain_at;
 use crate::failure::Failure;
 use crate::memory::{OF_A_DESCRIBED_CELL, refuse_beyond};
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use ndarray::{Array1, Array2, Array3};
@@ -112,110 +112,118 @@ impl Fields {
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("evaluate", &arguments.common)?;
-    let effects = arguments.effects.resolve()?;
-    let data = arguments.data.load()?;
-    let mut parameters = arguments.parameters.resolve()?;
-    let frames = match &arguments.frames {
-        Some(selection) => selection
-            .resolve(data.frames())
-            .map_err(|error| Failure::from(error).at(arguments.data.positions_file().display()))?,
-        None => (0..data.frames()).collect(),
-    };
-    let (cells, count) = (data.cells(), frames.len());
-    refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
-    let first = frames.first().copied().unwrap_or(0);
-    let own = arguments.cells.of_data(&data, first, &mut parameters)?;
-    let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file());
-    let mut out = arguments.common.output(inputs.map(Path::to_owned).chain(arguments.cells.files()))?;
-    // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
-    let base = Model::chiral_voronoi(&parameters);
-    let mut fields = Vec::new();
-    for (index, &frame) in frames.iter().enumerate() {
-        let place = || format!("{}, frame {frame}", arguments.data.positions_file().display());
-        let domain = domain_at(&data, frame)?;
-        let snapshot = Snapshot::new(&data, frame);
-        let tessellation = Tessellation::new(&snapshot.positions, domain)
-            .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
-        let view = data.view()?.judge(&tessellation, &snapshot.positions);
-        let surroundings = environment(&tessellation, &snapshot.positions, &view)?;
-        let labels = data.labels_of(&snapshot, frame);
-        let surroundings =
-            own.of_cells(surroundings, &snapshot.cells, labels).map_err(|failure| failure.at(place()))?;
-        let model = effects.add_to(base.clone(), surroundings, domain)?;
-        let moving = velocities(&tessellation, &snapshot.positions, &model);
-        if moving.iter().any(|v| v.x.is_infinite() || v.y.is_infinite()) {
-            return Err(Failure::new("velocities are too large to be numbers")
-                .at(place())
-                .with_hint("give parameters in units in which lengths and times of cells are about 1"));
-        }
-        if index == 0 && arguments.jacobian {
-            let matrix = jacobian(&tessellation, &snapshot.positions, &model);
-            if frames.len() > 1 {
-                run.warn(format!("the Jacobian is that of frame {frame} only"));
+impl Reporting for Arguments {
+    const NAME: &'static str = "evaluate";
+    type Report = Report;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let effects = self.effects.resolve()?;
+        let data = self.data.load()?;
+        let mut parameters = self.parameters.resolve()?;
+        let frames = match &self.frames {
+            Some(selection) => selection
+                .resolve(data.frames())
+                .map_err(|error| Failure::from(error).at(self.data.positions_file().display()))?,
+            None => (0..data.frames()).collect(),
+        };
+        let (cells, count) = (data.cells(), frames.len());
+        refuse_beyond(format!("{cells} cells in {count} frames"), cells * count, OF_A_DESCRIBED_CELL)?;
+        let first = frames.first().copied().unwrap_or(0);
+        let own = self.cells.of_data(&data, first, &mut parameters)?;
+        let inputs = data.inputs.iter().map(AsRef::as_ref).chain(self.parameters.file());
+        let mut out = self.common.output(inputs.map(Path::to_owned).chain(self.cells.files()))?;
+        // Files with y down show the mirror image: inside, y is up, and so is the sense of α.
+        let base = Model::chiral_voronoi(&parameters);
+        let mut fields = Vec::new();
+        for (index, &frame) in frames.iter().enumerate() {
+            let place = || format!("{}, frame {frame}", self.data.positions_file().display());
+            let domain = domain_at(&data, frame)?;
+            let snapshot = Snapshot::new(&data, frame);
+            let tessellation = Tessellation::new(&snapshot.positions, domain)
+                .map_err(|error| Failure::from(snapshot.in_file_numbers(error)).at(place()))?;
+            let view = data.view()?.judge(&tessellation, &snapshot.positions);
+            let surroundings = environment(&tessellation, &snapshot.positions, &view)?;
+            let labels = data.labels_of(&snapshot, frame);
+            let surroundings =
+                own.of_cells(surroundings, &snapshot.cells, labels).map_err(|failure| failure.at(place()))?;
+            let model = effects.add_to(base.clone(), surroundings, domain)?;
+            let moving = velocities(&tessellation, &snapshot.positions, &model);
+            if moving.iter().any(|v| v.x.is_infinite() || v.y.is_infinite()) {
+                return Err(Failure::new("velocities are too large to be numbers")
+                    .at(place())
+                    .with_hint("give parameters in units in which lengths and times of cells are about 1"));
             }
-            write_jacobian(&mut out, &matrix, &snapshot, &data)?;
+            if index == 0 && self.jacobian {
+                let matrix = jacobian(&tessellation, &snapshot.positions, &model);
+                if frames.len() > 1 {
+                    run.warn(format!("the Jacobian is that of frame {frame} only"));
+                }
+                write_jacobian(&mut out, &matrix, &snapshot, &data)?;
+            }
+            fields.push(Fields {
+                velocities: moving,
+                areas: areas(&tessellation, &snapshot.positions),
+                perimeters: perimeters(&tessellation, &snapshot.positions),
+                stress: oriented(
+                    stress(&tessellation, &snapshot.positions, &model, |cell| view.counts(cell)),
+                    data.y_axis,
+                ),
+                counted: (0..snapshot.cells.len()).map(|cell| view.counts(cell)).collect(),
+                tessellation,
+                snapshot,
+            });
         }
-        fields.push(Fields {
-            velocities: moving,
-            areas: areas(&tessellation, &snapshot.positions),
-            perimeters: perimeters(&tessellation, &snapshot.positions),
-            stress: oriented(
-                stress(&tessellation, &snapshot.positions, &model, |cell| view.counts(cell)),
-                data.y_axis,
-            ),
-            counted: (0..snapshot.cells.len()).map(|cell| view.counts(cell)).collect(),
-            tessellation,
-            snapshot,
-        });
-    }
-    write_fields(&mut out, &data, &fields)?;
-    arguments.export.write(&mut out, &data, || {
-        fields.iter().zip(&frames).map(|(own, &frame)| own.cells(frame)).collect()
-    })?;
-    let finite = |f: &Fields| f.velocities.iter().filter(|v| v.x.is_finite()).count();
-    let report = Report {
-        run: run.record(Some(&data)),
-        cells: Cells {
-            present: fields.iter().map(|f| f.velocities.len()).collect(),
-            with_velocity: fields.iter().map(finite).collect(),
-            counted: fields.iter().map(|f| f.counted.iter().filter(|counted| **counted).count()).collect(),
-            frames,
-        },
-        parameters: named(&parameters),
-        cell_parameters: own.of_data(&data, first),
-        effects,
-        stress: fields.iter().map(|f| f.stress).collect(),
-        mean_square_velocity: fields
-            .iter()
-            .map(|f| {
-                let counted: Vec<Vector<f64>> = f
-                    .velocities
+        write_fields(&mut out, &data, &fields)?;
+        self.export.write(&mut out, &data, || {
+            fields.iter().zip(&frames).map(|(own, &frame)| own.cells(frame)).collect()
+        })?;
+        let finite = |f: &Fields| f.velocities.iter().filter(|v| v.x.is_finite()).count();
+        let report = Report {
+            run: run.record(Some(&data)),
+            cells: Cells {
+                present: fields.iter().map(|f| f.velocities.len()).collect(),
+                with_velocity: fields.iter().map(finite).collect(),
+                counted: fields
                     .iter()
-                    .zip(&f.counted)
-                    .filter(|(_, counted)| **counted)
-                    .map(|(v, _)| *v)
-                    .collect();
-                mean_square_velocity(&counted)
-            })
-            .collect(),
-    };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let mut summary = String::new();
-    for (index, frame) in report.cells.frames.iter().enumerate() {
-        let _ = writeln!(
-            summary,
-            "frame {frame}: {} cells, {} that count, mean square velocity {}",
-            report.cells.present[index],
-            report.cells.counted[index],
-            significant(report.mean_square_velocity[index], 4)
-        );
+                    .map(|f| f.counted.iter().filter(|counted| **counted).count())
+                    .collect(),
+                frames,
+            },
+            parameters: named(&parameters),
+            cell_parameters: own.of_data(&data, first),
+            effects,
+            stress: fields.iter().map(|f| f.stress).collect(),
+            mean_square_velocity: fields
+                .iter()
+                .map(|f| {
+                    let counted: Vec<Vector<f64>> = f
+                        .velocities
+                        .iter()
+                        .zip(&f.counted)
+                        .filter(|(_, counted)| **counted)
+                        .map(|(v, _)| *v)
+                        .collect();
+                    mean_square_velocity(&counted)
+                })
+                .collect(),
+        };
+        let mut summary = String::new();
+        for (index, frame) in report.cells.frames.iter().enumerate() {
+            let _ = writeln!(
+                summary,
+                "frame {frame}: {} cells, {} that count, mean square velocity {}",
+                report.cells.present[index],
+                report.cells.counted[index],
+                significant(report.mean_square_velocity[index], 4)
+            );
+        }
+        let _ = writeln!(summary, "written to {}", out.path().display());
+        Rendered::new(out, &report, summary)
     }
-    let _ = writeln!(summary, "written to {}", out.path().display());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
 }
 
 fn write_fields(out: &mut OutputDirectory, data: &DataSet, fields: &[Fields]) -> Result<(), Failure> {

@@ -2,8 +2,8 @@
 
 use crate::command::import::records;
 use crate::failure::Failure;
-use crate::program::Answer;
-use crate::terminal::{self, legible};
+use crate::reporting::{Answer, Command, Described};
+use crate::terminal::legible;
 use clap::Args;
 use schemars::JsonSchema;
 use serde::Serialize;
@@ -11,6 +11,7 @@ use std::fmt::Write as _;
 use std::path::PathBuf;
 use voronudge_io::{Boundary, InputKind, Inspection, NoteKind, inspect};
 use voronudge_report::numbers::significant;
+use voronudge_report::schema_of;
 use voronudge_report::shape_report::NoteRecord;
 
 /// What is in a data set, or in a file of another program: shape, units, frames, cells, and what was guessed.
@@ -65,15 +66,19 @@ pub(crate) struct Record {
     arguments: Vec<&'static str>,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    let found = inspect(&arguments.path)?;
-    let path = arguments.path.display().to_string();
-    let printed = match arguments.json {
-        true => terminal::print(&format!("{}\n", serde_json::to_string_pretty(&record(path, &found))?)),
-        false => terminal::print(&legible(&described(&path, &found))),
-    };
-    printed.map_err(|error| Failure::new(format!("stdout cannot be written: {error}")))?;
-    Ok(Answer::Positive)
+impl Command for Arguments {
+    fn run(self) -> Result<Answer, Failure> {
+        let found = inspect(&self.path)?;
+        let path = self.path.display().to_string();
+        Answer::printed(&match self.json {
+            true => format!("{}\n", serde_json::to_string_pretty(&record(path, &found))?),
+            false => legible(&text(&path, &found)),
+        })
+    }
+
+    fn described() -> Vec<Described> {
+        vec![("info", schema_of::<Record>)]
+    }
 }
 
 fn record(path: String, found: &Inspection) -> Record {
@@ -112,7 +117,7 @@ fn next(path: &str, found: &Inspection) -> String {
     format!("voronudge {} {path} --out DIR", words(found).join(" "))
 }
 
-fn described(path: &str, found: &Inspection) -> String {
+fn text(path: &str, found: &Inspection) -> String {
     let mut text = format!("{path}: {}\n", found.kind);
     let mut line = |name: &str, value: Option<String>| {
         if let Some(value) = value {

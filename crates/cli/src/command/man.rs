@@ -1,9 +1,9 @@
 //! `voronudge man`: manual pages.
 
 use crate::failure::Failure;
-use crate::program::{Answer, description};
-use crate::terminal;
-use clap::{Args, Command};
+use crate::program::description;
+use crate::reporting::{Answer, Command};
+use clap::Args;
 use clap_mangen::Man;
 use std::path::PathBuf;
 use voronudge_io::OutputDirectory;
@@ -16,19 +16,19 @@ pub(crate) struct Arguments {
     folder: PathBuf,
 }
 
-pub(crate) fn run(arguments: &Arguments) -> Result<Answer, Failure> {
-    let mut out = OutputDirectory::create(&arguments.folder)?;
-    let mut program = description().disable_help_subcommand(true);
-    program.build();
-    write(&mut out, &program)?;
-    let pages = out.commit()?.len();
-    terminal::print(&format!("{pages} pages written to {}\n", arguments.folder.display()))
-        .map_err(|error| Failure::new(format!("stdout cannot be written: {error}")))?;
-    Ok(Answer::Positive)
+impl Command for Arguments {
+    fn run(self) -> Result<Answer, Failure> {
+        let mut out = OutputDirectory::create(&self.folder)?;
+        let mut program = description().disable_help_subcommand(true);
+        program.build();
+        write(&mut out, &program)?;
+        let pages = out.commit()?.len();
+        Answer::printed(&format!("{pages} pages written to {}\n", self.folder.display()))
+    }
 }
 
 /// The page of a command and those of the commands below it, which `voronudge-import-tracks.1` and its like are named after.
-fn write(out: &mut OutputDirectory, command: &Command) -> Result<(), Failure> {
+fn write(out: &mut OutputDirectory, command: &clap::Command) -> Result<(), Failure> {
     let page = Man::new(command.clone()).source(concat!("voronudge ", env!("CARGO_PKG_VERSION")));
     let mut text = Vec::new();
     page.render(&mut text).map_err(|error| Failure::new(format!("{}: {error}", page.get_filename())))?;

@@ -111,7 +111,7 @@ fn tracks_tell_whether_cells_crawl() {
     let (movie, [_, speed, _]) = filmed.movie_of_crawling(2.0, 1.0);
     let found = discover_in_tracks(&movie, &search, &mut silent).unwrap();
     let [polarity] = found.selected.as_slice() else { panic!("{:?}", found.ranking) };
-    assert_eq!((polarity.effect.id, found.verdict), ("polarity", Verdict::Attributed));
+    assert_eq!((polarity.effect.id, found.verdict), ("polarity", Verdict::Attributed), "{:?}", found.gain);
     assert!(polarity.coefficients[0].covers(speed), "{polarity:?} {speed}");
     assert!(found.predicts_better() && found.after.tracked.is_some());
     let fate_in = |found: &Discovery, id: &str| {

@@ -18,15 +18,15 @@ mod surroundings;
 
 use super::fit::measured::{frames, measured, velocities};
 use super::fit::{
-    ConstraintArguments, Inquiry, SearchArguments, SnapshotArguments, arrays, browser, export, latent,
-    measurement, outcome, spreads, tracks, words,
+    ConstraintArguments, Inquiry, SearchArguments, SnapshotArguments, arrays, export, latent, measurement,
+    outcome, spreads, tracks, words,
 };
-use super::replicates::{Course, Kept, ReplicateArguments};
+use super::replicates::{Kept, ReplicateArguments};
 use crate::arguments::{CommonArguments, ExportArguments, MovieArguments};
 use crate::failure::Failure;
 use crate::problem::{Measured, Problem};
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::{Answer, Rendered, Reporting};
 use crate::run::Run;
 use candidates::SearchOptions;
 use checks::CheckArguments;
@@ -40,6 +40,7 @@ use surroundings::FieldArguments;
 use voronudge_infer::{Constraints, Part, Scale};
 use voronudge_io::{DataSet, Difference, Noise};
 use voronudge_model::Effect;
+use voronudge_report::DiscoverReport;
 
 /// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
 /// after on data that the fit has not seen.
@@ -93,105 +94,107 @@ impl Arguments {
         self,
         common: impl FnOnce(CommonArguments) -> CommonArguments,
         replicates: ReplicateArguments,
-        course: Course,
-    ) -> Result<Answer, Failure> {
+    ) -> Self {
         let common = common(self.common);
-        follow(Self { open_report: false, replicates, common, ..self }, course)
+        Self { open_report: false, replicates, common, ..self }
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    follow(arguments, Course::typed())
-}
+impl Reporting for Arguments {
+    const NAME: &'static str = "discover";
+    type Report = DiscoverReport;
 
-fn follow(mut arguments: Arguments, course: Course) -> Result<Answer, Failure> {
-    let mut run = Run::begin("discover", &arguments.common)?;
-    // From here on Ctrl-C ends the command where nothing is left behind.
-    let mut progress = Progress::new(arguments.common.verbosity());
-    arguments.snapshots.check()?;
-    arguments.latent.check()?;
-    let constraints = arguments.known.constraints()?;
-    let candidates = arguments.options.candidates()?;
-    arguments.options.check(arguments.replicates.shard)?;
-    let mut data = arguments.snapshots.data.load()?;
-    let map = arguments.field.load(&mut data)?;
-    arguments.check.possible(&arguments, &data, arguments.difference)?;
-    let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
-    let snapshots = &arguments.snapshots;
-    let out = arguments.common.reserve(&data.inputs)?;
-    let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
-    let raw = asked.raw(&data, &mut run)?;
-    let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), &mut run)?;
-    let mut out = out.begin()?;
-    let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
-    let mut kept = Kept::open(out.folder(), ("discover", "null sets"), own, (&run, &data))?;
-    let searched = asked.searched(&raw, (&data, map.as_ref()), &mut kept, &mut progress);
-    if kept.is_part() {
-        progress.finish();
-        return kept.finish_part(searched.map(|_| ()), (&mut run, out), &progress);
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    let searched = searched.inspect_err(|_| progress.finish()).map_err(|failure| kept.failed(failure))?;
-    kept.caution(&mut run);
-    let units = outcome::units(&data);
-    let forecast = match &coming {
-        Some(coming) => coming.forecast(&asked, (&data, &units), &searched, &mut run, &mut progress),
-        None => Ok(None),
-    };
-    let compared = arguments.check.compare(
-        &asked,
-        (&data, &units),
-        (&searched, coming.as_ref()),
-        &mut run,
-        &mut progress,
-    );
-    progress.finish();
-    let compared = compared.map_err(|failure| kept.failed(failure))?;
-    let forecast = forecast.map_err(|failure| kept.failed(failure))?;
-    let Searched { prepared, search, discovery } = searched;
-    measurement::caution(&prepared, &mut run);
-    let predictors = raw.past.and_then(|past| past.predictors);
-    let last = &discovery.after.inference;
-    let doubts = words::doubts(last, &[], prepared.request.method);
-    // Whether what is left has a structure is told in the answer itself.
-    let told = doubts.iter().filter(|(part, _)| *part != Part::Pattern.name());
-    told.for_each(|(_, doubt)| run.warn(doubt));
-    for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
-        arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
-        if let (Some(movie), Some(tracked)) = (&prepared.tracks, &fitted.tracked) {
-            tracks::write(&mut out, prefix, &data, (&prepared, movie), tracked)?;
+
+    fn work(self, run: &mut Run) -> Result<Rendered<DiscoverReport>, Failure> {
+        let mut arguments = self;
+        // From here on Ctrl-C ends the command where nothing is left behind.
+        let mut progress = Progress::new(arguments.common.verbosity());
+        arguments.snapshots.check()?;
+        arguments.latent.check()?;
+        let constraints = arguments.known.constraints()?;
+        let candidates = arguments.options.candidates()?;
+        arguments.options.check(arguments.replicates.shard)?;
+        let mut data = arguments.snapshots.data.load()?;
+        let map = arguments.field.load(&mut data)?;
+        arguments.check.possible(&arguments, &data, arguments.difference)?;
+        let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
+        let snapshots = &arguments.snapshots;
+        let out = arguments.common.reserve(&data.inputs)?;
+        let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
+        let raw = asked.raw(&data, run)?;
+        let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), run)?;
+        let mut out = out.begin()?;
+        let folder = out.path().to_owned();
+        let mut kept =
+            Kept::open(out.folder(), ("discover", "null sets"), &arguments.replicates, (run, &data))?;
+        let searched = asked.searched(&raw, (&data, map.as_ref()), &mut kept, &mut progress);
+        if kept.is_part() {
+            progress.finish();
+            return kept.finish_part(searched.map(|_| ()), (run, out), &progress);
         }
+        let searched = searched.inspect_err(|_| progress.finish()).map_err(|failure| kept.failed(failure))?;
+        kept.caution(run);
+        let units = outcome::units(&data);
+        let forecast = match &coming {
+            Some(coming) => coming.forecast(&asked, (&data, &units), &searched, run, &mut progress),
+            None => Ok(None),
+        };
+        let compared = arguments.check.compare(
+            &asked,
+            (&data, &units),
+            (&searched, coming.as_ref()),
+            run,
+            &mut progress,
+        );
+        progress.finish();
+        let compared = compared.map_err(|failure| kept.failed(failure))?;
+        let forecast = forecast.map_err(|failure| kept.failed(failure))?;
+        let Searched { prepared, search, discovery } = searched;
+        measurement::caution(&prepared, run);
+        let predictors = raw.past.and_then(|past| past.predictors);
+        let last = &discovery.after.inference;
+        let doubts = words::doubts(last, &[], prepared.request.method);
+        // Whether what is left has a structure is told in the answer itself.
+        let told = doubts.iter().filter(|(part, _)| *part != Part::Pattern.name());
+        told.for_each(|(_, doubt)| run.warn(doubt));
+        for (prefix, fitted) in [("before_", &discovery.before), ("after_", &discovery.after)] {
+            arrays::write(&mut out, prefix, &data, &prepared, &fitted.inference)?;
+            if let (Some(movie), Some(tracked)) = (&prepared.tracks, &fitted.tracked) {
+                tracks::write(&mut out, prefix, &data, (&prepared, movie), tracked)?;
+            }
+        }
+        spreads::write(&mut out, "after_", &data, &prepared, last)?;
+        latent::write(&mut out, &data, &prepared, last)?;
+        arguments.export.write(&mut out, &data, || export::frames(&prepared, last))?;
+        let movie = page::movie(&prepared, &discovery, &data);
+        arguments.movie.write(&mut out, movie.as_ref(), run)?;
+        let predictions =
+            others.iter().filter_map(|other| other.predicted(&search, &discovery, run)).collect();
+        let followed = prepared.tracks.as_ref().zip(discovery.after.tracked.as_ref());
+        let tracks = followed.map(|(movie, tracked)| tracks::report(&prepared, movie, last, tracked));
+        let found = Found {
+            data: &data,
+            prepared: &prepared,
+            stated: snapshots.stated(&data),
+            tracks,
+            search: &search,
+            predictors,
+            predictions,
+            forecast,
+            compared,
+        };
+        let report = report::report(run, &found, &discovery);
+        let page = page::page(&snapshots.title(), &found, &discovery, &report, movie)?;
+        let summary = summary::summary(&report, &folder);
+        out.end_run();
+        let answer = Answer::of(last.is_acceptable());
+        let rendered = Rendered::with_page(out, &report, &page, summary)?.with_answer(answer);
+        progress.heed().map_err(|failure| kept.failed(failure))?;
+        Ok(rendered.shown(arguments.open_report))
     }
-    spreads::write(&mut out, "after_", &data, &prepared, last)?;
-    latent::write(&mut out, &data, &prepared, last)?;
-    arguments.export.write(&mut out, &data, || export::frames(&prepared, last))?;
-    let movie = page::movie(&prepared, &discovery, &data);
-    arguments.movie.write(&mut out, movie.as_ref(), &mut run)?;
-    let predictions =
-        others.iter().filter_map(|other| other.predicted(&search, &discovery, &mut run)).collect();
-    let followed = prepared.tracks.as_ref().zip(discovery.after.tracked.as_ref());
-    let tracks = followed.map(|(movie, tracked)| tracks::report(&prepared, movie, last, tracked));
-    let found = Found {
-        data: &data,
-        prepared: &prepared,
-        stated: snapshots.stated(&data),
-        tracks,
-        search: &search,
-        predictors,
-        predictions,
-        forecast,
-        compared,
-    };
-    let report = report::report(&run, &found, &discovery);
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page::page(&snapshots.title(), &found, &discovery, &report, movie)?)?;
-    progress.heed().map_err(|failure| kept.failed(failure))?;
-    out.end_run();
-    run.finish(Some(out), &json, &summary::summary(&report, &folder))?;
-    if arguments.open_report {
-        browser::open(&folder.join("report.html"));
-    }
-    Ok(if last.is_acceptable() { Answer::Positive } else { Answer::Negative })
 }
 
 /// What is asked of every data set.

@@ -9,7 +9,7 @@ pub(crate) use read::{MeasuredEquation, read};
 use crate::arguments::{CommonArguments, ParameterArguments, Range, positive};
 use crate::failure::Failure;
 use crate::memory::{OF_A_SIMULATED_CELL, refuse_beyond};
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use measure::Request;
@@ -106,23 +106,28 @@ impl Arguments {
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("equation-of-state", &arguments.common)?;
-    let request = arguments.request()?;
-    let work = request.work()?;
-    let mut out = arguments.common.output(arguments.parameters.file())?;
-    request.doubts().into_iter().for_each(|doubt| run.warn(doubt));
-    let states = work.measure(arguments.common.verbosity())?;
-    let (points, doubts) = request.points(&states)?;
-    doubts.into_iter().for_each(|doubt| run.warn(doubt));
-    let report = request.report(&run, points);
-    write_arrays(&mut out, &report)?;
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page::page(&report, &request)?)?;
-    let summary = page::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
+impl Reporting for Arguments {
+    const NAME: &'static str = "equation-of-state";
+    type Report = EquationOfStateReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let request = self.request()?;
+        let work = request.work()?;
+        let mut out = self.common.output(self.parameters.file())?;
+        request.doubts().into_iter().for_each(|doubt| run.warn(doubt));
+        let states = work.measure(self.common.verbosity())?;
+        let (points, doubts) = request.points(&states)?;
+        doubts.into_iter().for_each(|doubt| run.warn(doubt));
+        let report = request.report(run, points);
+        write_arrays(&mut out, &report)?;
+        let page = page::page(&report, &request)?;
+        let summary = page::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page, summary)
+    }
 }
 
 /// A number of a uniform tissue.

@@ -7,7 +7,7 @@ pub(crate) use line::{Tissue, slope};
 
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use serde_json::Value;
@@ -65,70 +65,77 @@ struct Known {
 /// Share of the flow along the channel below which there is none across.
 const NO_FLOW: f64 = 1e-9;
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("estimate-chirality", &arguments.common)?;
-    let (table, known) = if arguments.profiles.is_dir() {
-        (arguments.profiles.join("folded_profile.csv"), known(&arguments.profiles.join("report.json")))
-    } else {
-        (arguments.profiles.clone(), Known::default())
-    };
-    for (name, value) in [
-        ("--shape-index", arguments.shape_index),
-        ("--area-elasticity", arguments.area_elasticity),
-        ("--from", arguments.from),
-        ("--to", arguments.to),
-    ] {
-        if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
-            return Err(Failure::new(format!("{name} is {value}, but it must be finite and not negative"))
+impl Reporting for Arguments {
+    const NAME: &'static str = "estimate-chirality";
+    type Report = ChiralityReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let (table, known) = if self.profiles.is_dir() {
+            (self.profiles.join("folded_profile.csv"), known(&self.profiles.join("report.json")))
+        } else {
+            (self.profiles.clone(), Known::default())
+        };
+        for (name, value) in [
+            ("--shape-index", self.shape_index),
+            ("--area-elasticity", self.area_elasticity),
+            ("--from", self.from),
+            ("--to", self.to),
+        ] {
+            if let Some(value) = value.filter(|value| !(value.is_finite() && *value >= 0.0)) {
+                return Err(Failure::new(format!(
+                    "{name} is {value}, but it must be finite and not negative"
+                ))
                 .with_hint("leave it out for the default"));
+            }
         }
+        let profile = read_flow_profile(&table)?;
+        let range = [self.from.or(known.from), self.to];
+        let (intercept, intercept_kind) = match self.intercept {
+            InterceptName::Zero => (Intercept::Zero, "zero"),
+            InterceptName::Free => (Intercept::Free, "free"),
+        };
+        let tissue = Tissue {
+            shape_index: self.shape_index.or(known.shape_index),
+            area_elasticity: self.area_elasticity.or(known.area_elasticity).unwrap_or(0.0),
+        };
+        let points = points(&profile);
+        let largest = |of: fn(&LinePoint) -> f64| points.iter().map(|(_, p)| of(p).abs()).fold(0.0, f64::max);
+        let [across, along] = [largest(|p| p.x), largest(|p| p.y)];
+        if across <= NO_FLOW * along {
+            return Err(Failure::new(format!("v_x is at most {across:e} beside a v_y of up to {along:e}, so there is no flow across to compare with"))
+                .at(table.display())
+                .with_hint("are the columns of the table the right ones?"));
+        }
+        let line = slope(&points, range, intercept, tissue)?.ok_or_else(|| {
+            Failure::new(format!("the velocities tell no slope of v_y against v_x in {} rows", points.len()))
+                .at(table.display())
+                .with_hint("at least three rows are needed within --from and --to, with velocities larger than their errors")
+        })?;
+        let out = self.common.output([&table])?;
+        if profile.errors.is_none() {
+            run.warn("the table has no errors (v_x_error, v_y_error): both velocities count alike, and the interval is from the scatter");
+        }
+        if let Some(chi_square) = line.reduced_chi_square.filter(|chi_square| *chi_square > 3.0) {
+            run.warn(format!(
+                "v_y is not proportional to v_x within the errors (chi square {chi_square:.1} per degree of freedom); the interval is \
+                 widened by that, but alpha may be off by more"
+            ));
+        }
+        let mut record = run.record(None);
+        record.inputs = vec![voronudge_report::infer_report::InputFile {
+            path: profile.input.path.display().to_string(),
+            sha256: profile.input.sha256.clone(),
+        }];
+        let report = ChiralityReport { run: record, line, intercept_kind };
+        let title = self.profiles.display().to_string();
+        let page = page::page(&title, &points, &report, known.units.as_ref())?;
+        let summary = page::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page, summary)
     }
-    let profile = read_flow_profile(&table)?;
-    let range = [arguments.from.or(known.from), arguments.to];
-    let (intercept, intercept_kind) = match arguments.intercept {
-        InterceptName::Zero => (Intercept::Zero, "zero"),
-        InterceptName::Free => (Intercept::Free, "free"),
-    };
-    let tissue = Tissue {
-        shape_index: arguments.shape_index.or(known.shape_index),
-        area_elasticity: arguments.area_elasticity.or(known.area_elasticity).unwrap_or(0.0),
-    };
-    let points = points(&profile);
-    let largest = |of: fn(&LinePoint) -> f64| points.iter().map(|(_, p)| of(p).abs()).fold(0.0, f64::max);
-    let [across, along] = [largest(|p| p.x), largest(|p| p.y)];
-    if across <= NO_FLOW * along {
-        return Err(Failure::new(format!("v_x is at most {across:e} beside a v_y of up to {along:e}, so there is no flow across to compare with"))
-            .at(table.display())
-            .with_hint("are the columns of the table the right ones?"));
-    }
-    let line = slope(&points, range, intercept, tissue)?.ok_or_else(|| {
-        Failure::new(format!("the velocities tell no slope of v_y against v_x in {} rows", points.len()))
-            .at(table.display())
-            .with_hint("at least three rows are needed within --from and --to, with velocities larger than their errors")
-    })?;
-    let mut out = arguments.common.output([&table])?;
-    if profile.errors.is_none() {
-        run.warn("the table has no errors (v_x_error, v_y_error): both velocities count alike, and the interval is from the scatter");
-    }
-    if let Some(chi_square) = line.reduced_chi_square.filter(|chi_square| *chi_square > 3.0) {
-        run.warn(format!(
-            "v_y is not proportional to v_x within the errors (chi square {chi_square:.1} per degree of freedom); the interval is \
-             widened by that, but alpha may be off by more"
-        ));
-    }
-    let mut record = run.record(None);
-    record.inputs = vec![voronudge_report::infer_report::InputFile {
-        path: profile.input.path.display().to_string(),
-        sha256: profile.input.sha256.clone(),
-    }];
-    let report = ChiralityReport { run: record, line, intercept_kind };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let title = arguments.profiles.display().to_string();
-    out.write_text("report.html", &page::page(&title, &points, &report, known.units.as_ref())?)?;
-    let summary = page::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
 }
 
 /// Points of the line from averages at distances from the edge; without errors if one is unknown.

@@ -6,11 +6,10 @@
 //! | `measured`, `prepare` | from options to the problem, and faults of the data |
 //! | `latent`, `measurement`, `tracks`, `spreads`, `units` | what was found out, in the units of the data |
 //! | `outcome`, `implied`, `prospects`, `words` | a fitted model as reports tell it |
-//! | `arrays`, `export`, `views`, `browser` | arrays, cells for other programs, frames to be drawn, the page on the screen |
+//! | `arrays`, `export`, `views` | arrays, cells for other programs, frames to be drawn |
 
 mod arguments;
 pub(crate) mod arrays;
-pub(crate) mod browser;
 mod constraints;
 pub(crate) mod export;
 pub(crate) mod flow;

@@ -7,7 +7,7 @@ use crate::arguments::CommonArguments;
 use crate::boundary::domain;
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::{Path, PathBuf};
@@ -73,60 +73,65 @@ enum Kind {
     Both,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.reserve(&arguments.files)?;
-    let options = FieldOptions {
-        scale: arguments.image.scale(),
-        extrema: match arguments.extrema {
-            Kind::Maxima => WantedExtrema::Maxima,
-            Kind::Minima => WantedExtrema::Minima,
-            Kind::Both => WantedExtrema::Both,
-        },
-        smoothing: arguments.smoothing,
-        prominence: arguments.prominence,
-        distance: arguments.distance,
-        edge: if arguments.periodic { Edge::Periodic } else { Edge::Open },
-        linking: arguments.link.linking(arguments.link_limit),
-    };
-    let import = import_field_series(&arguments.files, &options)?;
-    let mut out = out.begin()?;
-    let data = &import.dataset;
-    warn_of_breaks(&mut run, arguments.link, &import.counts, import.linked, "extrema");
-    let understood = told(&mut run, &import.notes);
-    data.save(&mut out)?;
-    out.write_array("heights.npy", import.heights.view())?;
-    out.write_array("prominences.npy", import.prominences.view())?;
-    let (rows, columns) = import.first.dim();
-    let report = FieldReport {
-        run: run.record(Some(data)),
-        units: Units { length: data.length_unit.clone(), time: data.time_unit.clone() },
-        frames: import.counts.clone(),
-        tracks: data.cells(),
-        linked: import.linked,
-        size: [columns, rows],
-        pixel_size: import.pixel_size,
-        smallest_prominence: import
-            .prominences
-            .iter()
-            .copied()
-            .filter(|x| x.is_finite())
-            .fold(f64::INFINITY, f64::min),
-        notes: records(&import.notes),
-    };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page(&arguments.files[0], &import, &report)?)?;
-    let extrema: usize = report.frames.iter().sum();
-    let text = format!(
-        "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
-        report.frames.len(),
-        report.tracks,
-        report.linked,
-        out.path().display()
-    );
-    run.finish(Some(out), &json, &text)?;
-    Ok(Answer::Positive)
+impl Reporting for Arguments {
+    const NAME: &'static str = "import";
+    type Report = FieldReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let out = self.common.reserve(&self.files)?;
+        let options = FieldOptions {
+            scale: self.image.scale(),
+            extrema: match self.extrema {
+                Kind::Maxima => WantedExtrema::Maxima,
+                Kind::Minima => WantedExtrema::Minima,
+                Kind::Both => WantedExtrema::Both,
+            },
+            smoothing: self.smoothing,
+            prominence: self.prominence,
+            distance: self.distance,
+            edge: if self.periodic { Edge::Periodic } else { Edge::Open },
+            linking: self.link.linking(self.link_limit),
+        };
+        let import = import_field_series(&self.files, &options)?;
+        let mut out = out.begin()?;
+        let data = &import.dataset;
+        warn_of_breaks(run, self.link, &import.counts, import.linked, "extrema");
+        let understood = told(run, &import.notes);
+        data.save(&mut out)?;
+        out.write_array("heights.npy", import.heights.view())?;
+        out.write_array("prominences.npy", import.prominences.view())?;
+        let (rows, columns) = import.first.dim();
+        let report = FieldReport {
+            run: run.record(Some(data)),
+            units: Units { length: data.length_unit.clone(), time: data.time_unit.clone() },
+            frames: import.counts.clone(),
+            tracks: data.cells(),
+            linked: import.linked,
+            size: [columns, rows],
+            pixel_size: import.pixel_size,
+            smallest_prominence: import
+                .prominences
+                .iter()
+                .copied()
+                .filter(|x| x.is_finite())
+                .fold(f64::INFINITY, f64::min),
+            notes: records(&import.notes),
+        };
+        let page = page(&self.files[0], &import, &report)?;
+        let extrema: usize = report.frames.iter().sum();
+        let text = format!(
+            "{extrema} extrema in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
+            report.frames.len(),
+            report.tracks,
+            report.linked,
+            out.path().display()
+        );
+        Rendered::with_page(out, &report, &page, text)
+    }
 }
 
 fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<String, Failure> {

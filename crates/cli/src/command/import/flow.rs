@@ -4,7 +4,7 @@ use super::ScaleArguments;
 use super::notes::{records, told};
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use schemars::JsonSchema;
@@ -75,59 +75,67 @@ pub(crate) struct Report {
     notes: Vec<NoteRecord>,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.reserve(arguments.files.iter().chain(&arguments.positions))?;
-    let scale = arguments.scale;
-    let is_scaled = scale.image.pixel_size.is_some() || scale.image.frame_interval.is_some();
-    let options = FlowOptions {
-        columns: FlowColumnNames {
-            frame: arguments.frame_column,
-            x: arguments.x_column,
-            y: arguments.y_column,
-            u: arguments.u_column,
-            v: arguments.v_column,
-            mask: arguments.mask_column,
-        },
-        boundary: scale.boundary(),
-        pixel_size: scale.image.pixel_size,
-        grid_spacing: arguments.grid_spacing,
-        length_unit: scale.image.length_unit,
-        time_unit: scale.image.time_unit,
-        frame_interval: scale.image.frame_interval,
-        y_axis: scale.image.y_axis,
-        positions: arguments.positions,
-    };
-    let import = import_flow(&arguments.files, &options)?;
-    let mut out = out.begin()?;
-    warn(&mut run, &import.summary, is_scaled);
-    let understood = told(&mut run, &import.notes);
-    import.save(&mut out)?;
-    let summary = &import.summary;
-    let report = Report {
-        run: run.record(Some(&import.dataset)),
-        frames: summary.frames,
-        first_frame: summary.first_frame,
-        rows: summary.rows,
-        columns: summary.columns,
-        spacing: summary.spacing,
-        missing_points: summary.missing,
-        cells: import.is_complete().then(|| import.dataset.cells()),
-        notes: records(&import.notes),
-    };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let mut text = describe(summary, &import.dataset) + &understood;
-    text += &format!("written to {}\n", out.path().display());
-    if !import.is_complete() {
-        let there = out.path().join("positions.npy").exists();
-        let what =
-            if there { "positions.npy stays as it was, it must be" } else { "still missing: positions.npy" };
-        let (unit, y_axis) = (&import.dataset.length_unit, import.dataset.y_axis);
-        text += &format!("{what} of shape ({}, cells, 2), in {unit} with y {y_axis}\n", summary.frames);
+impl Reporting for Arguments {
+    const NAME: &'static str = "import";
+    type Report = Report;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    run.finish(Some(out), &json, &text)?;
-    Ok(Answer::Positive)
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let out = self.common.reserve(self.files.iter().chain(&self.positions))?;
+        let scale = self.scale;
+        let is_scaled = scale.image.pixel_size.is_some() || scale.image.frame_interval.is_some();
+        let options = FlowOptions {
+            columns: FlowColumnNames {
+                frame: self.frame_column,
+                x: self.x_column,
+                y: self.y_column,
+                u: self.u_column,
+                v: self.v_column,
+                mask: self.mask_column,
+            },
+            boundary: scale.boundary(),
+            pixel_size: scale.image.pixel_size,
+            grid_spacing: self.grid_spacing,
+            length_unit: scale.image.length_unit,
+            time_unit: scale.image.time_unit,
+            frame_interval: scale.image.frame_interval,
+            y_axis: scale.image.y_axis,
+            positions: self.positions,
+        };
+        let import = import_flow(&self.files, &options)?;
+        let mut out = out.begin()?;
+        warn(run, &import.summary, is_scaled);
+        let understood = told(run, &import.notes);
+        import.save(&mut out)?;
+        let summary = &import.summary;
+        let report = Report {
+            run: run.record(Some(&import.dataset)),
+            frames: summary.frames,
+            first_frame: summary.first_frame,
+            rows: summary.rows,
+            columns: summary.columns,
+            spacing: summary.spacing,
+            missing_points: summary.missing,
+            cells: import.is_complete().then(|| import.dataset.cells()),
+            notes: records(&import.notes),
+        };
+        let mut text = describe(summary, &import.dataset) + &understood;
+        text += &format!("written to {}\n", out.path().display());
+        if !import.is_complete() {
+            let there = out.path().join("positions.npy").exists();
+            let what = if there {
+                "positions.npy stays as it was, it must be"
+            } else {
+                "still missing: positions.npy"
+            };
+            let (unit, y_axis) = (&import.dataset.length_unit, import.dataset.y_axis);
+            text += &format!("{what} of shape ({}, cells, 2), in {unit} with y {y_axis}\n", summary.frames);
+        }
+        Rendered::new(out, &report, text)
+    }
 }
 
 fn warn(run: &mut Run, summary: &FlowSummary, is_scaled: bool) {

@@ -5,11 +5,12 @@ use super::shapes::{self, Source};
 use super::sites::Positions;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 use voronudge_io::{BorderCells, LabelLinking, LabelOptions, import_label_series};
+use voronudge_report::ShapeReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -53,34 +54,41 @@ enum Border {
     LeaveOut,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.reserve(&arguments.files)?;
-    let options = LabelOptions {
-        scale: arguments.image.scale(),
-        gap: arguments.gap,
-        linking: match arguments.link {
-            Link::None => LabelLinking::Separate,
-            Link::Labels => LabelLinking::SameLabel,
-            Link::Overlap => LabelLinking::Overlap,
-        },
-        border: match arguments.border {
-            Border::Keep => BorderCells::Kept,
-            Border::LeaveOut => BorderCells::LeftOut,
-        },
-    };
-    let import = import_label_series(&arguments.files, &options)?;
-    let out = out.begin()?;
-    if import.summary.in_pieces > 0 {
-        run.warn(format!(
-            "{} labels lie in several pieces; centroid, area and perimeter are those of all pieces together",
-            import.summary.in_pieces
-        ));
+impl Reporting for Arguments {
+    const NAME: &'static str = "import";
+    type Report = ShapeReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    if import.frames.len() > 1 && arguments.link == Link::None {
-        run.warn("each frame has cells of its own, so nothing moves; --link labels or --link overlap follows cells");
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let out = self.common.reserve(&self.files)?;
+        let options = LabelOptions {
+            scale: self.image.scale(),
+            gap: self.gap,
+            linking: match self.link {
+                Link::None => LabelLinking::Separate,
+                Link::Labels => LabelLinking::SameLabel,
+                Link::Overlap => LabelLinking::Overlap,
+            },
+            border: match self.border {
+                Border::Keep => BorderCells::Kept,
+                Border::LeaveOut => BorderCells::LeftOut,
+            },
+        };
+        let import = import_label_series(&self.files, &options)?;
+        let out = out.begin()?;
+        if import.summary.in_pieces > 0 {
+            run.warn(format!(
+                "{} labels lie in several pieces; centroid, area and perimeter are those of all pieces together",
+                import.summary.in_pieces
+            ));
+        }
+        if import.frames.len() > 1 && self.link == Link::None {
+            run.warn("each frame has cells of its own, so nothing moves; --link labels or --link overlap follows cells");
+        }
+        let source = Source { file: &self.files[0], gap: Some(self.gap), positions: self.positions };
+        shapes::finish(run, out, &source, import)
     }
-    let source =
-        Source { file: &arguments.files[0], gap: Some(arguments.gap), positions: arguments.positions };
-    shapes::finish(run, out, &source, import)
 }

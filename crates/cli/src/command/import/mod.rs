@@ -11,15 +11,14 @@ mod shapes;
 mod sites;
 mod tracks;
 
-pub(crate) use flow::Report as FlowReport;
 pub(crate) use notes::records;
-pub(crate) use points::Report as PointsReport;
-pub(crate) use tracks::Report as TracksReport;
 
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Answer, Command, Described, Reporting};
 use clap::{Args, Subcommand};
+use tracks::Spots;
 use voronudge_io::{Boundary, ColumnNames, ImageScale, ImportOptions, YAxis};
+use voronudge_report::schema_of;
 
 /// Turns tracks, points, flow fields, label images, outlines or fields of other programs into a data set.
 #[derive(Debug, Args)]
@@ -131,14 +130,31 @@ impl ScaleArguments {
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    match arguments.what {
-        What::Trackmate(arguments) => tracks::run(arguments, voronudge_io::import_trackmate),
-        What::Tracks(arguments) => tracks::run(arguments, voronudge_io::import_tracks),
-        What::Points(arguments) => points::run(arguments),
-        What::Flow(arguments) => flow::run(arguments),
-        What::Labels(arguments) => labels::run(arguments),
-        What::Outlines(arguments) => outlines::run(arguments),
-        What::Field(arguments) => field::run(arguments),
+impl Command for Arguments {
+    fn run(self) -> Result<Answer, Failure> {
+        match self.what {
+            What::Trackmate(table) => Spots { table, read: voronudge_io::import_trackmate }.run(),
+            What::Tracks(table) => Spots { table, read: voronudge_io::import_tracks }.run(),
+            What::Points(arguments) => arguments.run(),
+            What::Flow(arguments) => arguments.run(),
+            What::Labels(arguments) => arguments.run(),
+            What::Outlines(arguments) => arguments.run(),
+            What::Field(arguments) => arguments.run(),
+        }
+    }
+
+    fn described() -> Vec<Described> {
+        fn named<T: Reporting>(name: &'static str) -> Described {
+            (name, schema_of::<T::Report>)
+        }
+        vec![
+            named::<Spots>("import trackmate"),
+            named::<Spots>("import tracks"),
+            named::<points::Arguments>("import points"),
+            named::<flow::Arguments>("import flow"),
+            named::<labels::Arguments>("import labels"),
+            named::<outlines::Arguments>("import outlines"),
+            named::<field::Arguments>("import field"),
+        ]
     }
 }

@@ -5,11 +5,12 @@ use super::shapes::{self, Source};
 use super::sites::Positions;
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use std::path::PathBuf;
 use voronudge_io::{ColumnNames, OutlineOptions, import_outlines};
+use voronudge_report::ShapeReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
@@ -36,20 +37,28 @@ pub(super) struct Arguments {
     common: CommonArguments,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.reserve([&arguments.file])?;
-    let options = OutlineOptions {
-        scale: arguments.image.scale(),
-        columns: ColumnNames {
-            track: arguments.cell_column,
-            frame: arguments.frame_column,
-            x: arguments.x_column,
-            y: arguments.y_column,
-        },
-    };
-    let import = import_outlines(&arguments.file, &options)?;
-    let out = out.begin()?;
-    let source = Source { file: &arguments.file, gap: None, positions: arguments.positions };
-    shapes::finish(run, out, &source, import)
+impl Reporting for Arguments {
+    const NAME: &'static str = "import";
+    type Report = ShapeReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let out = self.common.reserve([&self.file])?;
+        let options = OutlineOptions {
+            scale: self.image.scale(),
+            columns: ColumnNames {
+                track: self.cell_column,
+                frame: self.frame_column,
+                x: self.x_column,
+                y: self.y_column,
+            },
+        };
+        let import = import_outlines(&self.file, &options)?;
+        let out = out.begin()?;
+        let source = Source { file: &self.file, gap: None, positions: self.positions };
+        shapes::finish(run, out, &source, import)
+    }
 }

@@ -5,7 +5,7 @@ use super::linking::{Link, warn_of_breaks};
 use super::notes::{records, told};
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use schemars::JsonSchema;
@@ -48,35 +48,40 @@ pub(crate) struct Report {
     notes: Vec<NoteRecord>,
 }
 
-pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("import", &arguments.common)?;
-    let out = arguments.common.reserve([&arguments.file])?;
-    let options = arguments.spots.options(None);
-    let linking = arguments.link.linking(arguments.link_limit);
-    let found = import_points(&arguments.file, &options, linking)?;
-    let mut out = out.begin()?;
-    let data = &found.import.dataset;
-    warn_of_breaks(&mut run, arguments.link, &found.counts, found.linked, "points");
-    let understood = told(&mut run, &found.import.notes);
-    data.save(&mut out)?;
-    let report = Report {
-        run: run.record(Some(data)),
-        frames: found.counts,
-        first_frame: found.import.summary.first_frame,
-        tracks: data.cells(),
-        linked: found.linked,
-        notes: records(&found.import.notes),
-    };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let text = format!(
-        "{} points in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
-        report.frames.iter().sum::<usize>(),
-        report.frames.len(),
-        report.tracks,
-        report.linked,
-        out.path().display()
-    );
-    run.finish(Some(out), &json, &text)?;
-    Ok(Answer::Positive)
+impl Reporting for Arguments {
+    const NAME: &'static str = "import";
+    type Report = Report;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let out = self.common.reserve([&self.file])?;
+        let options = self.spots.options(None);
+        let linking = self.link.linking(self.link_limit);
+        let found = import_points(&self.file, &options, linking)?;
+        let mut out = out.begin()?;
+        let data = &found.import.dataset;
+        warn_of_breaks(run, self.link, &found.counts, found.linked, "points");
+        let understood = told(run, &found.import.notes);
+        data.save(&mut out)?;
+        let report = Report {
+            run: run.record(Some(data)),
+            frames: found.counts,
+            first_frame: found.import.summary.first_frame,
+            tracks: data.cells(),
+            linked: found.linked,
+            notes: records(&found.import.notes),
+        };
+        let text = format!(
+            "{} points in {} frames, {} cells ({} followed from the frame before)\n{understood}written to {}\n",
+            report.frames.iter().sum::<usize>(),
+            report.frames.len(),
+            report.tracks,
+            report.linked,
+            out.path().display()
+        );
+        Rendered::new(out, &report, text)
+    }
 }

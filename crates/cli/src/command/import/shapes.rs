@@ -4,7 +4,7 @@ use super::notes::{records, told};
 use super::sites::{Positions, place_at_sites};
 use crate::command::drawing::cells_view;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::Rendered;
 use crate::run::Run;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
@@ -52,11 +52,11 @@ struct Compared {
 
 /// Compares, writes and prints.
 pub(super) fn finish(
-    mut run: Run,
+    run: &mut Run,
     mut out: OutputDirectory,
     source: &Source<'_>,
     mut import: ShapeImport,
-) -> Result<Answer, Failure> {
+) -> Result<Rendered<ShapeReport>, Failure> {
     let of_centroids = pooled(&compare_all(&import, source.file)?);
     let (sites, centroids) = place_at_sites(&mut import)?;
     let compared = compare_all(&import, source.file)?;
@@ -70,7 +70,7 @@ pub(super) fn finish(
             "no cell can be compared: all are at the rim, at the border of the image, or next to one that is",
         );
     }
-    let understood = told(&mut run, &import.notes);
+    let understood = told(run, &import.notes);
     import.save(&mut out)?;
     let data = &import.dataset;
     let report = ShapeReport {
@@ -95,9 +95,7 @@ pub(super) fn finish(
         sites,
         notes: records(&import.notes),
     };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    out.write_text("report.html", &page(source, import, &compared, &report)?)?;
+    let page = page(source, import, &compared, &report)?;
     let length = |x: f64| format!("{} {}", significant(x, 2), data.length_unit);
     let described = format!(
         "sites {} from centroids; outlines {} from the sides of their polygons, {} with centroids",
@@ -120,8 +118,7 @@ pub(super) fn finish(
         significant(all.perimeter_correlation, 3),
         out.path().display()
     );
-    run.finish(Some(out), &json, &text)?;
-    Ok(Answer::Positive)
+    Rendered::with_page(out, &report, &page, text)
 }
 
 fn compare_all(import: &ShapeImport, file: &Path) -> Result<Vec<Compared>, Failure> {

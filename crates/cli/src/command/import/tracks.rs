@@ -4,7 +4,7 @@ use super::SpotArguments;
 use super::notes::{records, told};
 use crate::arguments::CommonArguments;
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use schemars::JsonSchema;
@@ -55,42 +55,54 @@ pub(crate) struct Report {
 /// What reads a table.
 type Reader = fn(&Path, &ImportOptions) -> Result<Import, voronudge_io::Error>;
 
-pub(super) fn run(table: Arguments, read: Reader) -> Result<Answer, Failure> {
-    let mut run = Run::begin("import", &table.common)?;
-    let out = table.common.reserve([&table.file])?;
-    let options = table.spots.options(table.track_column);
-    let Import { dataset, track_ids, summary, notes } = read(&table.file, &options)?;
-    let mut out = out.begin()?;
-    if summary.left_out_duplicate > 0 {
-        run.warn(format!(
-            "{} spots share track and frame with another (a split track); the first of each was kept",
-            summary.left_out_duplicate
-        ));
+/// A table with its reader.
+pub(super) struct Spots {
+    pub table: Arguments,
+    pub read: Reader,
+}
+
+impl Reporting for Spots {
+    const NAME: &'static str = "import";
+    type Report = Report;
+
+    fn common(&self) -> &CommonArguments {
+        &self.table.common
     }
-    let understood = told(&mut run, &notes);
-    dataset.save(&mut out)?;
-    let report = Report {
-        run: run.record(Some(&dataset)),
-        frames: summary.frames,
-        first_frame: summary.first_frame,
-        empty_frames: summary.empty_frames,
-        tracks: summary.tracks,
-        spots: summary.spots,
-        left_out_untracked: summary.left_out_untracked,
-        left_out_duplicate: summary.left_out_duplicate,
-        track_ids,
-        notes: records(&notes),
-    };
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let text = format!(
-        "{} spots of {} tracks in {} frames ({} without a track left out)\n{understood}written to {}\n",
-        report.spots,
-        report.tracks,
-        report.frames,
-        report.left_out_untracked,
-        out.path().display()
-    );
-    run.finish(Some(out), &json, &text)?;
-    Ok(Answer::Positive)
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Report>, Failure> {
+        let Self { table, read } = self;
+        let out = table.common.reserve([&table.file])?;
+        let options = table.spots.options(table.track_column);
+        let Import { dataset, track_ids, summary, notes } = read(&table.file, &options)?;
+        let mut out = out.begin()?;
+        if summary.left_out_duplicate > 0 {
+            run.warn(format!(
+                "{} spots share track and frame with another (a split track); the first of each was kept",
+                summary.left_out_duplicate
+            ));
+        }
+        let understood = told(run, &notes);
+        dataset.save(&mut out)?;
+        let report = Report {
+            run: run.record(Some(&dataset)),
+            frames: summary.frames,
+            first_frame: summary.first_frame,
+            empty_frames: summary.empty_frames,
+            tracks: summary.tracks,
+            spots: summary.spots,
+            left_out_untracked: summary.left_out_untracked,
+            left_out_duplicate: summary.left_out_duplicate,
+            track_ids,
+            notes: records(&notes),
+        };
+        let text = format!(
+            "{} spots of {} tracks in {} frames ({} without a track left out)\n{understood}written to {}\n",
+            report.spots,
+            report.tracks,
+            report.frames,
+            report.left_out_untracked,
+            out.path().display()
+        );
+        Rendered::new(out, &report, text)
+    }
 }

@@ -13,15 +13,15 @@ mod verdict;
 
 use super::fit::measured::{frames, measured};
 use super::fit::{
-    ConstraintArguments, Inquiry, SnapshotArguments, arrays, browser, export, latent, measurement, tracks,
-    views, with_location, words,
+    ConstraintArguments, Inquiry, SnapshotArguments, arrays, export, latent, measurement, tracks, views,
+    with_location, words,
 };
-use super::replicates::{Course, Kept, ReplicateArguments};
+use super::replicates::{Kept, ReplicateArguments};
 use crate::arguments::{CommonArguments, ExportArguments, MovieArguments};
 use crate::failure::Failure;
 use crate::problem::Measured;
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::{Answer, Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use method::MethodArguments;
@@ -30,6 +30,7 @@ use voronudge_infer::{Activity, Drives, prospects};
 use voronudge_io::Difference;
 use voronudge_model::CellParameter;
 use voronudge_model::effect::LabelledParameter;
+use voronudge_report::InferReport;
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
 ///
@@ -89,10 +90,9 @@ impl Arguments {
         self,
         common: impl FnOnce(CommonArguments) -> CommonArguments,
         replicates: ReplicateArguments,
-        course: Course,
-    ) -> Result<Answer, Failure> {
+    ) -> Self {
         let common = common(self.common);
-        follow(Self { open_report: false, replicates, common, ..self }, course)
+        Self { open_report: false, replicates, common, ..self }
     }
 
     /// Refuses what is for velocities, where tracks are fitted.
@@ -115,110 +115,112 @@ impl Arguments {
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    follow(arguments, Course::typed())
-}
+impl Reporting for Arguments {
+    const NAME: &'static str = "infer";
+    type Report = InferReport;
 
-fn follow(arguments: Arguments, course: Course) -> Result<Answer, Failure> {
-    let mut run = Run::begin("infer", &arguments.common)?;
-    // From here on Ctrl-C ends the command where nothing is left behind.
-    let mut progress = Progress::new(arguments.common.verbosity());
-    arguments.snapshots.check()?;
-    arguments.latent.check()?;
-    let constraints = arguments.known.constraints()?;
-    let method = arguments.method.method()?;
-    arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
-    let data = arguments.snapshots.data.load()?;
-    let out = arguments.common.reserve(&data.inputs)?;
-    let velocities = measured(&arguments.snapshots, &data, arguments.difference)?;
-    if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
-        run.warn(format!(
-            "velocities are {difference} differences, which share the error of the position they start or end at: it acts \
-             as a spurious force; central differences do not"
-        ));
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    let frames = frames(&velocities, &arguments.snapshots, &data)?;
-    if matches!(velocities, Measured::Tracks(_)) {
-        arguments.check_tracks()?;
+
+    fn work(self, run: &mut Run) -> Result<Rendered<InferReport>, Failure> {
+        let arguments = self;
+        // From here on Ctrl-C ends the command where nothing is left behind.
+        let mut progress = Progress::new(arguments.common.verbosity());
+        arguments.snapshots.check()?;
+        arguments.latent.check()?;
+        let constraints = arguments.known.constraints()?;
+        let method = arguments.method.method()?;
+        arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
+        let data = arguments.snapshots.data.load()?;
+        let out = arguments.common.reserve(&data.inputs)?;
+        let velocities = measured(&arguments.snapshots, &data, arguments.difference)?;
+        if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
+            run.warn(format!(
+                "velocities are {difference} differences, which share the error of the position they start or end at: it acts \
+                 as a spurious force; central differences do not"
+            ));
+        }
+        let frames = frames(&velocities, &arguments.snapshots, &data)?;
+        if matches!(velocities, Measured::Tracks(_)) {
+            arguments.check_tracks()?;
+        }
+        let inquiry = Inquiry {
+            arguments: &arguments.snapshots,
+            data: &data,
+            constraints,
+            method,
+            seed: arguments.common.seed,
+            detections: arguments.latent.detections(),
+            scale: None,
+        };
+        let mut prepared = inquiry.prepare(velocities, frames, run)?;
+        let drives = Drives {
+            contact_inhibition: arguments.contact_inhibition,
+            velocity_alignment: arguments.velocity_alignment,
+        };
+        if arguments.active || arguments.align || drives.any() {
+            activity::check(prepared.tracks.as_ref())?;
+            prepared.request.drives = drives;
+            prepared.request.activity =
+                if arguments.align { Activity::Alignment } else { Activity::Polarity };
+        }
+        spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
+        prepared.request.varied.clone_from(&arguments.vary);
+        let kinds = kinds::check(&arguments.by_label, &prepared, &data, !arguments.vary.is_empty())?;
+        let mut out = out.begin()?;
+        let folder = out.path().to_owned();
+        let mut kept =
+            Kept::open(out.folder(), ("infer", "replicates"), &arguments.replicates, (run, &data))?;
+        let told_apart = kinds.map_or(Ok(()), |kinds| prepared.distinguish(kinds, &data));
+        let understood = told_apart.and_then(|()| prepared.understand(&mut |state| progress.tell(state)));
+        measurement::caution(&prepared, run);
+        let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
+        let answered = fitted.and_then(|(result, tracked)| {
+            let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
+            Ok((result, tracked, answers))
+        });
+        progress.finish();
+        let answered = answered.map_err(|error| with_location(&prepared, error, &arguments.snapshots));
+        if kept.is_part() {
+            return kept.finish_part(answered.map(|_| ()), (run, out), &progress);
+        }
+        let (result, tracked, answers) = answered.map_err(|failure| kept.failed(failure))?;
+        kept.caution(run);
+        let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
+        doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
+        let caution = tracked.as_ref().and_then(|tracked| activity::caution(&result, tracked));
+        caution.into_iter().for_each(|caution| run.warn(caution));
+        arrays::write(&mut out, "", &data, &prepared, &result)?;
+        super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
+        latent::write(&mut out, &data, &prepared, &result)?;
+        arguments.export.write(&mut out, &data, || export::frames(&prepared, &result))?;
+        let movie = views::movie(&prepared, &result, &data);
+        arguments.movie.write(&mut out, movie.as_ref(), run)?;
+        let followed = prepared.tracks.as_ref().zip(tracked.as_ref());
+        if let Some((movie, tracked)) = followed {
+            tracks::write(&mut out, "", &data, (&prepared, movie), tracked)?;
+        }
+        let foreseen = match &tracked {
+            Some(tracked) => tracked.prospects.clone(),
+            None => prospects(&prepared.observations, &prepared.request, &result).ok().flatten(),
+        };
+        let told = followed.map(|(movie, tracked)| {
+            (tracks::report(&prepared, movie, &result, tracked), activity::report(&data, &prepared, tracked))
+        });
+        let report = report::report(
+            (run, &data, arguments.snapshots.stated(&data)),
+            &prepared,
+            &result,
+            (&answers, foreseen.as_ref()),
+            told,
+        );
+        let page = page::page(&arguments, &data, (&prepared, &result), &report, &answers, movie.as_ref())?;
+        let summary = summary::summary(&report, &folder);
+        out.end_run();
+        let answer = Answer::of(result.is_acceptable());
+        let rendered = Rendered::with_page(out, &report, &page, summary)?.with_answer(answer);
+        progress.heed().map_err(|failure| kept.failed(failure))?;
+        Ok(rendered.shown(arguments.open_report))
     }
-    let inquiry = Inquiry {
-        arguments: &arguments.snapshots,
-        data: &data,
-        constraints,
-        method,
-        seed: arguments.common.seed,
-        detections: arguments.latent.detections(),
-        scale: None,
-    };
-    let mut prepared = inquiry.prepare(velocities, frames, &mut run)?;
-    let drives = Drives {
-        contact_inhibition: arguments.contact_inhibition,
-        velocity_alignment: arguments.velocity_alignment,
-    };
-    if arguments.active || arguments.align || drives.any() {
-        activity::check(prepared.tracks.as_ref())?;
-        prepared.request.drives = drives;
-        prepared.request.activity = if arguments.align { Activity::Alignment } else { Activity::Polarity };
-    }
-    spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
-    prepared.request.varied.clone_from(&arguments.vary);
-    let kinds = kinds::check(&arguments.by_label, &prepared, &data, !arguments.vary.is_empty())?;
-    let mut out = out.begin()?;
-    let (folder, own) = (out.path().to_owned(), (&arguments.replicates, course));
-    let mut kept = Kept::open(out.folder(), ("infer", "replicates"), own, (&run, &data))?;
-    let told_apart = kinds.map_or(Ok(()), |kinds| prepared.distinguish(kinds, &data));
-    let understood = told_apart.and_then(|()| prepared.understand(&mut |state| progress.tell(state)));
-    measurement::caution(&prepared, &mut run);
-    let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
-    let answered = fitted.and_then(|(result, tracked)| {
-        let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
-        Ok((result, tracked, answers))
-    });
-    progress.finish();
-    let answered = answered.map_err(|error| with_location(&prepared, error, &arguments.snapshots));
-    if kept.is_part() {
-        return kept.finish_part(answered.map(|_| ()), (&mut run, out), &progress);
-    }
-    let (result, tracked, answers) = answered.map_err(|failure| kept.failed(failure))?;
-    kept.caution(&mut run);
-    let doubts = words::doubts(&result, &answers.profiles, prepared.request.method);
-    doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
-    let caution = tracked.as_ref().and_then(|tracked| activity::caution(&result, tracked));
-    caution.into_iter().for_each(|caution| run.warn(caution));
-    arrays::write(&mut out, "", &data, &prepared, &result)?;
-    super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
-    latent::write(&mut out, &data, &prepared, &result)?;
-    arguments.export.write(&mut out, &data, || export::frames(&prepared, &result))?;
-    let movie = views::movie(&prepared, &result, &data);
-    arguments.movie.write(&mut out, movie.as_ref(), &mut run)?;
-    let followed = prepared.tracks.as_ref().zip(tracked.as_ref());
-    if let Some((movie, tracked)) = followed {
-        tracks::write(&mut out, "", &data, (&prepared, movie), tracked)?;
-    }
-    let foreseen = match &tracked {
-        Some(tracked) => tracked.prospects.clone(),
-        None => prospects(&prepared.observations, &prepared.request, &result).ok().flatten(),
-    };
-    let told = followed.map(|(movie, tracked)| {
-        (tracks::report(&prepared, movie, &result, tracked), activity::report(&data, &prepared, tracked))
-    });
-    let report = report::report(
-        (&run, &data, arguments.snapshots.stated(&data)),
-        &prepared,
-        &result,
-        (&answers, foreseen.as_ref()),
-        told,
-    );
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let page = page::page(&arguments, &data, (&prepared, &result), &report, &answers, movie.as_ref())?;
-    out.write_text("report.html", &page)?;
-    let summary = summary::summary(&report, &folder);
-    progress.heed().map_err(|failure| kept.failed(failure))?;
-    out.end_run();
-    run.finish(Some(out), &json, &summary)?;
-    if arguments.open_report {
-        browser::open(&folder.join("report.html"));
-    }
-    Ok(if result.is_acceptable() { Answer::Positive } else { Answer::Negative })
 }

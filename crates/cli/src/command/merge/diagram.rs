@@ -1,28 +1,39 @@
 //! The parts of a phase diagram put together.
 
 use super::{Arguments, check, read, refuse_incomplete, refuse_other};
-use crate::arguments::Shard;
+use crate::arguments::{CommonArguments, Shard};
 use crate::command::phase_diagram::finish;
 use crate::command::phase_diagram::points::{FILE, Header, Points};
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use std::collections::BTreeSet;
 use std::path::Path;
+use voronudge_report::PhaseReport;
 
-pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("merge", &arguments.common)?;
-    let scaling = arguments.scaling.resolve()?;
-    let parsed = |folder: &Path| Points::parse(read(folder, FILE)?.lines(), folder.join(FILE).display());
-    let parts: Vec<(&Path, Points)> = (arguments.parts.iter())
-        .map(|folder| Ok((folder.as_path(), parsed(folder)?)))
-        .collect::<Result<_, Failure>>()?;
-    let points = merged(parts)?;
-    run.seed_is(points.header.request.seed);
-    let mut results = arguments.common.output(&arguments.parts)?;
-    let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
-    run.finish(Some(results), &json, &summary)?;
-    Ok(points.answer())
+/// What was asked for, of parts of a diagram.
+pub(super) struct Diagram(pub Arguments);
+
+impl Reporting for Diagram {
+    const NAME: &'static str = "merge";
+    type Report = PhaseReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.0.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<PhaseReport>, Failure> {
+        let Self(arguments) = self;
+        let scaling = arguments.scaling.resolve()?;
+        let parsed = |folder: &Path| Points::parse(read(folder, FILE)?.lines(), folder.join(FILE).display());
+        let parts: Vec<(&Path, Points)> = (arguments.parts.iter())
+            .map(|folder| Ok((folder.as_path(), parsed(folder)?)))
+            .collect::<Result<_, Failure>>()?;
+        let points = merged(parts)?;
+        run.seed_is(points.header.request.seed);
+        let results = arguments.common.output(&arguments.parts)?;
+        finish(run, &points, &scaling, results)
+    }
 }
 
 /// All runs in order, if the parts belong together and none is missing or there twice.

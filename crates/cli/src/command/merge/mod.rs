@@ -7,8 +7,9 @@ use super::phase_diagram::ScalingArguments;
 use super::replicates::FILE;
 use crate::arguments::{CommonArguments, Shard};
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Answer, Command, Described};
 use clap::Args;
+use diagram::Diagram;
 use std::path::{Path, PathBuf};
 
 /// Puts together the parts of a run of phase-diagram, discover or infer that were made with --shard.
@@ -26,11 +27,17 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    if arguments.parts.iter().any(|folder| folder.join(FILE).is_file()) {
-        return replicates::run(arguments);
+impl Command for Arguments {
+    fn run(self) -> Result<Answer, Failure> {
+        if self.parts.iter().any(|folder| folder.join(FILE).is_file()) {
+            return replicates::run(self);
+        }
+        Diagram(self).run()
     }
-    diagram::run(arguments)
+
+    fn described() -> Vec<Described> {
+        Diagram::described()
+    }
 }
 
 /// What to do about parts that do not belong together.

@@ -2,9 +2,10 @@
 
 use super::{Arguments, HINT, check, read, refuse_incomplete, refuse_other};
 use crate::arguments::{CommonArguments, Shard};
-use crate::command::replicates::{Agreement, Course, FILE, Made, ReplicateArguments};
+use crate::command::replicates::{Agreement, FILE, Made, Parts, ReplicateArguments};
 use crate::failure::Failure;
-use crate::program::{self, Answer, Command};
+use crate::program::{self, AnyCommand};
+use crate::reporting::{Answer, Command};
 use std::path::Path;
 
 pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
@@ -16,12 +17,11 @@ pub(super) fn run(arguments: Arguments) -> Result<Answer, Failure> {
     let line = made.header.command_line.clone();
     let typed = program::parse(line.words())?;
     // Where an interrupted merge has made fits itself, it goes on.
-    let replicates = ReplicateArguments { resume: true, shard: None };
-    let course = Course { line, made: Some(made) };
+    let replicates = ReplicateArguments { resume: true, shard: None, parts: Some(Parts { line, made }) };
     let common = |own: CommonArguments| arguments.common.with_seed(own.seed);
     match typed {
-        Command::Discover(own) => own.merged(common, replicates, course),
-        Command::Infer(own) => own.merged(common, replicates, course),
+        AnyCommand::Discover(own) => own.merged(common, replicates).run(),
+        AnyCommand::Infer(own) => own.merged(common, replicates).run(),
         _ => Err(Failure::new("the parts are of no command that is shared among machines").with_hint(HINT)),
     }
 }

@@ -9,12 +9,13 @@ use crate::arguments::{CellArguments, CommonArguments, ParameterArguments, Sprea
 use crate::command::simulate::StartArguments;
 use crate::failure::Failure;
 use crate::memory::{OF_A_STRAINED_CELL, refuse_beyond};
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use protocol::{Protocol, ProtocolArguments};
 use std::path::Path;
 use voronudge_report::ModuliPage;
+use voronudge_report::ModuliReport;
 
 /// Elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, beside the mean-field theory.
 ///
@@ -38,34 +39,38 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("moduli", &arguments.common)?;
-    let mut parameters = arguments.parameters.resolve()?;
-    arguments.protocol.check()?;
-    let spreads = arguments.spreads.resolve()?;
-    spreads.idle(&parameters).into_iter().for_each(|idle| run.warn(idle));
-    let inputs = arguments.start.file().into_iter().chain(arguments.parameters.file());
-    let out = arguments.common.reserve(inputs.map(Path::to_owned).chain(arguments.cells.files()))?;
-    let starts = measure::starts(&arguments)?;
-    let first = &starts[0].1;
-    let cells = first.positions.len();
-    refuse_beyond(format!("moduli of {cells} cells"), cells, OF_A_STRAINED_CELL)?;
-    let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();
-    let models = measure::models(&arguments.cells, &spreads, &starts, &mut parameters)?;
-    let protocol = Protocol::new(&arguments.protocol, &parameters, spacing)?;
-    let mut out = out.begin()?;
-    protocol.doubts().into_iter().for_each(|doubt| run.warn(doubt));
-    let measured = measure::replicas(&starts, &models, &protocol, arguments.common.verbosity())?;
-    report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));
-    let report = report::report(&run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let (title, headline) = (report::title(&arguments), report::headline(&report));
-    let unit = report.units.powers(0, -1);
-    let dynamic = dynamic::figures(&report.dynamic, &report.media, &unit);
-    let page = ModuliPage { title: &title, headline: &headline, summary: &[], dynamic, report: &report };
-    out.write_text("report.html", &page.render()?)?;
-    let summary = report::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
+impl Reporting for Arguments {
+    const NAME: &'static str = "moduli";
+    type Report = ModuliReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let mut parameters = self.parameters.resolve()?;
+        self.protocol.check()?;
+        let spreads = self.spreads.resolve()?;
+        spreads.idle(&parameters).into_iter().for_each(|idle| run.warn(idle));
+        let inputs = self.start.file().into_iter().chain(self.parameters.file());
+        let out = self.common.reserve(inputs.map(Path::to_owned).chain(self.cells.files()))?;
+        let starts = measure::starts(&self)?;
+        let first = &starts[0].1;
+        let cells = first.positions.len();
+        refuse_beyond(format!("moduli of {cells} cells"), cells, OF_A_STRAINED_CELL)?;
+        let spacing = (first.cell_box.area() / first.positions.len() as f64).sqrt();
+        let models = measure::models(&self.cells, &spreads, &starts, &mut parameters)?;
+        let protocol = Protocol::new(&self.protocol, &parameters, spacing)?;
+        let out = out.begin()?;
+        protocol.doubts().into_iter().for_each(|doubt| run.warn(doubt));
+        let measured = measure::replicas(&starts, &models, &protocol, self.common.verbosity())?;
+        report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));
+        let report = report::report(run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
+        let (title, headline) = (report::title(&self), report::headline(&report));
+        let unit = report.units.powers(0, -1);
+        let dynamic = dynamic::figures(&report.dynamic, &report.media, &unit);
+        let page = ModuliPage { title: &title, headline: &headline, summary: &[], dynamic, report: &report };
+        let summary = report::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page.render()?, summary)
+    }
 }

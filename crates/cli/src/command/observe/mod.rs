@@ -8,7 +8,7 @@ mod report;
 use crate::arguments::CommonArguments;
 use crate::command::recorded::{RecordingArguments, Velocities};
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use avalanches::AvalancheArguments;
 use clap::Args;
@@ -17,6 +17,7 @@ use nematic::NematicArguments;
 use voronudge_io::DataSet;
 use voronudge_observables::{Exchange, Plan, exchange_statistics, exchanges, observe};
 use voronudge_report::Units;
+use voronudge_report::observe_report::ObserveReport;
 
 /// What is measured on the cells of a data set, seen or simulated: how they move, who is next to whom, shapes, order, correlations and structure factors.
 ///
@@ -33,65 +34,72 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("observe", &arguments.common)?;
-    arguments.recording.check()?;
-    arguments.avalanches.check()?;
-    let model = arguments.nematic.model()?;
-    let data = arguments.recording.data.load()?;
-    let place = arguments.recording.location();
-    let frames = arguments.recording.frames(&data)?;
-    let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.nematic.parameters_file());
-    let out = arguments.common.reserve(inputs)?;
-    let recorded = arguments.recording.record(&data, &frames)?;
-    let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;
-    let all = exchanges(&recorded.recording);
-    let avalanches =
-        arguments.avalanches.measure(&recorded, (&plan, &all), model.as_ref(), arguments.common.seed);
-    let nematic = arguments.nematic.measure(&recorded, &plan, model)?;
-    let mut out = out.begin()?;
-    if recorded.velocities == Velocities::None {
-        run.warn("there are neither velocities nor several frames: nothing is said of motion");
+impl Reporting for Arguments {
+    const NAME: &'static str = "observe";
+    type Report = ObserveReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    let mut curves = observe(&recorded.recording, &plan);
-    if frames.len() > 1 {
-        out.write_array("t1.npy", rows(&all, &data, &frames).view())?;
-        curves.extend(exchange_statistics(&recorded.recording, &plan, &all));
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        self.recording.check()?;
+        self.avalanches.check()?;
+        let model = self.nematic.model()?;
+        let data = self.recording.data.load()?;
+        let place = self.recording.location();
+        let frames = self.recording.frames(&data)?;
+        let inputs = data.inputs.iter().map(AsRef::as_ref).chain(self.nematic.parameters_file());
+        let out = self.common.reserve(inputs)?;
+        let recorded = self.recording.record(&data, &frames)?;
+        let plan = Plan::of(&recorded.recording).map_err(|error| Failure::from(error).at(&place))?;
+        let all = exchanges(&recorded.recording);
+        let avalanches = self.avalanches.measure(&recorded, (&plan, &all), model.as_ref(), self.common.seed);
+        let nematic = self.nematic.measure(&recorded, &plan, model)?;
+        let mut out = out.begin()?;
+        if recorded.velocities == Velocities::None {
+            run.warn("there are neither velocities nor several frames: nothing is said of motion");
+        }
+        let mut curves = observe(&recorded.recording, &plan);
+        if frames.len() > 1 {
+            out.write_array("t1.npy", rows(&all, &data, &frames).view())?;
+            curves.extend(exchange_statistics(&recorded.recording, &plan, &all));
+        }
+        if let Some(found) = &avalanches {
+            found.write(&mut out, &data, &frames)?;
+            curves.extend(found.avalanches.curves.iter().cloned());
+        }
+        curves.extend(nematic.nematic.curves.iter().cloned());
+        nematic.write(&mut out, &data, &frames)?;
+        curves.sort_by_key(|curve| curve.of);
+        for curve in curves.iter().filter(|curve| !curve.of.is_number()) {
+            let table = Array2::from_shape_fn((curve.at.len(), 4), |(row, column)| match column {
+                0 => curve.at[row],
+                1 => curve.value[row],
+                2 => curve.standard_error[row],
+                _ => curve.count[row] as f64,
+            });
+            out.write_array(&format!("{}.npy", curve.of.name()), table.view())?;
+        }
+        let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
+        let report = report::report(
+            run.record(Some(&data)),
+            &units,
+            &frames,
+            (&recorded, &plan),
+            (&curves, &nematic, avalanches.as_ref()),
+        );
+        let title = self.recording.title();
+        let page = page::page(
+            &title,
+            &report,
+            &recorded.recording,
+            (&curves, &nematic, avalanches.as_ref()),
+            &units,
+        )?;
+        let summary = page::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page, summary)
     }
-    if let Some(found) = &avalanches {
-        found.write(&mut out, &data, &frames)?;
-        curves.extend(found.avalanches.curves.iter().cloned());
-    }
-    curves.extend(nematic.nematic.curves.iter().cloned());
-    nematic.write(&mut out, &data, &frames)?;
-    curves.sort_by_key(|curve| curve.of);
-    for curve in curves.iter().filter(|curve| !curve.of.is_number()) {
-        let table = Array2::from_shape_fn((curve.at.len(), 4), |(row, column)| match column {
-            0 => curve.at[row],
-            1 => curve.value[row],
-            2 => curve.standard_error[row],
-            _ => curve.count[row] as f64,
-        });
-        out.write_array(&format!("{}.npy", curve.of.name()), table.view())?;
-    }
-    let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
-    let report = report::report(
-        run.record(Some(&data)),
-        &units,
-        &frames,
-        (&recorded, &plan),
-        (&curves, &nematic, avalanches.as_ref()),
-    );
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let title = arguments.recording.title();
-    out.write_text(
-        "report.html",
-        &page::page(&title, &report, &recorded.recording, (&curves, &nematic, avalanches.as_ref()), &units)?,
-    )?;
-    let summary = page::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
 }
 
 /// (transitions, 9): frame, x, y, directions of the contact lost and of the one made in the axes of the data, and the numbers of the cells of both.

@@ -14,8 +14,8 @@ pub(crate) use scaling::ScalingArguments;
 use crate::arguments::{CommonArguments, Shard, SpreadArguments};
 use crate::failure::Failure;
 use crate::output::{NO_INPUTS, read_if_there};
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use points::{Header, Points};
@@ -23,6 +23,7 @@ use request::{GridArguments, Request};
 use std::collections::BTreeSet;
 use std::path::Path;
 use voronudge_io::{Journal, OutputFolder, Recording};
+use voronudge_report::PhaseReport;
 use work::{Ending, work};
 
 /// Phase diagram: velocities, order, T1 transitions and more over preferred perimeter and chirality.
@@ -47,39 +48,45 @@ pub(crate) struct Arguments {
     common: CommonArguments,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("phase-diagram", &arguments.common)?;
-    let request = Request::new(&arguments.grid, arguments.spreads.resolve()?, arguments.common.seed)?;
-    let scaling = arguments.scaling.resolve()?;
-    let out = &arguments.common.claim(NO_INPUTS)?;
-    let header = Header { request, shard: arguments.shard.unwrap_or(Shard::WHOLE) };
-    let (mut journal, mut points) = open(out, header, arguments.resume)?;
-    let request = points.header.request.clone();
-    let coarse = request.coarse_points();
-    if coarse > 0 {
-        run.warn(format!(
-            "the time step {} is above the one advised at {coarse} of {} points; velocities there can come out wrong by tens of per cent",
-            request.dt.unwrap_or(f64::NAN),
-            request.points()
-        ));
+impl Reporting for Arguments {
+    const NAME: &'static str = "phase-diagram";
+    type Report = PhaseReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    let done: BTreeSet<_> = points.records.iter().map(|record| (record.point, record.replica)).collect();
-    let mut jobs = request.jobs(points.header.shard);
-    let all = jobs.len();
-    jobs.retain(|job| !done.contains(&(job.point, job.replica)));
-    let mut progress = Progress::new(arguments.common.verbosity());
-    let ending = work(&request, jobs, (&mut journal, &mut points.records), &mut progress)?;
-    if ending == Ending::Interrupted {
-        let text = format!("interrupted after {} of {all} runs, which are kept", points.records.len());
-        return Err(
-            Failure::interrupted_at(text).with_hint("the same command with --resume goes on from there")
-        );
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let request = Request::new(&self.grid, self.spreads.resolve()?, self.common.seed)?;
+        let scaling = self.scaling.resolve()?;
+        let out = &self.common.claim(NO_INPUTS)?;
+        let header = Header { request, shard: self.shard.unwrap_or(Shard::WHOLE) };
+        let (mut journal, mut points) = open(out, header, self.resume)?;
+        let request = points.header.request.clone();
+        let coarse = request.coarse_points();
+        if coarse > 0 {
+            run.warn(format!(
+                "the time step {} is above the one advised at {coarse} of {} points; velocities there can come out wrong by tens of per cent",
+                request.dt.unwrap_or(f64::NAN),
+                request.points()
+            ));
+        }
+        let done: BTreeSet<_> = points.records.iter().map(|record| (record.point, record.replica)).collect();
+        let mut jobs = request.jobs(points.header.shard);
+        let all = jobs.len();
+        jobs.retain(|job| !done.contains(&(job.point, job.replica)));
+        let mut progress = Progress::new(self.common.verbosity());
+        let ending = work(&request, jobs, (&mut journal, &mut points.records), &mut progress)?;
+        if ending == Ending::Interrupted {
+            let text = format!("interrupted after {} of {all} runs, which are kept", points.records.len());
+            return Err(
+                Failure::interrupted_at(text).with_hint("the same command with --resume goes on from there")
+            );
+        }
+        points.sort();
+        let results = journal.results()?;
+        finish(run, &points, &scaling, results)
     }
-    points.sort();
-    let mut results = journal.results()?;
-    let (json, summary) = finish(&mut run, &points, &scaling, &mut results)?;
-    run.finish(Some(results), &json, &summary)?;
-    Ok(points.answer())
 }
 
 /// The runs of a diagram that ended, if it is of the same request.

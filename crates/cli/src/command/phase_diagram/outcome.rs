@@ -6,6 +6,7 @@ use super::request::{Quantity, Request};
 use super::scaling::{Collapse, Scaling};
 use crate::arguments::Shard;
 use crate::failure::Failure;
+use crate::reporting::{Answer, Rendered};
 use crate::run::Run;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -28,8 +29,8 @@ pub(crate) fn finish(
     run: &mut Run,
     points: &Points,
     scaling: &Scaling,
-    out: &mut OutputDirectory,
-) -> Result<(String, String), Failure> {
+    mut out: OutputDirectory,
+) -> Result<Rendered<PhaseReport>, Failure> {
     let request = &points.header.request;
     let diagram = Diagram::new(points);
     out.write_text(FILE, &points.to_text()?)?;
@@ -39,16 +40,14 @@ pub(crate) fn finish(
     }
     let whole = points.header.shard == Shard::WHOLE;
     let collapse = if whole {
-        diagram.write(out)?;
+        diagram.write(&mut out)?;
         Collapse::new(&diagram, scaling, request.seed)
     } else {
         Collapse { record: Err("This is a part of a diagram.".into()), figures: Vec::new() }
     };
     let report = report(run, points, &diagram, &collapse);
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let summary = summary(&report, points, out);
-    if whole {
+    let summary = summary(&report, points, &out);
+    let rendered = if whole {
         let maps = maps(request, &diagram);
         let page = PhasePage {
             title: "phase diagram",
@@ -58,9 +57,13 @@ pub(crate) fn finish(
             maps: &maps,
             collapse: &collapse.figures,
         };
-        out.write_text("report.html", &page.render()?)?;
-    }
-    Ok((json, summary))
+        Rendered::with_page(out, &report, &page.render()?, summary)
+    } else {
+        Rendered::new(out, &report, summary)
+    };
+    // No, if no run came to anything.
+    let some_ended = points.records.is_empty() || points.records.iter().any(|record| record.error.is_none());
+    Ok(rendered?.with_answer(Answer::of(some_ended)))
 }
 
 fn report(run: &Run, points: &Points, diagram: &Diagram, collapse: &Collapse) -> PhaseReport {

@@ -4,7 +4,6 @@ use super::point::Record;
 use super::request::Request;
 use crate::arguments::Shard;
 use crate::failure::Failure;
-use crate::program::Answer;
 use serde::{Deserialize, Serialize};
 use std::fmt::Display;
 
@@ -59,14 +58,6 @@ impl Points {
             text.push('\n');
         }
         Ok(text)
-    }
-
-    /// No, if no run came to anything.
-    pub fn answer(&self) -> Answer {
-        match self.records.iter().any(|record| record.error.is_none()) || self.records.is_empty() {
-            true => Answer::Positive,
-            false => Answer::Negative,
-        }
     }
 
     /// Puts the runs in order.

@@ -6,7 +6,7 @@ mod report;
 
 use crate::arguments::{CommonArguments, DataSetArguments};
 use crate::failure::Failure;
-use crate::program::Answer;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::{Args, ValueEnum};
 use pattern::TrackedPattern;
@@ -15,6 +15,7 @@ use voronudge_infer::phase_diffusion::{
     Fluctuations, PhaseRequest, RateOrder, ReferencePlaces, phase_diffusion,
 };
 use voronudge_io::FrameSelection;
+use voronudge_report::PhaseDiffusionReport;
 
 /// Residuals of consecutive frames that correlate by more than this are not independent.
 const CORRELATED: f64 = 0.3;
@@ -94,47 +95,52 @@ impl Arguments {
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("phase-diffusion", &arguments.common)?;
-    let request = arguments.request()?;
-    let data = arguments.data.load()?;
-    let place = arguments.data.positions_file().display().to_string();
-    let frames = match &arguments.frames {
-        Some(selection) => {
-            selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
+impl Reporting for Arguments {
+    const NAME: &'static str = "phase-diffusion";
+    type Report = PhaseDiffusionReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let request = self.request()?;
+        let data = self.data.load()?;
+        let place = self.data.positions_file().display().to_string();
+        let frames = match &self.frames {
+            Some(selection) => {
+                selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
+            }
+            None => (0..data.frames()).collect(),
+        };
+        let out = self.common.reserve(&data.inputs)?;
+        let tracked = TrackedPattern::new(&data, &frames, self.reference.as_deref())
+            .map_err(|failure| failure.at(&place))?;
+        let out = out.begin()?;
+        let present = data.cells();
+        if tracked.cells.len() < present {
+            run.warn(format!(
+                "{} of {present} cells are missing from a frame and are left out",
+                present - tracked.cells.len()
+            ));
         }
-        None => (0..data.frames()).collect(),
-    };
-    let out = arguments.common.reserve(&data.inputs)?;
-    let tracked = TrackedPattern::new(&data, &frames, arguments.reference.as_deref())
-        .map_err(|failure| failure.at(&place))?;
-    let mut out = out.begin()?;
-    let present = data.cells();
-    if tracked.cells.len() < present {
-        run.warn(format!(
-            "{} of {present} cells are missing from a frame and are left out",
-            present - tracked.cells.len()
-        ));
+        let found =
+            phase_diffusion(&tracked.pattern, &request).map_err(|error| Failure::from(error).at(&place))?;
+        match (request.fluctuations, found.residual_correlation) {
+            (Fluctuations::Measurement, r) if r > CORRELATED => run.warn(format!(
+                "residuals of consecutive frames correlate by {r:.2}, so they are not independent errors of measurement: the standard errors are too \
+                 small; try --fluctuations driving, --order fourth, fewer --wave-vectors, or frames of smaller displacements"
+            )),
+            (Fluctuations::Driving, r) if r < -CORRELATED => run.warn(format!(
+                "residuals of consecutive frames correlate by {r:.2}, as errors of measurement make them: rates are overestimated; try \
+                 --fluctuations measurement"
+            )),
+            _ => {}
+        }
+        let report = report::report(run, &data, &request, &tracked, &frames, &found);
+        let title = self.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
+        let page = page::page(&title, &report, &found)?;
+        let summary = page::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page, summary)
     }
-    let found =
-        phase_diffusion(&tracked.pattern, &request).map_err(|error| Failure::from(error).at(&place))?;
-    match (request.fluctuations, found.residual_correlation) {
-        (Fluctuations::Measurement, r) if r > CORRELATED => run.warn(format!(
-            "residuals of consecutive frames correlate by {r:.2}, so they are not independent errors of measurement: the standard errors are too \
-             small; try --fluctuations driving, --order fourth, fewer --wave-vectors, or frames of smaller displacements"
-        )),
-        (Fluctuations::Driving, r) if r < -CORRELATED => run.warn(format!(
-            "residuals of consecutive frames correlate by {r:.2}, as errors of measurement make them: rates are overestimated; try \
-             --fluctuations measurement"
-        )),
-        _ => {}
-    }
-    let report = report::report(&run, &data, &request, &tracked, &frames, &found);
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let title = arguments.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
-    out.write_text("report.html", &page::page(&title, &report, &found)?)?;
-    let summary = page::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
 }

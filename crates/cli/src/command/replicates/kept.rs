@@ -2,11 +2,11 @@
 
 use super::header::Header;
 use super::lines::{Agreement, FILE, Made, Series, outcome_line};
-use super::{Course, ReplicateArguments};
+use super::{CommandLine, ReplicateArguments};
 use crate::failure::Failure;
 use crate::output::read_if_there;
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::Rendered;
 use crate::run::Run;
 use std::ops::ControlFlow;
 use std::path::Path;
@@ -39,20 +39,22 @@ impl Kept {
     pub fn open(
         folder: &OutputFolder,
         (command, name): (&str, &'static str),
-        (arguments, course): (&ReplicateArguments, Course),
+        arguments: &ReplicateArguments,
         (run, data): (&Run, &DataSet),
     ) -> Result<Self, Failure> {
-        let header = Header::new((command, &course.line), run.seed(), arguments.shard, data)?;
-        let is_merge = course.made.is_some();
+        let parts = arguments.parts.as_ref();
+        let line = parts.map_or_else(CommandLine::typed, |parts| parts.line.clone());
+        let header = Header::new((command, &line), run.seed(), arguments.shard, data)?;
+        let is_merge = parts.is_some();
         let mut made = Made { header, series: Vec::new() };
-        if let Some(parts) = course.made {
+        if let Some(parts) = parts.map(|parts| &parts.made) {
             if let Some(name) = made.header.difference(&parts.header) {
                 return Err(Failure::new(format!("the parts have another \"{name}\" than there is now"))
                     .with_hint(
                         "merge with the version, and beside the data, that the parts were made with",
                     ));
             }
-            made.series = parts.series;
+            made.series.clone_from(&parts.series);
         }
         let (mut journal, mut written) = (None, 0);
         if let Some(earlier) = interrupted(folder.path(), &made.header, arguments.resume)? {
@@ -111,12 +113,12 @@ impl Kept {
     }
 
     /// Ends a run that makes a part: with what it has come to, once all fits of the part are made.
-    pub fn finish_part(
+    pub fn finish_part<R>(
         mut self,
         come_to: Result<(), Failure>,
         (run, mut out): (&mut Run, OutputDirectory),
         progress: &Progress,
-    ) -> Result<Answer, Failure> {
+    ) -> Result<Rendered<R>, Failure> {
         let come_to = match progress.heed() {
             Ok(()) if self.fault.is_none() && self.begun > 0 && self.is_complete() => Ok(()),
             Ok(()) => come_to,
@@ -137,8 +139,7 @@ impl Kept {
         );
         let json = serde_json::to_string(&self.made.header)?;
         out.end_run();
-        run.finish(Some(out), &json, &summary)?;
-        Ok(Answer::Positive)
+        Ok(Rendered::without_report(Some(out), json, summary))
     }
 
     fn is_complete(&self) -> bool {

@@ -112,7 +112,7 @@ impl Agreement {
 }
 
 /// A header with the fits made so far, or all of them.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Made {
     pub header: Header,
     pub series: Vec<Series>,

@@ -27,18 +27,14 @@ pub(crate) struct ReplicateArguments {
     /// Fit only a part of the synthetic data, such as 1/4, and nothing that comes after; `merge` puts all parts together.
     #[arg(long, value_name = "PART/OF")]
     pub shard: Option<Shard>,
+    /// The parts that `merge` puts together.
+    #[arg(skip)]
+    pub parts: Option<Parts>,
 }
 
-/// A command line that is followed, with what is known of its fits to synthetic data.
-pub(crate) struct Course {
+/// Parts that were made elsewhere: their command line, which is followed, and their fits to synthetic data.
+#[derive(Debug, Clone)]
+pub(crate) struct Parts {
     pub line: CommandLine,
-    /// Made elsewhere, if the command line is that of parts.
-    pub made: Option<Made>,
-}
-
-impl Course {
-    /// As typed.
-    pub fn typed() -> Self {
-        Self { line: CommandLine::typed(), made: None }
-    }
+    pub made: Made,
 }

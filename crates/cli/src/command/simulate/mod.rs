@@ -17,8 +17,8 @@ use crate::arguments::{
     environment, named,
 };
 use crate::failure::Failure;
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use chaos::Measure;
 use clap::{Args, ValueEnum};
@@ -98,141 +98,153 @@ enum MethodName {
     Adaptive,
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("simulate", &arguments.common)?;
-    let mut parameters = arguments.parameters.resolve()?;
-    let mut effects = arguments.effects.resolve()?;
-    let every = Duration::try_from_secs_f64(arguments.checkpoint).map_err(|_| {
-        Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", arguments.checkpoint))
-            .with_hint("leave --checkpoint out for 30 seconds")
-    })?;
-    arguments.movie.check_without_fit()?;
-    let start = Start::of(&arguments.start, arguments.common.seed, arguments.frames)?;
-    let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
-    let (spreads, labels) = (arguments.spreads.resolve()?, start.labels.as_deref());
-    spreads.idle(&parameters).into_iter().for_each(|idle| run.warn(idle));
-    let own = arguments.cells.read(cells, labels, &mut parameters)?;
-    let own = own.and(spreads.draw(cells, arguments.common.seed, &mut parameters)?)?;
-    let of_cells = own.values(cells, labels);
-    let labels = start.labels.clone().or_else(|| spreads.labels(cells, arguments.common.seed));
-    let driving =
-        arguments.driving.driving(&mut effects, arguments.surroundings.shear()?, arguments.common.seed)?;
-    let domain = Domain::Periodic(start.cell_box);
-    let tessellation = Tessellation::new(&start.positions, domain)?;
-    let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
-    let surroundings = environment(&tessellation, &start.positions, &view)?;
-    let surroundings = own.of_all(surroundings, cells, labels.clone())?;
-    let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
-    let request = Request {
-        cells,
-        box_lengths: lengths,
-        start: start.origin,
-        time: arguments.time,
-        dt: arguments.dt,
-        frames: arguments.frames,
-        method: match arguments.method {
-            MethodName::Rk4 => Method::RungeKutta4,
-            MethodName::Adaptive => Method::BogackiShampine { tolerance: arguments.tolerance },
-        },
-        parameters: named(&parameters),
-        of_cells,
-        spreads,
-        labels,
-        effects,
-        walls: arguments.surroundings.walls(),
-        driving,
-    };
-    check_shear(&request, start.cell_box)?;
-    let measure_chaos = chaos::asked(arguments.lyapunov, &request)?;
-    let mut simulation = Simulation::new(start.positions, domain, model)?
-        .with_method(request.method)?
-        .with_driving(request.driving)?;
-    if let Some(walls) = request.walls {
-        simulation = simulation.with_walls(walls)?;
+impl Reporting for Arguments {
+    const NAME: &'static str = "simulate";
+    type Report = Report;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    let schedule = Schedule { time: request.time, time_step: request.dt, frames: request.frames };
-    let asked = Asked::of(&arguments.sensitivity, &parameters, &simulation, &schedule)?;
-    let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
-    if request.method == Method::RungeKutta4 && request.dt > advised {
-        run.warn(format!(
-            "the time step {} is above the {advised:.2e} advised for these parameters; velocities can come out wrong by tens of per cent",
-            request.dt
-        ));
-    }
-    let inputs = arguments.start.file().into_iter().chain(arguments.parameters.file());
-    let inputs = inputs.map(Path::to_owned).chain(arguments.cells.files());
-    let folder = arguments.common.claim(inputs)?;
-    let (mut recorder, kept) =
-        Recorder::open(&folder, &request, schedule.steps_per_frame()?, every, arguments.resume)?;
-    let mut so_far = RunState::default();
-    if let Some(Kept { run, state }) = kept {
-        so_far = run;
-        simulation = simulation.in_state(state)?;
-    }
-    let steps_before = so_far.steps;
-    let mut progress = Progress::new(arguments.common.verbosity());
-    let begun = Instant::now();
-    let (mut fault, mut last) = (None, so_far.clone());
-    let outcome = resume(&mut simulation, &schedule, so_far, |event| {
-        let written = match event {
-            Event::Frame(frame) => recorder.frame(frame.simulation),
-            Event::Step { done, total, simulation, state } => {
-                if done == total {
-                    last = state.clone();
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let mut parameters = self.parameters.resolve()?;
+        let mut effects = self.effects.resolve()?;
+        let every = Duration::try_from_secs_f64(self.checkpoint).map_err(|_| {
+            Failure::new(format!("--checkpoint is {}, but it must be a time in seconds", self.checkpoint))
+                .with_hint("leave --checkpoint out for 30 seconds")
+        })?;
+        self.movie.check_without_fit()?;
+        let start = Start::of(&self.start, self.common.seed, self.frames)?;
+        let (cells, lengths) = (start.positions.len(), start.cell_box.lengths());
+        let (spreads, labels) = (self.spreads.resolve()?, start.labels.as_deref());
+        spreads.idle(&parameters).into_iter().for_each(|idle| run.warn(idle));
+        let own = self.cells.read(cells, labels, &mut parameters)?;
+        let own = own.and(spreads.draw(cells, self.common.seed, &mut parameters)?)?;
+        let of_cells = own.values(cells, labels);
+        let labels = start.labels.clone().or_else(|| spreads.labels(cells, self.common.seed));
+        let driving = self.driving.driving(&mut effects, self.surroundings.shear()?, self.common.seed)?;
+        let domain = Domain::Periodic(start.cell_box);
+        let tessellation = Tessellation::new(&start.positions, domain)?;
+        let view = FieldOfView::everywhere().judge(&tessellation, &start.positions);
+        let surroundings = environment(&tessellation, &start.positions, &view)?;
+        let surroundings = own.of_all(surroundings, cells, labels.clone())?;
+        let model = effects.add_to(Model::chiral_voronoi(&parameters), surroundings, domain)?;
+        let request = Request {
+            cells,
+            box_lengths: lengths,
+            start: start.origin,
+            time: self.time,
+            dt: self.dt,
+            frames: self.frames,
+            method: match self.method {
+                MethodName::Rk4 => Method::RungeKutta4,
+                MethodName::Adaptive => Method::BogackiShampine { tolerance: self.tolerance },
+            },
+            parameters: named(&parameters),
+            of_cells,
+            spreads,
+            labels,
+            effects,
+            walls: self.surroundings.walls(),
+            driving,
+        };
+        check_shear(&request, start.cell_box)?;
+        let measure_chaos = chaos::asked(self.lyapunov, &request)?;
+        let mut simulation = Simulation::new(start.positions, domain, model)?
+            .with_method(request.method)?
+            .with_driving(request.driving)?;
+        if let Some(walls) = request.walls {
+            simulation = simulation.with_walls(walls)?;
+        }
+        let schedule = Schedule { time: request.time, time_step: request.dt, frames: request.frames };
+        let asked = Asked::of(&self.sensitivity, &parameters, &simulation, &schedule)?;
+        let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
+        if request.method == Method::RungeKutta4 && request.dt > advised {
+            run.warn(format!(
+                "the time step {} is above the {advised:.2e} advised for these parameters; velocities can come out wrong by tens of per cent",
+                request.dt
+            ));
+        }
+        let inputs = self.start.file().into_iter().chain(self.parameters.file());
+        let inputs = inputs.map(Path::to_owned).chain(self.cells.files());
+        let folder = self.common.claim(inputs)?;
+        let (mut recorder, kept) =
+            Recorder::open(&folder, &request, schedule.steps_per_frame()?, every, self.resume)?;
+        let mut so_far = RunState::default();
+        if let Some(Kept { run, state }) = kept {
+            so_far = run;
+            simulation = simulation.in_state(state)?;
+        }
+        let steps_before = so_far.steps;
+        let mut progress = Progress::new(self.common.verbosity());
+        let begun = Instant::now();
+        let (mut fault, mut last) = (None, so_far.clone());
+        let outcome = resume(&mut simulation, &schedule, so_far, |event| {
+            let written = match event {
+                Event::Frame(frame) => recorder.frame(frame.simulation),
+                Event::Step { done, total, simulation, state } => {
+                    if done == total {
+                        last = state.clone();
+                    }
+                    if progress.step("simulate", done as u64, total as u64).is_break() {
+                        let kept = recorder.checkpoint(simulation, state);
+                        fault = Some(kept.err().unwrap_or_else(|| interrupted(simulation.time())));
+                        return ControlFlow::Break(());
+                    }
+                    recorder.after_step(simulation, state)
                 }
-                if progress.step("simulate", done as u64, total as u64).is_break() {
-                    let kept = recorder.checkpoint(simulation, state);
-                    fault = Some(kept.err().unwrap_or_else(|| interrupted(simulation.time())));
-                    return ControlFlow::Break(());
+            };
+            match written {
+                Ok(()) => ControlFlow::Continue(()),
+                Err(failure) => {
+                    fault = Some(failure);
+                    ControlFlow::Break(())
                 }
-                recorder.after_step(simulation, state)
+            }
+        });
+        if let Some(failure) = fault {
+            progress.finish();
+            return Err(failure);
+        }
+        let summary = match outcome {
+            Ok(summary) => summary,
+            Err(error) => {
+                progress.finish();
+                // It would fail in the same way again.
+                let of_run =
+                    (request, start.cell_box, Units { length: start.length_unit, time: start.time_unit });
+                let told = (folder.path(), error.into());
+                return Err(outcome::keep_partial(recorder, of_run, (&simulation, &schedule), told)?);
             }
         };
-        match written {
-            Ok(()) => ControlFlow::Continue(()),
-            Err(failure) => {
-                fault = Some(failure);
-                ControlFlow::Break(())
-            }
+        debug_assert_eq!(summary.completion, Completion::Finished);
+        let seconds = begun.elapsed().as_secs_f64();
+        if measure_chaos == Measure::Chaos || asked.is_some() {
+            // So that an interruption finds the run complete.
+            recorder.checkpoint(&simulation, &last)?;
         }
-    });
-    if let Some(failure) = fault {
+        let lyapunov = match measure_chaos {
+            Measure::Chaos => Some(chaos::exponent(&simulation, &request, &mut progress)?),
+            Measure::NoChaos => None,
+        };
+        let differentiated = asked.map(|asked| asked.differentiate(&schedule, &mut progress)).transpose()?;
         progress.finish();
-        return Err(failure);
-    }
-    let summary = match outcome {
-        Ok(summary) => summary,
-        Err(error) => {
-            progress.finish();
-            // It would fail in the same way again.
-            let of_run =
-                (request, start.cell_box, Units { length: start.length_unit, time: start.time_unit });
-            let told = (folder.path(), error.into());
-            return Err(outcome::keep_partial(recorder, of_run, (&simulation, &schedule), told)?);
+        let crossings = simulation.state().crossings;
+        if crossings > 0 {
+            run.warn(format!("cells crossed a wall {crossings} times and were put in front of it"));
         }
-    };
-    debug_assert_eq!(summary.completion, Completion::Finished);
-    let seconds = begun.elapsed().as_secs_f64();
-    if measure_chaos == Measure::Chaos || asked.is_some() {
-        // So that an interruption finds the run complete.
-        recorder.checkpoint(&simulation, &last)?;
+        let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
+        let finished = Finished {
+            simulation: &simulation,
+            schedule,
+            summary,
+            lyapunov,
+            differentiated,
+            steps_per_second,
+        };
+        let units = Units { length: start.length_unit, time: start.time_unit };
+        outcome::finish(run, recorder, (request, start.cell_box, units), finished, self.movie)
     }
-    let lyapunov = match measure_chaos {
-        Measure::Chaos => Some(chaos::exponent(&simulation, &request, &mut progress)?),
-        Measure::NoChaos => None,
-    };
-    let differentiated = asked.map(|asked| asked.differentiate(&schedule, &mut progress)).transpose()?;
-    progress.finish();
-    let crossings = simulation.state().crossings;
-    if crossings > 0 {
-        run.warn(format!("cells crossed a wall {crossings} times and were put in front of it"));
-    }
-    let steps_per_second = (summary.steps - steps_before) as f64 / seconds;
-    let finished =
-        Finished { simulation: &simulation, schedule, summary, lyapunov, differentiated, steps_per_second };
-    let units = Units { length: start.length_unit, time: start.time_unit };
-    outcome::finish(&mut run, recorder, (request, start.cell_box, units), finished, arguments.movie)?;
-    Ok(Answer::Positive)
 }
 
 /// Refuses a shear that takes the box farther than numbers can follow, before the run gets there.

@@ -10,6 +10,7 @@ use super::surroundings::describe;
 use crate::arguments::MovieArguments;
 use crate::command::drawing::units_of_model;
 use crate::failure::Failure;
+use crate::reporting::Rendered;
 use crate::run::Run;
 use ndarray::{Array1, Array3, ArrayView1};
 use std::path::Path;
@@ -30,14 +31,14 @@ pub(super) struct Finished<'a> {
     pub steps_per_second: f64,
 }
 
-/// Measures what the frames tell, writes all results and prints the summary.
+/// Measures what the frames tell and writes all results.
 pub(super) fn finish(
     run: &mut Run,
     mut recorder: Recorder,
     (request, start, units): (Request, PeriodicBox, Units),
     finished: Finished<'_>,
     asked: MovieArguments,
-) -> Result<(), Failure> {
+) -> Result<Rendered<Report>, Failure> {
     let Finished { simulation, schedule, summary, lyapunov, differentiated, steps_per_second } = finished;
     if summary.mean_square_velocity.is_some_and(|square| !square.is_finite()) {
         return Err(Failure::new("the squares of the velocities are too large to be numbers")
@@ -93,12 +94,7 @@ pub(super) fn finish(
         steps: summary.steps,
         steps_per_second,
     };
-    let json = serde_json::to_string_pretty(&report)?;
-    results.write_text("report.json", &json)?;
-    results.write_text(
-        "report.html",
-        &page(&report, &measurements, (simulation, differentiated.as_ref(), movie.as_ref()), &shown)?,
-    )?;
+    let page = page(&report, &measurements, (simulation, differentiated.as_ref(), movie.as_ref()), &shown)?;
     let error = |error: Option<f64>| error.map_or(String::new(), |error| format!(" ± {error:.1e}"));
     let mut text = format!(
         "{} cells, {} steps, {:.0} steps per second\nmean square velocity over the second half: {}{}\n",
@@ -121,7 +117,7 @@ pub(super) fn finish(
         );
     }
     text += &format!("written to {}, figures in report.html\n", results.path().display());
-    run.finish(Some(results), &json, &text)
+    Rendered::with_page(results, &report, &page, text)
 }
 
 /// Writes the labels of the cells and the parameters in which they differ; those of an earlier run go.

@@ -17,8 +17,8 @@ use crate::arguments::{
 };
 use crate::boundary::domain_at;
 use crate::failure::Failure;
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use clap::Args;
 use frame::Solved;
@@ -27,6 +27,7 @@ pub(crate) use report::mean_field;
 use request::SelectionArguments;
 use strip::{Bands, EndedLattice, EndsName};
 use voronudge_io::FrameSelection;
+use voronudge_report::SpectrumReport;
 
 /// Linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional points.
 ///
@@ -69,92 +70,100 @@ pub(crate) struct Arguments {
 /// Steps of the wave number along a strip where nothing is said.
 const WAVE_NUMBERS: usize = 64;
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("spectrum", &arguments.common)?;
-    let request = arguments.selection.resolve()?;
-    if arguments.modes && !request.has_vectors() {
-        return Err(Failure::new("--modes asks for vectors and --values-only for none")
-            .with_hint("leave one of them out"));
+impl Reporting for Arguments {
+    const NAME: &'static str = "spectrum";
+    type Report = SpectrumReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
     }
-    let effects = arguments.effects.resolve()?;
-    let mut parameters = arguments.parameters.resolve()?;
-    let lattice = arguments.lattice.as_deref().map(Lattice::new).transpose()?;
-    let count = arguments.wave_numbers.unwrap_or(WAVE_NUMBERS);
-    strip::check(count, arguments.wave_number)?;
-    let ended = match (&lattice, arguments.ends) {
-        (Some(lattice), Some(ends)) => Some(EndedLattice::new(lattice, ends, (&parameters, &effects))?),
-        _ => None,
-    };
-    let (data, place) = match (&lattice, &ended) {
-        (Some(lattice), Some(ended)) => (ended.data_set(lattice), "the honeycomb".to_owned()),
-        (Some(lattice), None) => (lattice.data_set(), "the honeycomb".to_owned()),
-        (None, _) => (arguments.data.load()?, arguments.data.positions_file().display().to_string()),
-    };
-    if data.walls.is_none() {
-        domain_at(&data, 0)?;
-    }
-    let frames = match &arguments.frames {
-        Some(selection) => {
-            selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        let request = self.selection.resolve()?;
+        if self.modes && !request.has_vectors() {
+            return Err(Failure::new("--modes asks for vectors and --values-only for none")
+                .with_hint("leave one of them out"));
         }
-        None => vec![0],
-    };
-    let own = arguments.cells.of_data(&data, frames.first().copied().unwrap_or(0), &mut parameters)?;
-    if ended.is_some() && !own.is_empty() {
-        return Err(
-            Failure::new("cells that differ do not go with --ends").with_hint("leave one of them out")
-        );
+        let effects = self.effects.resolve()?;
+        let mut parameters = self.parameters.resolve()?;
+        let lattice = self.lattice.as_deref().map(Lattice::new).transpose()?;
+        let count = self.wave_numbers.unwrap_or(WAVE_NUMBERS);
+        strip::check(count, self.wave_number)?;
+        let ended = match (&lattice, self.ends) {
+            (Some(lattice), Some(ends)) => Some(EndedLattice::new(lattice, ends, (&parameters, &effects))?),
+            _ => None,
+        };
+        let (data, place) = match (&lattice, &ended) {
+            (Some(lattice), Some(ended)) => (ended.data_set(lattice), "the honeycomb".to_owned()),
+            (Some(lattice), None) => (lattice.data_set(), "the honeycomb".to_owned()),
+            (None, _) => (self.data.load()?, self.data.positions_file().display().to_string()),
+        };
+        if data.walls.is_none() {
+            domain_at(&data, 0)?;
+        }
+        let frames = match &self.frames {
+            Some(selection) => {
+                selection.resolve(data.frames()).map_err(|error| Failure::from(error).at(&place))?
+            }
+            None => vec![0],
+        };
+        let own = self.cells.of_data(&data, frames.first().copied().unwrap_or(0), &mut parameters)?;
+        if ended.is_some() && !own.is_empty() {
+            return Err(
+                Failure::new("cells that differ do not go with --ends").with_hint("leave one of them out")
+            );
+        }
+        let inputs = data.inputs.iter().map(|input| input.path.clone());
+        let mut out = self.common.output(inputs.chain(self.cells.files()))?;
+        if self.frames.is_none() && data.frames() > 1 {
+            run.warn(format!(
+                "of {} frames only the first is looked at; --frames chooses others",
+                data.frames()
+            ));
+        }
+        let mut progress = Progress::new(self.common.verbosity());
+        let mut solved = Vec::new();
+        for &frame in &frames {
+            let at = || format!("{place}, frame {frame}");
+            let held = |cell: usize| ended.as_ref().is_some_and(|ended| ended.is_held(cell));
+            let one =
+                Solved::new((&data, frame), (&parameters, &own, &effects), &request, held, &mut progress)
+                    .map_err(|failure| failure.at_unless_interrupted(at()))?;
+            solved.push(one);
+        }
+        let scan = |ended: &EndedLattice, progress: &mut Progress| {
+            Bands::new(&ended.strip, (count, self.wave_number), progress)
+        };
+        let bands = ended.as_ref().map(|ended| scan(ended, &mut progress)).transpose()?;
+        progress.finish();
+        if let Some(warning) = solved.first().and_then(|first| first.doubtful_units(&parameters)) {
+            run.warn(warning);
+        }
+        for one in &solved {
+            one.warnings().into_iter().for_each(|warning| run.warn(warning));
+        }
+        let waves = lattice.as_ref().map(|lattice| lattice.waves(&parameters, &effects)).transpose()?;
+        arrays::write(&mut out, &data, &solved, self.modes)?;
+        if let (Some(lattice), Some(waves)) = (&lattice, &waves) {
+            lattice.write(&mut out, &data, waves)?;
+        }
+        let strip = ended.as_ref().zip(bands.as_ref());
+        if let Some((ended, bands)) = strip {
+            bands.write(&mut out, &ended.strip)?;
+            bands.warnings(ended).into_iter().for_each(|warning| run.warn(warning));
+        }
+        if self.modes && solved.len() > 1 {
+            run.warn(format!("modes.npy holds the modes of frame {} only", frames[0]));
+        }
+        let model = (&parameters, own.of_data(&data, frames[0]), &effects);
+        let report = report::report(run, &data, model, &request, &solved, (waves.as_ref(), strip));
+        let title = match (&lattice, &self.data.dataset) {
+            (Some(lattice), _) => lattice.title(),
+            (None, Some(folder)) => folder.display().to_string(),
+            (None, None) => place,
+        };
+        let page = page::page(&title, &data, &solved, &report, (waves.as_ref(), strip))?;
+        let summary = page::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page, summary)
     }
-    let inputs = data.inputs.iter().map(|input| input.path.clone());
-    let mut out = arguments.common.output(inputs.chain(arguments.cells.files()))?;
-    if arguments.frames.is_none() && data.frames() > 1 {
-        run.warn(format!("of {} frames only the first is looked at; --frames chooses others", data.frames()));
-    }
-    let mut progress = Progress::new(arguments.common.verbosity());
-    let mut solved = Vec::new();
-    for &frame in &frames {
-        let at = || format!("{place}, frame {frame}");
-        let held = |cell: usize| ended.as_ref().is_some_and(|ended| ended.is_held(cell));
-        let one = Solved::new((&data, frame), (&parameters, &own, &effects), &request, held, &mut progress)
-            .map_err(|failure| failure.at_unless_interrupted(at()))?;
-        solved.push(one);
-    }
-    let scan = |ended: &EndedLattice, progress: &mut Progress| {
-        Bands::new(&ended.strip, (count, arguments.wave_number), progress)
-    };
-    let bands = ended.as_ref().map(|ended| scan(ended, &mut progress)).transpose()?;
-    progress.finish();
-    if let Some(warning) = solved.first().and_then(|first| first.doubtful_units(&parameters)) {
-        run.warn(warning);
-    }
-    for one in &solved {
-        one.warnings().into_iter().for_each(|warning| run.warn(warning));
-    }
-    let waves = lattice.as_ref().map(|lattice| lattice.waves(&parameters, &effects)).transpose()?;
-    arrays::write(&mut out, &data, &solved, arguments.modes)?;
-    if let (Some(lattice), Some(waves)) = (&lattice, &waves) {
-        lattice.write(&mut out, &data, waves)?;
-    }
-    let strip = ended.as_ref().zip(bands.as_ref());
-    if let Some((ended, bands)) = strip {
-        bands.write(&mut out, &ended.strip)?;
-        bands.warnings(ended).into_iter().for_each(|warning| run.warn(warning));
-    }
-    if arguments.modes && solved.len() > 1 {
-        run.warn(format!("modes.npy holds the modes of frame {} only", frames[0]));
-    }
-    let model = (&parameters, own.of_data(&data, frames[0]), &effects);
-    let report = report::report(&run, &data, model, &request, &solved, (waves.as_ref(), strip));
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let title = match (&lattice, &arguments.data.dataset) {
-        (Some(lattice), _) => lattice.title(),
-        (None, Some(folder)) => folder.display().to_string(),
-        (None, None) => place,
-    };
-    let page = page::page(&title, &data, &solved, &report, (waves.as_ref(), strip))?;
-    out.write_text("report.html", &page)?;
-    let summary = page::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
 }

@@ -9,14 +9,15 @@ mod report;
 use crate::arguments::{CommonArguments, ParameterArguments};
 use crate::command::recorded::{Recorded, RecordingArguments, Velocities};
 use crate::failure::Failure;
-use crate::program::Answer;
 use crate::progress::Progress;
+use crate::reporting::{Rendered, Reporting};
 use crate::run::Run;
 use beside::Beside;
 use clap::{Args, ValueEnum};
 use voronudge_geometry::Domain;
 use voronudge_observables::{FluctuationRequest, Fluctuations, Plan, WaveField, fluctuations};
 use voronudge_report::Units;
+use voronudge_report::WavesReport;
 
 /// Odd waves from fluctuations: the dynamic structure factor of a recording, and the matrix D(q) by which its waves relax, beside that of a model.
 ///
@@ -79,50 +80,57 @@ impl Arguments {
     }
 }
 
-pub(crate) fn run(arguments: Arguments) -> Result<Answer, Failure> {
-    let mut run = Run::begin("waves", &arguments.common)?;
-    arguments.recording.check()?;
-    let request = arguments.request()?;
-    let parameters = arguments.parameters.is_given().then(|| arguments.parameters.resolve()).transpose()?;
-    let data = arguments.recording.data.load()?;
-    let place = arguments.recording.location();
-    let frames = arguments.recording.frames(&data)?;
-    let inputs = data.inputs.iter().map(AsRef::as_ref).chain(arguments.parameters.file());
-    let out = arguments.common.reserve(inputs)?;
-    let recorded = arguments.recording.record(&data, &frames)?;
-    let at = |error| Failure::from(error).at_unless_interrupted(&place);
-    let plan = Plan::of(&recorded.recording).map_err(at)?;
-    let mut out = out.begin()?;
-    let mut progress = Progress::new(arguments.common.verbosity());
-    let mut tell =
-        |stage: &'static str, done: usize, all: usize| progress.step(stage, done as u64, all as u64);
-    let found = fluctuations(&recorded.recording, &plan, &request, &mut tell).map_err(at)?;
-    let beside = match &parameters {
-        Some(parameters) => Beside::new(&recorded.recording, &plan, &found, parameters, &mut |done, all| {
-            progress.step("Jacobian", done as u64, all as u64)
-        })?,
-        None => Beside::nothing(&found),
-    };
-    progress.finish();
-    let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
-    let linear = report::linear(&found);
-    warn(&mut run, &recorded, &found, linear);
-    arrays::write(&mut out, &found, &beside)?;
-    let report = report::report(
-        run.record(Some(&data)),
-        &units,
-        &frames,
-        (&recorded, &plan),
-        (&found, &beside),
-        linear,
-    );
-    let json = serde_json::to_string_pretty(&report)?;
-    out.write_text("report.json", &json)?;
-    let title = arguments.recording.title();
-    out.write_text("report.html", &page::page(&title, &report, (&found, &beside))?)?;
-    let summary = page::summary(&report, out.path());
-    run.finish(Some(out), &json, &summary)?;
-    Ok(Answer::Positive)
+impl Reporting for Arguments {
+    const NAME: &'static str = "waves";
+    type Report = WavesReport;
+
+    fn common(&self) -> &CommonArguments {
+        &self.common
+    }
+
+    fn work(self, run: &mut Run) -> Result<Rendered<Self::Report>, Failure> {
+        self.recording.check()?;
+        let request = self.request()?;
+        let parameters = self.parameters.is_given().then(|| self.parameters.resolve()).transpose()?;
+        let data = self.recording.data.load()?;
+        let place = self.recording.location();
+        let frames = self.recording.frames(&data)?;
+        let inputs = data.inputs.iter().map(AsRef::as_ref).chain(self.parameters.file());
+        let out = self.common.reserve(inputs)?;
+        let recorded = self.recording.record(&data, &frames)?;
+        let at = |error| Failure::from(error).at_unless_interrupted(&place);
+        let plan = Plan::of(&recorded.recording).map_err(at)?;
+        let mut out = out.begin()?;
+        let mut progress = Progress::new(self.common.verbosity());
+        let mut tell =
+            |stage: &'static str, done: usize, all: usize| progress.step(stage, done as u64, all as u64);
+        let found = fluctuations(&recorded.recording, &plan, &request, &mut tell).map_err(at)?;
+        let beside = match &parameters {
+            Some(parameters) => {
+                Beside::new(&recorded.recording, &plan, &found, parameters, &mut |done, all| {
+                    progress.step("Jacobian", done as u64, all as u64)
+                })?
+            }
+            None => Beside::nothing(&found),
+        };
+        progress.finish();
+        let units = Units { length: data.length_unit.clone(), time: data.time_unit.clone() };
+        let linear = report::linear(&found);
+        warn(run, &recorded, &found, linear);
+        arrays::write(&mut out, &found, &beside)?;
+        let report = report::report(
+            run.record(Some(&data)),
+            &units,
+            &frames,
+            (&recorded, &plan),
+            (&found, &beside),
+            linear,
+        );
+        let title = self.recording.title();
+        let page = page::page(&title, &report, (&found, &beside))?;
+        let summary = page::summary(&report, out.path());
+        Rendered::with_page(out, &report, &page, summary)
+    }
 }
 
 /// What the reader should know before using the numbers.
