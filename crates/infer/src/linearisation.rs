@@ -14,7 +14,6 @@
 //! distribution, as coefficients are, but for a stiffness that keeps them near where they were put.
 
 mod conjugate_gradients;
-mod determinant;
 mod eliminated;
 mod iterated;
 mod solved;

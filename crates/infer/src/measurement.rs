@@ -254,8 +254,7 @@ fn settle(
     for round in 0..ROUNDS {
         watch.tell("measurement", (round as u64, ROUNDS as u64), 1.0)?;
         let mut objective = Objective::new(&frames, structure, &space, levels);
-        let mut equations = objective.linearise_with(&parameters, unknowns)?;
-        let (next, likelihood) = most_likely(&objective, &equations, &request.noise)?;
+        let (next, likelihood) = most_likely(&objective, &parameters, unknowns, &request.noise)?;
         criterion = likelihood;
         let mut settled = true;
         if estimated {
@@ -264,9 +263,8 @@ fn settle(
             settled = change < SETTLED;
             levels = next;
             objective.levels = next;
-            equations = objective.linearise_with(&parameters, unknowns)?;
         }
-        let reduced = equations.reduced()?;
+        let reduced = objective.linearise_with(&parameters, unknowns)?.reduced()?;
         let inverse = invert(reduced.information.clone())?;
         let step = &inverse * &reduced.gradient;
         let own = space.dimension();

@@ -109,8 +109,6 @@ pub(crate) struct Restricted<'a> {
     pub known: KnownNoise,
     /// What holds the unknowns, if it is not what holds them in the equations.
     pub held: Option<&'a Held>,
-    /// Whether determinants of many unknowns may come from random signs.
-    pub by_draws: bool,
 }
 
 /// The restricted likelihood at some k.
@@ -194,7 +192,6 @@ impl Restricted<'_> {
         let parts = frames
             .map(|frame| match self.held {
                 Some(held) => frame.whiten_held(log_k.exp(), held),
-                None if self.by_draws => frame.whiten_by_draws(log_k.exp()),
                 None => frame.whiten(log_k.exp()),
             })
             .collect::<Result<Vec<_>, _>>()?;
@@ -253,8 +250,7 @@ mod tests {
             KnownNoise { position: Some(0.02), velocity: None },
             KnownNoise { position: None, velocity: Some(0.07) },
         ] {
-            let restricted =
-                Restricted { equations: &equations, components: 72.0, known, held: None, by_draws: false };
+            let restricted = Restricted { equations: &equations, components: 72.0, known, held: None };
             let dense = |log_k: f64| {
                 let w = DMatrix::identity(72, 72) + &j * j.transpose() / log_k.exp();
                 let inverse = w.clone().try_inverse().unwrap();

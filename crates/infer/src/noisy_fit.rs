@@ -1,8 +1,8 @@
 //! Fit and noise levels in turn.
 
 use crate::least_squares::residuals_as_measured;
+use crate::measurement::Unknown;
 use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
-use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
 use crate::search::{Effort, Found, Watch, descend, follow, improve, refine};
 use crate::{Error, KnownNoise, Method, NoiseLevels, Request};
@@ -108,8 +108,7 @@ fn exact_positions(
     let mut other = Objective { levels: NoiseLevels { position: ALMOST_EXACT, ..first }, ..*objective };
     let mut start = naive.to_vec();
     start.resize(naive.len() + objective.nudge_count(), 0.0);
-    let equations = other.linearise(&start)?;
-    if most_likely(&other, &equations, &request.noise)?.1 >= criterion {
+    if most_likely(&other, &start, &[], &request.noise)?.1 >= criterion {
         return Ok(None);
     }
     let found = refine(&other, start, STEPS_PER_ROUND)?.found(Vec::new());
@@ -135,8 +134,7 @@ fn settle(
     let mut criterion = f64::INFINITY;
     for round in 0..rounds {
         watch.tell("noise", (round as u64, rounds as u64), found.value / objective.expected())?;
-        let equations = objective.linearise(&found.parameters)?;
-        let (next, likelihood) = most_likely(objective, &equations, &request.noise)?;
+        let (next, likelihood) = most_likely(objective, &found.parameters, &[], &request.noise)?;
         criterion = likelihood;
         let change = (next.position / objective.levels.position).ln().abs()
             + (next.velocity / objective.levels.velocity).ln().abs();
@@ -158,19 +156,16 @@ fn settle(
     Ok(Settled { found, criterion })
 }
 
-/// The most likely levels for a linearised problem, and their criterion.
+/// The most likely levels for the problem linearised about a point, with unknowns of the measurement, and their criterion.
 pub(crate) fn most_likely(
     objective: &Objective<'_>,
-    equations: &NormalEquations,
+    parameters: &[f64],
+    unknowns: &[Unknown],
     known: &KnownNoise,
 ) -> Result<(NoiseLevels, f64), Error> {
-    let restricted = Restricted {
-        equations,
-        components: objective.components() as f64,
-        known: *known,
-        held: None,
-        by_draws: true,
-    };
+    let (equations, components) = objective.linearise_for_levels(parameters, unknowns)?;
+    let restricted =
+        Restricted { equations: &equations, components: components as f64, known: *known, held: None };
     restricted.most_likely(objective.levels)
 }
 

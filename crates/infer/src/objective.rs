@@ -1,6 +1,7 @@
 //! The penalised objective of nudged inference as a problem for argmin.
 
 mod linearised;
+mod patches;
 
 use crate::flow::Sampling;
 use crate::least_squares::{Columns, residuals};

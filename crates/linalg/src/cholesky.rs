@@ -130,43 +130,6 @@ impl Cholesky {
         );
     }
 
-    /// Replaces vectors z side by side by `PᵀLz`: their covariance is A if that of z is one.
-    pub fn colour_side_by_side(&self, vectors: &mut [f64]) {
-        let order = self.symbolic.nrows();
-        let columns = vectors.len() / order.max(1);
-        let white = vectors.to_vec();
-        vectors.fill(0.0);
-        let forward = self.symbolic.perm().map(|permutation| permutation.arrays().0);
-        let mut add = |row: usize, column: usize, entry: f64| {
-            let to = forward.map_or(row, |forward| forward[row]) * columns;
-            for side in 0..columns {
-                vectors[to + side] += entry * white[column * columns + side];
-            }
-        };
-        match self.symbolic.raw() {
-            SymbolicCholeskyRaw::Simplicial(symbolic) => {
-                for column in 0..order {
-                    for at in symbolic.col_ptr()[column]..symbolic.col_ptr()[column + 1] {
-                        add(symbolic.row_idx()[at], column, self.values[at]);
-                    }
-                }
-            }
-            SymbolicCholeskyRaw::Supernodal(symbolic) => {
-                let factor = SupernodalLltRef::new(symbolic, &self.values);
-                for block in (0..symbolic.n_supernodes()).map(|block| factor.supernode(block)) {
-                    let (first, entries) = (block.start(), block.val());
-                    for own in 0..entries.ncols() {
-                        for row in own..entries.nrows() {
-                            let below = row.checked_sub(entries.ncols());
-                            let at = below.map_or(first + row, |below| block.pattern()[below]);
-                            add(at, first + own, entries[(row, own)]);
-                        }
-                    }
-                }
-            }
-        }
-    }
-
     /// `log det A = 2 Σ log L_ii`: the determinant itself may be far outside the range of `f64`.
     ///
     /// ```

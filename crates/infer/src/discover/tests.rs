@@ -97,11 +97,11 @@ fn the_score_is_that_of_the_dense_problem() {
 }
 
 /// Cells that crawl are found to, with the speed that they have; a candidate beside takes nothing of it. Cells that do not are not, and what
-/// has a memory of velocities is not asked of tracks.
+/// has a memory of velocities is not asked of tracks. (Of five frames the error of what is held out falls by .0041 ± .0041, which proves nothing.)
 #[test]
 #[ignore = "slow"]
 fn tracks_tell_whether_cells_crawl() {
-    let filmed = Filmed { size: [100, 5], step: 0.1, error: 0.01, seed: 5 };
+    let filmed = Filmed { size: [100, 7], step: 0.1, error: 0.01, seed: 5 };
     let mut search =
         search(&["polarity", "polarity_alignment", "persistence", "drift", "alpha_area", "nematic_stress"]);
     search.fit.noise = KnownNoise::default();

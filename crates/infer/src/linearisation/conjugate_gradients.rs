@@ -26,10 +26,6 @@ pub(super) struct End<const L: usize> {
     pub at: Vec<Pair<L>>,
     /// What they leave of the right-hand sides.
     pub left: Vec<Pair<L>>,
-    /// `bᵀM⁻¹b` of the right-hand sides b.
-    pub size: [f64; L],
-    /// Length of each step, which is zero where there was none, and what of its direction went into the next.
-    pub course: Vec<[[f64; L]; 2]>,
 }
 
 /// Memory for products.
@@ -43,7 +39,6 @@ impl Operator<'_> {
     /// definite or it takes too long.
     pub fn solve<const L: usize>(&self, mut left: Vec<Pair<L>>, tolerance: f64) -> Option<End<L>> {
         let mut work = Work { of_rows: Vec::new(), of_chains: Scratch::default() };
-        let mut course = Vec::new();
         let mut at = vec![[[0.0; L]; 2]; left.len()];
         let (mut along, mut next) = (at.clone(), left.clone());
         self.precondition(&mut next, &mut work);
@@ -56,7 +51,7 @@ impl Operator<'_> {
                 return None;
             }
             if size.iter().zip(&enough).all(|(size, enough)| size <= enough) {
-                return Some(End { at, left, size: first, course });
+                return Some(End { at, left });
             }
             self.apply(&direction, &mut along, &mut work);
             let curvature = products(&direction, &along);
@@ -76,7 +71,6 @@ impl Operator<'_> {
             for lane in (0..L).filter(|lane| before[*lane] > 0.0) {
                 share[lane] = size[lane] / before[lane];
             }
-            course.push([step, share]);
             for (direction, next) in direction.iter_mut().zip(&next) {
                 for axis in 0..2 {
                     for lane in 0..L {

@@ -1,7 +1,7 @@
 //! The objective linearised about a point.
 
+use super::patches::Patches;
 use super::{Measurable, Moving, Objective, Row};
-use crate::Error;
 use crate::least_squares::{free_rows, residuals};
 use crate::linearisation::{Linearisation, Local};
 use crate::measurement::Unknown;
@@ -10,8 +10,10 @@ use crate::placing::Placing;
 use crate::position_rows::PositionRows;
 use crate::rows::Rows;
 use crate::stiffness::Stiffness;
+use crate::{Error, Observation};
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
+use voronudge_linalg::Dissections;
 use voronudge_model::BlockMatrix;
 
 /// The cells of a frame that are not held, where most are.
@@ -120,6 +122,24 @@ impl<'a> Objective<'a> {
         self.linearise_among(placed, parameters, &[], Some(free))
     }
 
+    /// The problem that noise levels come from, and its number of components: that of all data, of large frames that of patches.
+    pub fn linearise_for_levels(
+        &self,
+        parameters: &[f64],
+        unknowns: &[Unknown],
+    ) -> Result<(NormalEquations, usize), Error> {
+        let (_, nudges) = self.split(parameters);
+        let parts = self.linear(&self.placed_at(parameters)?, parameters, unknowns)?;
+        let of_frame = |(linear, nudges): (&Linear<'_>, &&[f64])| match Patches::of(linear.frame) {
+            Some(patches) => linear.in_patches(&patches, nudges),
+            None => (vec![linear.whole(nudges)], linear.frame.components()),
+        };
+        let parts: Vec<(Vec<Linearisation>, usize)> = parts.par_iter().zip(&nudges).map(of_frame).collect();
+        let components = parts.iter().map(|(_, components)| components).sum();
+        let all = parts.into_iter().flat_map(|(parts, _)| parts).collect();
+        Ok((self.equations(parameters, unknowns, all), components))
+    }
+
     pub(super) fn linearise_among(
         &self,
         placed: &[Moving<'_>],
@@ -127,19 +147,42 @@ impl<'a> Objective<'a> {
         unknowns: &[Unknown],
         among: Option<&Free>,
     ) -> Result<NormalEquations, Error> {
+        let (_, nudges) = self.split(parameters);
+        let parts = self.linear(placed, parameters, unknowns)?;
+        let of_frame = |(linear, nudges): (Linear<'_>, &&[f64])| match among {
+            Some(free) => linear.among(free, nudges),
+            None => linear.whole(nudges),
+        };
+        let all = parts.into_par_iter().zip(&nudges).map(of_frame).collect();
+        Ok(self.equations(parameters, unknowns, all))
+    }
+
+    fn equations(
+        &self,
+        parameters: &[f64],
+        unknowns: &[Unknown],
+        parts: Vec<Linearisation>,
+    ) -> NormalEquations {
+        let mut free = self.split(parameters).0.to_vec();
+        free.resize(self.space.dimension() + unknowns.len(), 0.0);
+        NormalEquations::new(&self.space.widened(unknowns.len()), self.levels, &free, parts)
+    }
+
+    /// What is measured of each frame, linearised.
+    pub(super) fn linear(
+        &self,
+        placed: &[Moving<'_>],
+        parameters: &[f64],
+        unknowns: &[Unknown],
+    ) -> Result<Vec<Linear<'a>>, Error> {
         let (free, nudges) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
         let own = self.space.dimension();
         let p = own + unknowns.len();
         let of_share = unknowns.iter().position(|unknown| *unknown == Unknown::Share).map(|k| own + k);
         let of_width = unknowns.iter().position(|unknown| *unknown == Unknown::Width).map(|k| own + k);
-        let frames = self
-            .frames
-            .par_iter()
-            .zip(&nudges)
-            .zip(placed)
-            .enumerate()
-            .map(|(index, ((frame, nudges), placed))| {
+        let of_frame =
+            |(index, ((frame, nudges), placed)): (usize, ((&'a Observation, &&[f64]), &Moving<'_>))| {
                 let (mut rows, mut jacobian) =
                     self.derivatives(index, coefficients.as_slice(), nudges, placed)?;
                 let (nudged, predicted) = placed;
@@ -154,47 +197,94 @@ impl<'a> Objective<'a> {
                     rows.iter_mut().zip(slopes).for_each(|((_, _, x), slope)| x.set_column(k, &slope));
                 }
                 frame.weigh(&mut rows, &mut jacobian);
-                let mut positions =
+                let positions =
                     PositionRows::new(frame, &nudged.tessellation, &nudged.positions, nudges, p, of_share);
-                let floor = self.floor();
-                let of_cell = |cell| if frame.is_seen(cell) { 0.0 } else { floor };
-                let local =
-                    |cells: &[usize], nudges: &[f64], jacobian: &BlockMatrix, positions: &PositionRows| {
-                        Linearisation::new(Local {
-                            velocities: Rows { jacobian, rows: &rows },
-                            positions: positions.rows(),
-                            known: Vec::new(),
-                            nudges,
-                            stiffness: match frame.unseen() {
-                                0 => Stiffness::default(),
-                                _ => Stiffness::of_blocks(cells.iter().map(|cell| of_cell(*cell))),
-                            },
-                            free: p,
-                            places: cells
-                                .iter()
-                                .map(|cell| frame.positions[*cell])
-                                .map(|r| Some([r[0], r[1], 0.0]))
-                                .collect(),
-                            chains: (0..cells.len() as u32).collect(),
-                            dissections: frame.dissections(),
-                            left_out: frame.positions.len() - cells.len(),
-                        })
-                    };
-                Ok(match among {
-                    None => {
-                        let all: Vec<usize> = (0..frame.positions.len()).collect();
-                        local(&all, nudges, &jacobian, &positions)
-                    }
-                    Some(free) => {
-                        free.renumber(&mut jacobian);
-                        positions.keep(free);
-                        local(&free.cells, &free.of(nudges), &jacobian, &positions)
-                    }
-                })
-            })
-            .collect::<Result<Vec<_>, Error>>()?;
-        let mut free = free.to_vec();
-        free.resize(p, 0.0);
-        Ok(NormalEquations::new(&self.space.widened(unknowns.len()), self.levels, &free, frames))
+                Ok(Linear { frame, floor: self.floor(), p, rows, jacobian, positions })
+            };
+        self.frames.par_iter().zip(&nudges).zip(placed).enumerate().map(of_frame).collect()
+    }
+}
+
+/// What is measured of one frame, linearised about its nudges.
+pub(super) struct Linear<'a> {
+    frame: &'a Observation,
+    /// Stiffness of cells that were not seen.
+    floor: f64,
+    /// Number of free coefficients.
+    p: usize,
+    /// Of velocities.
+    pub rows: Vec<Row>,
+    jacobian: BlockMatrix,
+    positions: PositionRows,
+}
+
+impl Linear<'_> {
+    /// The problem of all nudges.
+    pub fn whole(&self, nudges: &[f64]) -> Linearisation {
+        let all: Vec<usize> = (0..self.frame.positions.len()).collect();
+        self.of_cells(&all, nudges)
+    }
+
+    /// That of the nudges of free cells.
+    fn among(mut self, free: &Free, nudges: &[f64]) -> Linearisation {
+        free.renumber(&mut self.jacobian);
+        self.positions.keep(free);
+        self.of_cells(&free.cells, &free.of(nudges))
+    }
+
+    fn of_cells(&self, cells: &[usize], nudges: &[f64]) -> Linearisation {
+        let frame = self.frame;
+        let of_cell = |cell: &usize| if frame.is_seen(*cell) { 0.0 } else { self.floor };
+        Linearisation::new(Local {
+            velocities: Rows { jacobian: &self.jacobian, rows: &self.rows },
+            positions: self.positions.rows(),
+            known: Vec::new(),
+            nudges,
+            stiffness: match frame.unseen() {
+                0 => Stiffness::default(),
+                _ => Stiffness::of_blocks(cells.iter().map(of_cell)),
+            },
+            free: self.p,
+            places: self.places(cells),
+            chains: (0..cells.len() as u32).collect(),
+            dissections: frame.dissections(),
+            left_out: frame.positions.len() - cells.len(),
+        })
+    }
+
+    fn places(&self, cells: &[usize]) -> Vec<Option<[f64; 3]>> {
+        cells.iter().map(|cell| self.frame.positions[*cell]).map(|r| Some([r[0], r[1], 0.0])).collect()
+    }
+
+    /// One problem for each patch, and the number of components of all of them that neither a background nor cells without a measured position take up.
+    pub fn in_patches(&self, patches: &Patches, nudges: &[f64]) -> (Vec<Linearisation>, usize) {
+        let of_patch = |(patch, cells): (usize, &Vec<usize>)| {
+            let velocities = patches.velocities(patch, &Rows { jacobian: &self.jacobian, rows: &self.rows });
+            let (positions, lacking) = patches.positions(patch, &self.positions.rows());
+            let mut met = vec![false; cells.len()];
+            [&velocities, &positions].iter().for_each(|own| own.mark(&mut met));
+            let unseen = lacking.iter().zip(&met).filter(|(lacking, met)| **lacking && **met).count();
+            let own: Vec<f64> =
+                cells.iter().flat_map(|cell| [nudges[2 * cell], nudges[2 * cell + 1]]).collect();
+            let local = Linearisation::new(Local {
+                velocities: velocities.rows(),
+                positions: positions.rows(),
+                known: Vec::new(),
+                nudges: &own,
+                stiffness: Stiffness::of_blocks(
+                    lacking.iter().map(|lacking| if *lacking { self.floor } else { 0.0 }),
+                ),
+                free: self.p,
+                places: self.places(cells),
+                chains: Vec::new(),
+                dissections: &Dissections::default(),
+                left_out: 0,
+            });
+            (local, (2 * velocities.count()).saturating_sub(2 * unseen))
+        };
+        let parts: Vec<_> = patches.cells.par_iter().enumerate().map(of_patch).collect();
+        let components = parts.iter().map(|(_, components)| components).sum::<usize>();
+        let parts = parts.into_iter().map(|(part, _)| part).collect();
+        (parts, components.saturating_sub(self.frame.background_dimension()))
     }
 }

@@ -153,7 +153,7 @@ impl Seen<'_> {
 
     pub(super) fn restricted<'a>(&'a self, held: Option<&'a Held>) -> Restricted<'a> {
         let Self { equations, components, known, .. } = *self;
-        Restricted { equations, components, known, held, by_draws: false }
+        Restricted { equations, components, known, held }
     }
 
     /// How data and unknowns are weighted at some levels and memory, and −log det of the covariance of the polarities.

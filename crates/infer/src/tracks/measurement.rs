@@ -73,13 +73,7 @@ fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Es
         let objective = course.objective(&states);
         let equations = objective.linearise_with(&at, Share::Unknown)?;
         let components = objective.explained_components(&objective.place(&at)?, &at);
-        let likelihood = Restricted {
-            equations: &equations,
-            components,
-            known: request.noise,
-            held: None,
-            by_draws: false,
-        };
+        let likelihood = Restricted { equations: &equations, components, known: request.noise, held: None };
         let criterion = likelihood.criterion(objective.levels.spring().ln())?;
         let reduced = equations.reduced()?;
         let inverse = invert(reduced.information)?;
