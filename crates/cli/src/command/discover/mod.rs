@@ -108,28 +108,26 @@ impl Reporting for Arguments {
         &self.common
     }
 
-    fn work(self, run: &mut Run) -> Result<Rendered<DiscoverReport>, Failure> {
-        let mut arguments = self;
+    fn work(mut self, run: &mut Run) -> Result<Rendered<DiscoverReport>, Failure> {
         // From here on Ctrl-C ends the command where nothing is left behind.
-        let mut progress = Progress::new(arguments.common.verbosity());
-        arguments.snapshots.check()?;
-        arguments.latent.check()?;
-        let constraints = arguments.known.constraints()?;
-        let candidates = arguments.options.candidates()?;
-        arguments.options.check(arguments.replicates.shard)?;
-        let mut data = arguments.snapshots.data.load()?;
-        let map = arguments.field.load(&mut data)?;
-        arguments.check.possible(&arguments, &data, arguments.difference)?;
-        let coming = arguments.forecast.leave(&mut arguments.snapshots, &data, arguments.difference)?;
-        let snapshots = &arguments.snapshots;
-        let out = arguments.common.reserve(&data.inputs)?;
-        let asked = Asked { arguments: &arguments, constraints: &constraints, candidates: &candidates };
+        let mut progress = Progress::new(self.common.verbosity());
+        self.snapshots.check()?;
+        self.latent.check()?;
+        let constraints = self.known.constraints()?;
+        let candidates = self.options.candidates()?;
+        self.options.check(self.replicates.shard)?;
+        let mut data = self.snapshots.data.load()?;
+        let map = self.field.load(&mut data)?;
+        self.check.possible(&self, &data, self.difference)?;
+        let coming = self.forecast.leave(&mut self.snapshots, &data, self.difference)?;
+        let snapshots = &self.snapshots;
+        let out = self.common.reserve(&data.inputs)?;
+        let asked = Asked { arguments: &self, constraints: &constraints, candidates: &candidates };
         let raw = asked.raw(&data, run)?;
-        let others = arguments.predictions.load(&asked, (&mut data, &raw.prepared), run)?;
+        let others = self.predictions.load(&asked, (&mut data, &raw.prepared), run)?;
         let mut out = out.begin()?;
         let folder = out.path().to_owned();
-        let mut kept =
-            Kept::open(out.folder(), ("discover", "null sets"), &arguments.replicates, (run, &data))?;
+        let mut kept = Kept::open(out.folder(), ("discover", "null sets"), &self.replicates, (run, &data))?;
         let searched = asked.searched(&raw, (&data, map.as_ref()), &mut kept, &mut progress);
         if kept.is_part() {
             progress.finish();
@@ -142,13 +140,8 @@ impl Reporting for Arguments {
             Some(coming) => coming.forecast(&asked, (&data, &units), &searched, run, &mut progress),
             None => Ok(None),
         };
-        let compared = arguments.check.compare(
-            &asked,
-            (&data, &units),
-            (&searched, coming.as_ref()),
-            run,
-            &mut progress,
-        );
+        let compared =
+            self.check.compare(&asked, (&data, &units), (&searched, coming.as_ref()), run, &mut progress);
         progress.finish();
         let compared = compared.map_err(|failure| kept.failed(failure))?;
         let forecast = forecast.map_err(|failure| kept.failed(failure))?;
@@ -168,9 +161,9 @@ impl Reporting for Arguments {
         }
         spreads::write(&mut out, "after_", &data, &prepared, last)?;
         latent::write(&mut out, &data, &prepared, last)?;
-        arguments.export.write(&mut out, &data, || export::frames(&prepared, last))?;
+        self.export.write(&mut out, &data, || export::frames(&prepared, last))?;
         let movie = page::movie(&prepared, &discovery, &data);
-        arguments.movie.write(&mut out, movie.as_ref(), run)?;
+        self.movie.write(&mut out, movie.as_ref(), run)?;
         let predictions =
             others.iter().filter_map(|other| other.predicted(&search, &discovery, run)).collect();
         let followed = prepared.tracks.as_ref().zip(discovery.after.tracked.as_ref());
@@ -193,7 +186,7 @@ impl Reporting for Arguments {
         let answer = Answer::of(last.is_acceptable());
         let rendered = Rendered::with_page(out, &report, &page, summary)?.with_answer(answer);
         progress.heed().map_err(|failure| kept.failed(failure))?;
-        Ok(rendered.shown(arguments.open_report))
+        Ok(rendered.shown(self.open_report))
     }
 }
 

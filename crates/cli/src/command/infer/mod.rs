@@ -124,64 +124,61 @@ impl Reporting for Arguments {
     }
 
     fn work(self, run: &mut Run) -> Result<Rendered<InferReport>, Failure> {
-        let arguments = self;
         // From here on Ctrl-C ends the command where nothing is left behind.
-        let mut progress = Progress::new(arguments.common.verbosity());
-        arguments.snapshots.check()?;
-        arguments.latent.check()?;
-        let constraints = arguments.known.constraints()?;
-        let method = arguments.method.method()?;
-        arguments.uncertainty.check(&constraints, arguments.replicates.shard)?;
-        let data = arguments.snapshots.data.load()?;
-        let out = arguments.common.reserve(&data.inputs)?;
-        let velocities = measured(&arguments.snapshots, &data, arguments.difference)?;
+        let mut progress = Progress::new(self.common.verbosity());
+        self.snapshots.check()?;
+        self.latent.check()?;
+        let constraints = self.known.constraints()?;
+        let method = self.method.method()?;
+        self.uncertainty.check(&constraints, self.replicates.shard)?;
+        let data = self.snapshots.data.load()?;
+        let out = self.common.reserve(&data.inputs)?;
+        let velocities = measured(&self.snapshots, &data, self.difference)?;
         if let Some(difference @ (Difference::Forward | Difference::Backward)) = velocities.derived() {
             run.warn(format!(
                 "velocities are {difference} differences, which share the error of the position they start or end at: it acts \
                  as a spurious force; central differences do not"
             ));
         }
-        let frames = frames(&velocities, &arguments.snapshots, &data)?;
+        let frames = frames(&velocities, &self.snapshots, &data)?;
         if matches!(velocities, Measured::Tracks(_)) {
-            arguments.check_tracks()?;
+            self.check_tracks()?;
         }
         let inquiry = Inquiry {
-            arguments: &arguments.snapshots,
+            arguments: &self.snapshots,
             data: &data,
             constraints,
             method,
-            seed: arguments.common.seed,
-            detections: arguments.latent.detections(),
+            seed: self.common.seed,
+            detections: self.latent.detections(),
             scale: None,
         };
         let mut prepared = inquiry.prepare(velocities, frames, run)?;
         let drives = Drives {
-            contact_inhibition: arguments.contact_inhibition,
-            velocity_alignment: arguments.velocity_alignment,
+            contact_inhibition: self.contact_inhibition,
+            velocity_alignment: self.velocity_alignment,
         };
-        if arguments.active || arguments.align || drives.any() {
+        if self.active || self.align || drives.any() {
             activity::check(prepared.tracks.as_ref())?;
             prepared.request.drives = drives;
-            prepared.request.activity =
-                if arguments.align { Activity::Alignment } else { Activity::Polarity };
+            prepared.request.activity = if self.align { Activity::Alignment } else { Activity::Polarity };
         }
-        spreads::check(&arguments.vary, &prepared, arguments.uncertainty.is_asked())?;
-        prepared.request.varied.clone_from(&arguments.vary);
-        let kinds = kinds::check(&arguments.by_label, &prepared, &data, !arguments.vary.is_empty())?;
+        spreads::check(&self.vary, &prepared, self.uncertainty.is_asked())?;
+        prepared.request.varied.clone_from(&self.vary);
+        let kinds = kinds::check(&self.by_label, &prepared, &data, !self.vary.is_empty())?;
         let mut out = out.begin()?;
         let folder = out.path().to_owned();
-        let mut kept =
-            Kept::open(out.folder(), ("infer", "replicates"), &arguments.replicates, (run, &data))?;
+        let mut kept = Kept::open(out.folder(), ("infer", "replicates"), &self.replicates, (run, &data))?;
         let told_apart = kinds.map_or(Ok(()), |kinds| prepared.distinguish(kinds, &data));
         let understood = told_apart.and_then(|()| prepared.understand(&mut |state| progress.tell(state)));
         measurement::caution(&prepared, run);
         let fitted = understood.and_then(|()| prepared.infer(&mut |state| progress.tell(state)));
         let answered = fitted.and_then(|(result, tracked)| {
-            let answers = arguments.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
+            let answers = self.uncertainty.ask(&prepared, &result, &mut kept, &mut progress)?;
             Ok((result, tracked, answers))
         });
         progress.finish();
-        let answered = answered.map_err(|error| with_location(&prepared, error, &arguments.snapshots));
+        let answered = answered.map_err(|error| with_location(&prepared, error, &self.snapshots));
         if kept.is_part() {
             return kept.finish_part(answered.map(|_| ()), (run, out), &progress);
         }
@@ -194,9 +191,9 @@ impl Reporting for Arguments {
         arrays::write(&mut out, "", &data, &prepared, &result)?;
         super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
         latent::write(&mut out, &data, &prepared, &result)?;
-        arguments.export.write(&mut out, &data, || export::frames(&prepared, &result))?;
+        self.export.write(&mut out, &data, || export::frames(&prepared, &result))?;
         let movie = views::movie(&prepared, &result, &data);
-        arguments.movie.write(&mut out, movie.as_ref(), run)?;
+        self.movie.write(&mut out, movie.as_ref(), run)?;
         let followed = prepared.tracks.as_ref().zip(tracked.as_ref());
         if let Some((movie, tracked)) = followed {
             tracks::write(&mut out, "", &data, (&prepared, movie), tracked)?;
@@ -209,18 +206,18 @@ impl Reporting for Arguments {
             (tracks::report(&prepared, movie, &result, tracked), activity::report(&data, &prepared, tracked))
         });
         let report = report::report(
-            (run, &data, arguments.snapshots.stated(&data)),
+            (run, &data, self.snapshots.stated(&data)),
             &prepared,
             &result,
             (&answers, foreseen.as_ref()),
             told,
         );
-        let page = page::page(&arguments, &data, (&prepared, &result), &report, &answers, movie.as_ref())?;
+        let page = page::page(&self, &data, (&prepared, &result), &report, &answers, movie.as_ref())?;
         let summary = summary::summary(&report, &folder);
         out.end_run();
         let answer = Answer::of(result.is_acceptable());
         let rendered = Rendered::with_page(out, &report, &page, summary)?.with_answer(answer);
         progress.heed().map_err(|failure| kept.failed(failure))?;
-        Ok(rendered.shown(arguments.open_report))
+        Ok(rendered.shown(self.open_report))
     }
 }
