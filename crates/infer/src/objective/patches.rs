@@ -17,7 +17,7 @@ const LARGEST: usize = 2500;
 
 /// Contacts from a cell to the next one of another patch from which on its velocity is asked, and its centroid: these depend on cells two and one contacts
 /// away, and contacts change in a fit.
-pub(super) const OF_VELOCITIES: u32 = 4;
+const OF_VELOCITIES: u32 = 4;
 const OF_CENTROIDS: u32 = 3;
 
 /// The cells of a frame in patches of about the same number.
@@ -98,16 +98,21 @@ impl Patches {
     pub fn positions(&self, patch: usize, rows: &Rows<'_>) -> (OwnRows, Vec<bool>) {
         let own = self.own(patch, rows, self.of_positions);
         let mut lacking = vec![true; self.cells[patch].len()];
-        let kept = |cell: usize| self.patch[cell] == patch && self.contacts[cell] >= self.of_positions;
-        rows.rows.iter().filter(|row| kept(row.0)).for_each(|row| lacking[self.seat[row.0] as usize] = false);
+        for (cell, ..) in self.asked(patch, rows, self.of_positions) {
+            lacking[self.seat[*cell] as usize] = false;
+        }
         (own, lacking)
+    }
+
+    /// The rows of cells of a patch that are so many contacts or more away from others.
+    fn asked<'r>(&self, patch: usize, rows: &Rows<'r>, contacts: u32) -> impl Iterator<Item = &'r Row> {
+        rows.rows.iter().filter(move |row| self.patch[row.0] == patch && self.contacts[row.0] >= contacts)
     }
 
     fn own(&self, patch: usize, rows: &Rows<'_>, contacts: u32) -> OwnRows {
         let mut jacobian = BlockMatrix { row_start: vec![0], ..BlockMatrix::default() };
         let mut own = Vec::new();
-        let kept = |cell: usize| self.patch[cell] == patch && self.contacts[cell] >= contacts;
-        for (cell, rest, by_free) in rows.rows.iter().filter(|row| kept(row.0)) {
+        for (cell, rest, by_free) in self.asked(patch, rows, contacts) {
             for (column, block) in rows.jacobian.row(*cell).filter(|(other, _)| self.patch[*other] == patch) {
                 jacobian.column.push(self.seat[column]);
                 jacobian.block.push(*block);
