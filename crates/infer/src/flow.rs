@@ -62,6 +62,9 @@ impl WindowKind {
 /// Distance at which a Gaussian window is cut, in widths; its weight there is 4e-6.
 const CUT: f64 = 5.0;
 
+/// Weight of a cell that a grid point mostly stands for, as a share of the largest.
+const MAIN: f64 = 0.5;
+
 /// Least share of a window that trusted cells must fill for its velocity to be used.
 const FILLED: f64 = 0.999;
 
@@ -187,6 +190,12 @@ impl Sampling {
     fn entries(&self, row: usize) -> impl Iterator<Item = (usize, f64)> {
         let range = self.start[row]..self.start[row + 1];
         self.cell[range.clone()].iter().map(|&cell| cell as usize).zip(self.weight[range].iter().copied())
+    }
+
+    /// The cells that a grid point mostly stands for.
+    pub fn main_cells(&self, datum: usize) -> impl Iterator<Item = usize> {
+        let most = self.entries(datum).map(|entry| entry.1).fold(0.0, f64::max);
+        self.entries(datum).filter(move |(_, weight)| *weight >= MAIN * most).map(|(cell, _)| cell)
     }
 
     /// The averages of a field given for each cell.

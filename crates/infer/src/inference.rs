@@ -43,13 +43,28 @@ pub fn infer(
     observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
 ) -> Result<Inference, Error> {
     let space = request.space()?;
-    let (used, total) = to_be_explained(frames, &space)?;
+    let explained = to_be_explained(frames, &space)?;
+    let naive = least_squares::fit(frames, &request.structure, &space)?;
+    nudged(frames, request, (&space, &naive), explained, observe).map_err(|error| match error {
+        // Where the cells were measured their velocities tell the coefficients apart.
+        Error::Degenerate => voronudge_linalg::Error::NotPositiveDefinite.into(),
+        other => other,
+    })
+}
+
+/// The fit that follows least squares, with what it explains: the number of velocities and their squares.
+fn nudged(
+    frames: &[Observation],
+    request: &Request,
+    (space, naive): (&CoefficientSpace, &[f64]),
+    (used, total): (usize, f64),
+    observe: &mut dyn FnMut(Progress<'_>) -> ControlFlow<()>,
+) -> Result<Inference, Error> {
     let structure = &request.structure;
-    let naive = least_squares::fit(frames, structure, &space)?;
     let mut watch = Watch { observe };
     let unset = NoiseLevels { position: 1.0, velocity: 1.0 };
-    let mut objective = Objective::new(frames, structure, &space, unset);
-    let mut found = fit(&mut objective, &naive, request, &mut watch)?;
+    let mut objective = Objective::new(frames, structure, space, unset);
+    let mut found = fit(&mut objective, naive, request, &mut watch)?;
     let mut levels = objective.levels;
     let mut weighted: Option<Vec<Observation>> = None;
     for _ in 0..REWEIGHTINGS {
@@ -116,7 +131,7 @@ pub fn infer(
         }
         _ => None,
     };
-    let estimated = estimates(&equations, reduced, &space, request, free, variance * excess, bias.as_ref())?;
+    let estimated = estimates(&equations, reduced, space, request, free, variance * excess, bias.as_ref())?;
     let residual_at = |beta: &[f64]| -> f64 {
         let coefficients = space.coefficients(beta);
         let squares = |frame| residuals_as_measured(frame, structure, coefficients.as_slice());
@@ -137,9 +152,9 @@ pub fn infer(
         kinds: estimated.kinds,
         directions: estimated.directions,
         model_parameters: parameters(&coefficients),
-        naive: parameters(&space.coefficients(&naive)),
+        naive: parameters(&space.coefficients(naive)),
         nmse: Nmse {
-            naive: residual_at(&naive) / total,
+            naive: residual_at(naive) / total,
             nudged: parts.residual / total,
             un_nudged: residual_at(free) / total,
             noise_floor: match at_limit(&levels, &request.noise)

@@ -7,6 +7,7 @@
 #[cfg(test)]
 mod tests;
 
+use crate::excerpt::excerpts;
 use crate::inference::to_be_explained;
 use crate::least_squares::{self, invert};
 use crate::noisy_fit::{SETTLED, STEPS_PER_ROUND, first_levels, most_likely};
@@ -129,12 +130,9 @@ pub fn measure(
     to_be_explained(given, &request.space()?)?;
     let mut watch = Watch { observe };
     let mut measurement = Measurement::stated(known);
-    let at = |frames: &[Observation], share: f64| -> Result<Vec<Observation>, Error> {
-        frames.iter().map(|frame| frame.clone().with_positions_at(share)).collect()
-    };
     let mut frames = given.to_vec();
     if measurement.share.value != 0.0 {
-        frames = at(&frames, measurement.share.value)?;
+        frames = taken_at(&frames, measurement.share.value)?;
     }
     let flow = given.iter().find_map(|frame| match &frame.velocities {
         Velocities::OnGrid(flow) => Some(flow),
@@ -144,27 +142,47 @@ pub fn measure(
         frames = windows(&frames, &mut measurement, request, known, flow.grid, &mut watch)?;
     }
     if known.share.is_none() {
-        let unknowns = [Unknown::Share];
-        let mut best = match settle(frames.clone(), request, &unknowns, &mut watch) {
-            // Centroids where the sites are: nothing tells the two apart.
-            Err(Error::Degenerate) => return Ok((frames, measurement)),
-            other => other?,
-        };
-        if usual_share(best.found[0]) != Some(SITES) {
-            let other = settle(at(&frames, CENTROIDS)?, request, &unknowns, &mut watch)?;
-            if other.criterion < best.criterion {
-                best = other;
-            }
+        let part = excerpts(&frames)?;
+        let mut found = share(part.as_deref().unwrap_or(&frames), request, &mut watch)?;
+        if part.is_some() && found.is_some_and(|own| usual_share(own).is_none()) {
+            // An unusual one takes all that can be known.
+            found = share(&frames, request, &mut watch)?;
         }
-        measurement.share = determined_share(best.found[0]);
+        let Some(found) = found else { return Ok((frames, measurement)) };
+        measurement.share = determined_share(found);
         if measurement.share.value != 0.0 {
-            frames = at(&frames, measurement.share.value)?;
+            frames = taken_at(&frames, measurement.share.value)?;
         }
-        if usual_share(best.found[0]).is_none() {
+        if usual_share(found).is_none() {
             frames = frames.into_iter().map(|frame| frame.with_unknown(Unknown::Share)).collect();
         }
     }
     Ok((frames, measurement))
+}
+
+/// The frames with positions at a share of the way from sites to centroids.
+fn taken_at(frames: &[Observation], share: f64) -> Result<Vec<Observation>, Error> {
+    frames.iter().map(|frame| frame.clone().with_positions_at(share)).collect()
+}
+
+/// The share that suits frames best, with its standard error; `None` if nothing tells sites from centroids, because these are where those are.
+fn share(
+    frames: &[Observation],
+    request: &Request,
+    watch: &mut Watch<'_>,
+) -> Result<Option<[f64; 2]>, Error> {
+    let unknowns = [Unknown::Share];
+    let mut best = match settle(frames.to_vec(), request, &unknowns, watch) {
+        Err(Error::Degenerate) => return Ok(None),
+        other => other?,
+    };
+    if usual_share(best.found[0]) != Some(SITES) {
+        let other = settle(taken_at(frames, CENTROIDS)?, request, &unknowns, watch)?;
+        if other.criterion < best.criterion {
+            best = other;
+        }
+    }
+    Ok(Some(best.found[0]))
 }
 
 /// Sites or centroids, where a share with its standard error is about that of either.

@@ -1,6 +1,7 @@
 //! Fit and noise levels in turn.
 
-use crate::least_squares::residuals_as_measured;
+use crate::excerpt::excerpts;
+use crate::least_squares::{self, residuals_as_measured};
 use crate::measurement::Unknown;
 use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
 use crate::objective::Objective;
@@ -42,27 +43,48 @@ pub(crate) fn fit(
             return descend(objective, naive, loss, max_steps, watch);
         }
     };
-    // Levels that are but guessed are not worth a fit to the end.
-    let first = if estimated { STEPS_PER_ROUND.min(max_steps) } else { max_steps };
-    let mut found = follow(objective, naive, first, "fit", watch)?;
-    if estimated {
-        let settled = settle(objective, found, request, max_steps, ROUNDS[0], watch)?;
-        found = match exact_positions(objective, naive, request, max_steps, settled.criterion, watch)? {
-            Some((levels, other)) if other.criterion < settled.criterion => {
-                objective.levels = levels;
-                other.found
-            }
-            _ => settled.found,
-        };
-        // The levels have moved on from those of the continuation.
-        let again = follow(objective, naive, max_steps, "fit", watch)?;
-        found = better(found, again);
-    }
+    let part = if estimated { excerpts(objective.frames)? } else { None };
+    let mut found = match (estimated, part) {
+        (false, _) => follow(objective, naive, max_steps, "fit", watch)?,
+        (true, None) => {
+            let begun = begin(objective, naive, request, max_steps, watch)?;
+            // The levels have moved on from those of the continuation.
+            better(begun, follow(objective, naive, max_steps, "fit", watch)?)
+        }
+        (true, Some(part)) => {
+            let naive = least_squares::fit(&part, objective.structure, objective.space)?;
+            let mut own = Objective { frames: &part, ..*objective };
+            own.levels = first_levels(&own, &naive, &request.noise)?;
+            let begun = begin(&mut own, &naive, request, max_steps, watch)?;
+            objective.levels = own.levels;
+            follow(objective, own.split(&begun.parameters).0, max_steps, "fit", watch)?
+        }
+    };
     improve(objective, &mut found, &Effort { max_steps, starts, seed: request.seed }, watch)?;
     if estimated {
         found = settle(objective, found, request, max_steps, ROUNDS[1], watch)?.found;
     }
     Ok(found)
+}
+
+/// A fit from which noise levels follow that were but guessed, and the levels.
+fn begin(
+    objective: &mut Objective<'_>,
+    naive: &[f64],
+    request: &Request,
+    max_steps: u64,
+    watch: &mut Watch<'_>,
+) -> Result<Found, Error> {
+    // It is not worth a fit to the end.
+    let first = follow(objective, naive, STEPS_PER_ROUND.min(max_steps), "fit", watch)?;
+    let settled = settle(objective, first, request, max_steps, ROUNDS[0], watch)?;
+    Ok(match exact_positions(objective, naive, request, max_steps, settled.criterion, watch)? {
+        Some((levels, other)) if other.criterion < settled.criterion => {
+            objective.levels = levels;
+            other.found
+        }
+        _ => settled.found,
+    })
 }
 
 /// A fit whose noise levels have settled.

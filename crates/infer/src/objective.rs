@@ -1,6 +1,7 @@
 //! The penalised objective of nudged inference as a problem for argmin.
 
 mod linearised;
+mod obstacles;
 mod patches;
 
 use crate::flow::Sampling;
@@ -12,6 +13,7 @@ use crate::spread::OwnParts;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 pub(crate) use linearised::Free;
 use nalgebra::{DMatrix, DVector};
+pub(crate) use patches::Patches;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
 use voronudge_geometry::{Tessellation, Vector};
@@ -147,6 +149,11 @@ impl<'a> Nudged<'a> {
     pub fn predict(&self, coefficients: &[f64]) -> Predicted {
         let of_cells = self.velocities(coefficients);
         Predicted { on_grid: self.sampling.as_ref().map(|sampling| sampling.average(&of_cells)), of_cells }
+    }
+
+    /// The cells that a datum mostly speaks of.
+    fn measured_in(&self, datum: usize) -> Vec<usize> {
+        self.sampling.as_ref().map_or_else(|| vec![datum], |sampling| sampling.main_cells(datum).collect())
     }
 
     /// Velocities of the cells alone.
@@ -337,5 +344,14 @@ impl<'a> Placing for Objective<'a> {
 
     fn linearise_of(&self, placed: &Self::Placed, parameters: &[f64]) -> Result<NormalEquations, Error> {
         self.linearise_among(placed, parameters, &[], None)
+    }
+
+    fn obstacles_between(
+        &self,
+        before: (&Self::Placed, &[f64]),
+        after: (&Self::Placed, &[f64]),
+        promised: f64,
+    ) -> Option<Vec<usize>> {
+        self.obstacles(before, after, promised)
     }
 }

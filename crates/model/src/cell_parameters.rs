@@ -1,6 +1,7 @@
 //! Parameters that differ from cell to cell, as multiples of those of the model.
 
 use crate::assembly::element;
+use crate::environment::picked;
 use crate::{AreaElasticity, Environment, EnvironmentError, Model, Term, WeightedTerm};
 use std::sync::Arc;
 use voronudge_geometry::{Arithmetic, CellPolygon, Scalar, Tessellation, Vector};
@@ -68,6 +69,11 @@ impl CellFactors {
     /// Number of cells, if any parameter is given.
     pub fn cells(&self) -> Option<usize> {
         self.of_parameters.iter().map(Vec::len).find(|cells| *cells > 0)
+    }
+
+    /// Those of some of the cells, by their index.
+    pub(crate) fn of_cells(&self, cells: &[usize]) -> Self {
+        Self { of_parameters: self.of_parameters.each_ref().map(|factors| picked(factors, cells)) }
     }
 
     /// The multiple of a parameter that a cell has.

@@ -90,6 +90,11 @@ impl VectorMap {
     }
 }
 
+/// The entries of some cells, where there are any.
+pub(crate) fn picked<T: Copy>(of_cells: &[T], cells: &[usize]) -> Vec<T> {
+    if of_cells.is_empty() { Vec::new() } else { cells.iter().map(|cell| of_cells[*cell]).collect() }
+}
+
 /// Cells that do not differ.
 static ALIKE: CellFactors = CellFactors::ALIKE;
 
@@ -330,6 +335,18 @@ impl Environment {
     /// Whether a cell does not count.
     pub fn is_beyond_edge(&self, cell: usize) -> bool {
         self.beyond_edge.get(cell).copied().unwrap_or(false)
+    }
+
+    /// What surrounds and preceded some of the cells, by their index.
+    #[must_use]
+    pub fn of_cells(&self, cells: &[usize]) -> Self {
+        Self {
+            labels: picked(&self.labels, cells),
+            earlier: picked(&self.earlier, cells),
+            beyond_edge: picked(&self.beyond_edge, cells),
+            cell_factors: self.cell_factors.as_ref().map(|factors| factors.of_cells(cells)),
+            ..self.clone()
+        }
     }
 
     /// The environment of the tissue moved by `r → map r + shift`. Maps are shifted only.

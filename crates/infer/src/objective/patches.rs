@@ -21,7 +21,7 @@ const OF_VELOCITIES: u32 = 4;
 const OF_CENTROIDS: u32 = 3;
 
 /// The cells of a frame in patches of about the same number.
-pub(super) struct Patches {
+pub(crate) struct Patches {
     /// The cells of each patch.
     pub cells: Vec<Vec<usize>>,
     /// Of each cell its patch, its place there, and the contacts to the next cell of another one.
@@ -90,12 +90,12 @@ impl Patches {
     }
 
     /// Rows of velocities of a patch.
-    pub fn velocities(&self, patch: usize, rows: &Rows<'_>) -> OwnRows {
+    pub(super) fn velocities(&self, patch: usize, rows: &Rows<'_>) -> OwnRows {
         self.own(patch, rows, OF_VELOCITIES)
     }
 
     /// Rows of its measured positions, and which of its cells have none.
-    pub fn positions(&self, patch: usize, rows: &Rows<'_>) -> (OwnRows, Vec<bool>) {
+    pub(super) fn positions(&self, patch: usize, rows: &Rows<'_>) -> (OwnRows, Vec<bool>) {
         let own = self.own(patch, rows, self.of_positions);
         let mut lacking = vec![true; self.cells[patch].len()];
         for (cell, ..) in self.asked(patch, rows, self.of_positions) {

@@ -1,6 +1,7 @@
 //! Part of an observation.
 
 use crate::{Error, Observation};
+use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Vector};
 
 impl Observation {
@@ -15,33 +16,43 @@ impl Observation {
         held: Vec<bool>,
     ) -> Result<Self, Error> {
         let whole = Self::new(0, positions, targets, Domain::Open, FieldOfView::everywhere())?;
-        let own = |of_cells: &[f64]| match of_cells.is_empty() {
+        let mut own = Self { used: vec![true; cells.len()], ..whole }.being(self, cells);
+        // Cells that are held are where the nudges have put them.
+        for ((aim, &cell), _) in own.aims.iter_mut().zip(cells).zip(&held).filter(|(_, held)| **held) {
+            *aim -= Vector::new(nudges[2 * cell], nudges[2 * cell + 1]);
+        }
+        Ok(Self { held, ..own })
+    }
+
+    /// Some cells of this one, as if no others had been seen.
+    pub(crate) fn excerpt(&self, cells: &[usize]) -> Result<Self, Error> {
+        let positions = cells.iter().map(|cell| self.positions[*cell]).collect();
+        let targets: Vec<_> = cells.iter().map(|cell| self.target(*cell)).collect();
+        let mut own =
+            Self::new(0, positions, targets, Domain::Open, FieldOfView::default())?.being(self, cells);
+        let is_certain = |own: &Self, cell: usize| own.visibility[cell].has_certain_polygon();
+        own.polygons =
+            (0..cells.len()).map(|cell| own.may_have_polygon(cell) && is_certain(&own, cell)).collect();
+        Ok(own.with_background(self.background_degree()))
+    }
+
+    /// What is known of some cells of another observation, where these are.
+    fn being(self, other: &Self, cells: &[usize]) -> Self {
+        fn own<T: Copy>(of_cells: &[T], cells: &[usize]) -> Vec<T> {
+            if of_cells.is_empty() { Vec::new() } else { cells.iter().map(|cell| of_cells[*cell]).collect() }
+        }
+        let aims = match other.aims.is_empty() && other.share == 0.0 {
             true => Vec::new(),
-            false => cells.iter().map(|cell| of_cells[*cell]).collect(),
+            false => cells.iter().map(|cell| other.aim(*cell)).collect(),
         };
-        Ok(Self {
-            used: vec![true; cells.len()],
-            stiffness: own(&self.stiffness),
-            share: self.share,
-            aims: match self.aims.is_empty() && self.share == 0.0 {
-                true => Vec::new(),
-                // Cells that are held are where the nudges have put them.
-                false => cells
-                    .iter()
-                    .zip(&held)
-                    .map(|(&cell, held)| match held {
-                        true => self.aim(cell) - Vector::new(nudges[2 * cell], nudges[2 * cell + 1]),
-                        false => self.aim(cell),
-                    })
-                    .collect(),
-            },
-            polygons: match self.polygons.is_empty() {
-                true => Vec::new(),
-                false => cells.iter().map(|cell| self.polygons[*cell]).collect(),
-            },
-            held,
-            weights: own(&self.weights),
-            ..whole
-        })
+        Self {
+            stiffness: own(&other.stiffness, cells),
+            weights: own(&other.weights, cells),
+            polygons: own(&other.polygons, cells),
+            share: other.share,
+            aims,
+            environment: Arc::new(other.environment.of_cells(cells)),
+            ..self
+        }
     }
 }

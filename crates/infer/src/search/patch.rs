@@ -198,3 +198,31 @@ impl Rings {
         })
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::sample::{COEFFICIENTS, observation_of};
+    use voronudge_model::Effect;
+
+    /// Cells of a patch are pushed as they are in the whole, by what depends on their label as well.
+    #[test]
+    fn cells_of_a_patch_are_what_they_are() {
+        let labels = (0..400).map(|cell| Some(cell % 3)).collect();
+        let frame = observation_of(20, 0.0, 0.0, 1).with_labels(labels).unwrap();
+        let effect = Effect::from_id("label_parameter").unwrap();
+        let columns = effect.columns(frame.environment(), frame.tessellation.domain()).unwrap();
+        let structure = Structure::base(1.0).with(&columns);
+        let mut coefficients = COEFFICIENTS.to_vec();
+        coefficients.resize(structure.dimension(), 0.3);
+        let nudged = Nudged::as_measured(&frame, &structure);
+        let targets: Vec<_> = nudged.velocities(&coefficients).into_iter().map(Some).collect();
+        let nudges = vec![0.0; 800];
+        let whole = Whole { frame: &frame, nudges: &nudges, nudged: &nudged, targets: &targets };
+        let patch = Patch::new(&whole, &[210]).unwrap();
+        assert!(patch.cells.len() < 300);
+        let pinned = CoefficientSpace::pinned(&coefficients);
+        let own = patch.objective(&structure, &pinned, NoiseLevels { position: 0.02, velocity: 0.02 });
+        assert!(own.value(&patch.start()) < 1e-20);
+    }
+}

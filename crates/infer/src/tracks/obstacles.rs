@@ -2,16 +2,8 @@
 
 use super::objective::{MovieObjective, Placed};
 use super::states::Place;
+use crate::obstacles::{around, failing};
 use crate::position_rows::squares;
-
-/// Share of the promised decrease that the rest of the tissue must keep.
-const KEPT: f64 = 0.5;
-
-/// Share of all cells that may be obstacles: what fails at more of them fails as a whole.
-const FEW: f64 = 0.1;
-
-/// Neighbours over so many rings make the velocity of a cell.
-const RINGS: usize = 2;
 
 /// What a term of Φ belongs to.
 #[derive(Debug, Clone, Copy)]
@@ -41,20 +33,7 @@ impl MovieObjective<'_> {
     /// Marks the places of a cell at a frame and of its neighbours.
     fn mark(&self, frame: usize, cell: usize, marked: &mut [bool]) {
         let instant = &self.states.instants[frame];
-        let mut within = vec![cell];
-        let mut last = 0;
-        for _ in 0..RINGS {
-            let ring = last..within.len();
-            last = ring.end;
-            for k in ring {
-                for &neighbour in instant.cells.tessellation.neighbours(within[k]) {
-                    if !within.contains(&(neighbour as usize)) {
-                        within.push(neighbour as usize);
-                    }
-                }
-            }
-        }
-        for cell in within {
+        for cell in around(&instant.cells.tessellation, cell) {
             if let Place::Own(place) = instant.place[cell] {
                 marked[place as usize] = true;
             }
@@ -71,21 +50,9 @@ impl MovieObjective<'_> {
         promised: f64,
     ) -> Option<Vec<usize>> {
         let (before, after) = (self.terms(before)?, self.terms(after)?);
-        let mut changes: Vec<(Owner, f64)> = after
-            .into_iter()
-            .zip(before)
-            .map(|((owner, after), (_, before))| (owner, after - before))
-            .collect();
-        changes.sort_unstable_by(|one, other| other.1.total_cmp(&one.1));
-        let mut rest: f64 = changes.iter().map(|change| change.1).sum();
-        let most = (FEW * self.states.anchors.len() as f64) as usize;
         let mut marked = vec![false; self.states.blocks()];
-        for (owner, change) in changes.iter().take(most) {
-            if rest <= -KEPT * promised {
-                break;
-            }
-            rest -= change;
-            match *owner {
+        for owner in failing(&before, &after, promised, self.states.anchors.len())? {
+            match owner {
                 Owner::Motion(number) => {
                     let motion = &self.states.motions[number];
                     for (end, cell) in motion.cells.iter().enumerate() {
@@ -95,8 +62,7 @@ impl MovieObjective<'_> {
                 Owner::Position(frame, cell) => self.mark(frame, cell, &mut marked),
             }
         }
-        let places = (0..marked.len()).filter(|place| marked[*place]);
-        (rest <= -KEPT * promised).then(|| places.collect())
+        Some((0..marked.len()).filter(|place| marked[*place]).collect())
     }
 }
 
