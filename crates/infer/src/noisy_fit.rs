@@ -43,22 +43,19 @@ pub(crate) fn fit(
             return descend(objective, naive, loss, max_steps, watch);
         }
     };
-    let part = if estimated { excerpts(objective.frames)? } else { None };
-    let mut found = match (estimated, part) {
-        (false, _) => follow(objective, naive, max_steps, "fit", watch)?,
-        (true, None) => {
-            let begun = begin(objective, naive, request, max_steps, watch)?;
-            // The levels have moved on from those of the continuation.
-            better(begun, follow(objective, naive, max_steps, "fit", watch)?)
-        }
-        (true, Some(part)) => {
-            let naive = least_squares::fit(&part, objective.structure, objective.space)?;
-            let mut own = Objective { frames: &part, ..*objective };
-            own.levels = first_levels(&own, &naive, &request.noise)?;
-            let begun = begin(&mut own, &naive, request, max_steps, watch)?;
-            objective.levels = own.levels;
-            follow(objective, own.split(&begun.parameters).0, max_steps, "fit", watch)?
-        }
+    let mut found = if !estimated {
+        follow(objective, naive, max_steps, "fit", watch)?
+    } else if let Some(part) = excerpts(objective.frames)? {
+        let naive = least_squares::fit(&part, objective.structure, objective.space)?;
+        let mut own = Objective { frames: &part, ..*objective };
+        own.levels = first_levels(&own, &naive, &request.noise)?;
+        let begun = begin(&mut own, &naive, request, max_steps, watch)?;
+        objective.levels = own.levels;
+        follow(objective, own.split(&begun.parameters).0, max_steps, "fit", watch)?
+    } else {
+        let begun = begin(objective, naive, request, max_steps, watch)?;
+        // The levels have moved on from those of the continuation.
+        better(begun, follow(objective, naive, max_steps, "fit", watch)?)
     };
     improve(objective, &mut found, &Effort { max_steps, starts, seed: request.seed }, watch)?;
     if estimated {

@@ -340,12 +340,15 @@ impl Environment {
     /// What surrounds and preceded some of the cells, by their index.
     #[must_use]
     pub fn of_cells(&self, cells: &[usize]) -> Self {
+        let Self { origin, cell_size, labels, maps, earlier, beyond_edge, cell_factors } = self;
         Self {
-            labels: picked(&self.labels, cells),
-            earlier: picked(&self.earlier, cells),
-            beyond_edge: picked(&self.beyond_edge, cells),
-            cell_factors: self.cell_factors.as_ref().map(|factors| factors.of_cells(cells)),
-            ..self.clone()
+            origin: *origin,
+            cell_size: *cell_size,
+            labels: picked(labels, cells),
+            maps: maps.clone(),
+            earlier: picked(earlier, cells),
+            beyond_edge: picked(beyond_edge, cells),
+            cell_factors: cell_factors.as_ref().map(|factors| factors.of_cells(cells)),
         }
     }
 

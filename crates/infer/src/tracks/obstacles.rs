@@ -16,7 +16,7 @@ enum Owner {
 
 impl MovieObjective<'_> {
     /// The terms of Φ that belong to cells.
-    fn terms(&self, (placed, parameters): (&Placed<'_>, &[f64])) -> Option<Vec<(Owner, f64)>> {
+    fn terms(&self, (placed, parameters): (&Placed<'_>, &[f64])) -> Vec<(Owner, f64)> {
         let residuals = self.residuals(placed, parameters);
         let motions = residuals.iter().enumerate();
         let mut terms: Vec<(Owner, f64)> =
@@ -27,7 +27,7 @@ impl MovieObjective<'_> {
             all.map(|(cell, square)| (Owner::Position(frame, cell), spring * square)).collect::<Vec<_>>()
         });
         terms.extend(of_frames.into_iter().flatten());
-        terms.iter().all(|(_, term)| term.is_finite()).then_some(terms)
+        terms
     }
 
     /// Marks the places of a cell at a frame and of its neighbours.
@@ -49,7 +49,7 @@ impl MovieObjective<'_> {
         after: (&Placed<'_>, &[f64]),
         promised: f64,
     ) -> Option<Vec<usize>> {
-        let (before, after) = (self.terms(before)?, self.terms(after)?);
+        let (before, after) = (self.terms(before), self.terms(after));
         let mut marked = vec![false; self.states.blocks()];
         for owner in failing(&before, &after, promised, self.states.anchors.len())? {
             match owner {
