@@ -6,7 +6,7 @@ use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
 use std::error::Error;
 use std::sync::Arc;
-use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Vector};
+use voronudge_geometry::{CellPolygon, Domain, FieldOfView, PeriodicBox, Tessellation, Vector};
 use voronudge_infer::{CrossValidation, FitParameter, KnownNoise, Observation, Request};
 use voronudge_model::{CellFactors, CellParameter, Environment, Model, Parameters};
 use voronudge_simulate::{RandomPlacement, Simulation, generator};
@@ -19,6 +19,15 @@ pub const MEAN: Parameters<f64> = Parameters {
     preferred_area: 1.0,
     chirality: 1.0,
 };
+
+/// From when on cells differ.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Since {
+    /// Their shapes have followed what they have of their own.
+    Placement,
+    /// They have settled alike.
+    FirstFrame,
+}
 
 /// Cells in a box, whose parameters have a spread of their own, at several times.
 #[derive(Debug, Clone)]
@@ -43,6 +52,20 @@ impl Differing {
         frames: usize,
         spreads: &[(CellParameter, f64)],
     ) -> Result<Self, Box<dyn Error>> {
+        Self::since(Since::Placement, cells, seed, frames, spreads)
+    }
+
+    /// The same of cells that differ from some time on.
+    ///
+    /// # Errors
+    /// Those of the placement and the simulation.
+    pub fn since(
+        since: Since,
+        cells: usize,
+        seed: u64,
+        frames: usize,
+        spreads: &[(CellParameter, f64)],
+    ) -> Result<Self, Box<dyn Error>> {
         let cell_box = PeriodicBox::new([(cells as f64).sqrt(); 2])?;
         let domain = Domain::Periodic(cell_box);
         let mut rng = Pcg64::seed_from_u64(3000 + seed);
@@ -57,10 +80,15 @@ impl Differing {
             deviations.push((*parameter, own));
         }
         let environment = Arc::new(Environment::default().with_cell_factors(factors)?);
-        let model = Model::chiral_voronoi(&MEAN).within(&environment);
+        let alike = Model::chiral_voronoi(&MEAN);
+        let model = alike.clone().within(&environment);
         let start = RandomPlacement::new(cells, cell_box).draw(&mut generator(1000 + seed))?;
-        let mut simulation = Simulation::new(start, domain, model)?;
+        let settling = if since == Since::Placement { model.clone() } else { alike };
+        let mut simulation = Simulation::new(start, domain, settling)?;
         advance(&mut simulation, 10.0)?;
+        if since == Since::FirstFrame {
+            simulation = Simulation::new(simulation.positions().to_vec(), domain, model)?;
+        }
         let mut all = Vec::with_capacity(frames);
         for frame in 0..frames {
             if frame > 0 {
@@ -72,6 +100,36 @@ impl Differing {
         let rms = (squares / (frames * cells) as f64).sqrt();
         all.iter_mut().flat_map(|[_, v]| v).for_each(|v| *v /= rms);
         Ok(Self { deviations, frames: all, domain, rms })
+    }
+
+    /// What is left of K_A and of K_P where a fit takes what cells have of their own to be independent of their shapes: one less the slopes of A_0 by the area and
+    /// of P_0 by the perimeter over the cells of the first frame.
+    ///
+    /// # Errors
+    /// Those of the tessellation.
+    pub fn left_of_elasticities(&self) -> Result<[f64; 2], Box<dyn Error>> {
+        let positions = &self.frames[0][0];
+        let tessellation = Tessellation::new(positions, self.domain)?;
+        let mut polygon = CellPolygon::default();
+        let mut shapes = Vec::with_capacity(positions.len());
+        for cell in 0..positions.len() {
+            polygon.fill(&tessellation, positions, cell);
+            shapes.push([polygon.shape().area, polygon.shape().perimeter]);
+        }
+        let preferred = [
+            (CellParameter::PreferredArea, MEAN.preferred_area),
+            (CellParameter::PreferredPerimeter, MEAN.preferred_perimeter),
+        ];
+        Ok([0, 1].map(|which| {
+            let (parameter, mean) = preferred[which];
+            let Some((_, own)) = self.deviations.iter().find(|(known, _)| *known == parameter) else {
+                return 1.0;
+            };
+            let centre = shapes.iter().map(|shape| shape[which]).sum::<f64>() / shapes.len() as f64;
+            let pairs = || own.iter().zip(&shapes).map(|(u, shape)| (mean * u, shape[which] - centre));
+            1.0 - pairs().map(|(u, shape)| u * shape).sum::<f64>()
+                / pairs().map(|(_, shape)| shape * shape).sum::<f64>()
+        }))
     }
 
     /// What would be measured, with Gaussian noise on every component; cells are known again from frame to frame.

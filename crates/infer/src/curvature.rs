@@ -12,6 +12,7 @@
 //! mean over draws, each with the contacts that cells have there, so it knows of the kinks of forces where contacts change.
 
 use crate::least_squares::{invert, residuals};
+use crate::linearisation::Linearisation;
 use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Measurable, Nudged, Objective};
 use crate::position_rows::PositionRows;
@@ -23,7 +24,6 @@ use rand_distr::{Distribution, StandardNormal};
 use rand_pcg::Pcg64;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
-use voronudge_linalg::DissectedCholesky;
 use voronudge_model::BlockMatrix;
 
 /// Draws of the errors; each is used with both signs.
@@ -51,7 +51,7 @@ pub(crate) fn bias(
         .collect();
     let mut sums = vec![DVector::zeros(p); DRAWS];
     for (index, nudges) in nudges.iter().enumerate() {
-        let about = About::new(objective, index, (free, nudges), equations)?;
+        let about = About::new(objective, index, (free, nudges), (&equations.frames[index], &steps))?;
         let parts: Vec<Option<DVector<f64>>> =
             (0..DRAWS).into_par_iter().map(|draw| about.gradient(draw, &steps[draw])).collect();
         for (sum, part) in sums.iter_mut().zip(parts) {
@@ -86,9 +86,10 @@ struct About<'a> {
     rows: Vec<(usize, Vector<f64>, DMatrix<f64>)>,
     jacobian: BlockMatrix,
     positions: PositionRows,
-    factor: DissectedCholesky,
     /// What nudges do when coefficients decrease (n × p, by columns).
     follow: Vec<f64>,
+    /// Errors of the nudges in each draw, with those of the coefficients.
+    drawn: Vec<Vec<f64>>,
 }
 
 /// Residuals beside the fit.
@@ -103,19 +104,31 @@ impl<'a> About<'a> {
         objective: &'a Objective<'a>,
         index: usize,
         (free, nudges): (&'a [f64], &'a [f64]),
-        equations: &NormalEquations,
+        (linear, steps): (&Linearisation, &[DVector<f64>]),
     ) -> Result<Self, Error> {
-        let (frame, linear) = (&objective.frames[index], &equations.frames[index]);
+        let frame = &objective.frames[index];
         let coefficients = objective.space.coefficients(free);
         let Measurable { nudged, mut rows, mut jacobian, .. } =
             objective.measurable(index, coefficients.as_slice(), nudges)?;
         frame.weigh(&mut rows, &mut jacobian);
         let positions = position_rows(frame, &nudged, nudges, free.len());
-        let factor = linear.factor(objective.spring())?;
-        let mut follow = linear.mixed(objective.spring());
-        follow.truncate(linear.order() * free.len());
-        factor.solve(&mut follow);
-        Ok(Self { objective, index, frame, free, nudges, rows, jacobian, positions, factor, follow })
+        let (drawn, follow) = (Vec::new(), Vec::new());
+        let mut about =
+            Self { objective, index, frame, free, nudges, rows, jacobian, positions, follow, drawn };
+        let mut right = linear.mixed(objective.spring());
+        right.truncate(nudges.len() * free.len());
+        right.extend((0..steps.len()).flat_map(|draw| about.pull(draw)));
+        about.follow = linear.solutions(objective.spring(), &right)?;
+        let drawn = about.follow.split_off(nudges.len() * free.len());
+        let of_draw = |(drawn, step): (&[f64], &DVector<f64>)| {
+            let mut drawn = drawn.to_vec();
+            for (column, delta) in about.follow.chunks_exact(drawn.len()).zip(step.iter()) {
+                drawn.iter_mut().zip(column).for_each(|(e, u)| *e -= delta * u);
+            }
+            drawn
+        };
+        about.drawn = drawn.chunks_exact(nudges.len()).zip(steps).map(of_draw).collect();
+        Ok(about)
     }
 
     fn velocities(&self) -> Rows<'_> {
@@ -124,8 +137,7 @@ impl<'a> About<'a> {
 
     /// What is missing of the right-hand side of the coefficients' step for a draw of the errors; `None` if cells cannot be there.
     fn gradient(&self, draw: usize, step: &DVector<f64>) -> Option<DVector<f64>> {
-        let nudges = self.drawn(draw, step);
-        let [up, down] = [1.0, -1.0].map(|sign| self.rests(sign, step, &nudges));
+        let [up, down] = [1.0, -1.0].map(|sign| self.rests(sign, step, &self.drawn[draw]));
         let (up, down) = (up?, down?);
         let mut sum = DVector::zeros(step.len());
         let mut along = vec![0.0; self.nudges.len()];
@@ -148,26 +160,22 @@ impl<'a> About<'a> {
         sum.iter().all(|x| x.is_finite()).then_some(sum)
     }
 
-    /// Errors of the nudges, with those of the coefficients.
-    fn drawn(&self, draw: usize, step: &DVector<f64>) -> Vec<f64> {
+    /// What errors of the data pull nudges with.
+    fn pull(&self, draw: usize) -> Vec<f64> {
         let mut normal = normals(draw, self.index + 1);
         let velocity = self.objective.levels.velocity;
-        let mut drawn = vec![0.0; self.nudges.len()];
+        let mut pull = vec![0.0; self.nudges.len()];
         for (data, weight) in [(self.velocities(), 1.0), (self.positions.rows(), self.objective.spring())] {
             let size = velocity * f64::sqrt(weight);
             for (datum, ..) in data.rows {
-                add_transposed(data.jacobian, *datum, Vector::new(normal(), normal()) * size, &mut drawn);
+                add_transposed(data.jacobian, *datum, Vector::new(normal(), normal()) * size, &mut pull);
             }
         }
         let size = velocity * self.objective.floor().sqrt();
-        for (_, e) in drawn.chunks_exact_mut(2).enumerate().filter(|(cell, _)| !self.frame.is_seen(*cell)) {
+        for (_, e) in pull.chunks_exact_mut(2).enumerate().filter(|(cell, _)| !self.frame.is_seen(*cell)) {
             e.iter_mut().for_each(|e| *e += size * normal());
         }
-        self.factor.solve(&mut drawn);
-        for (column, delta) in self.follow.chunks_exact(drawn.len()).zip(step.iter()) {
-            drawn.iter_mut().zip(column).for_each(|(e, u)| *e -= delta * u);
-        }
-        drawn
+        pull
     }
 
     fn rests(&self, sign: f64, step: &DVector<f64>, nudges: &[f64]) -> Option<Rests> {

@@ -15,6 +15,7 @@
 
 mod conjugate_gradients;
 mod eliminated;
+mod freedom;
 mod iterated;
 mod solved;
 
@@ -273,7 +274,8 @@ impl Linearisation {
     ///
     /// with the residuals s of the positions, their derivative Z by β and a damping λ of each nudge, if any.
     pub fn eliminate(&self, spring: f64, damping: &[f64], accuracy: Accuracy) -> Result<Eliminated, Error> {
-        self.eliminate_by(self.are_many().then_some(accuracy), spring, damping)
+        let sides = self.velocities.free_gradient.len();
+        self.eliminate_by(self.are_many(sides).then_some(accuracy), spring, damping)
     }
 
     /// The same, perhaps by iteration first.
@@ -314,6 +316,13 @@ impl Linearisation {
     /// what they can do to the velocities: data are used up for them as for coefficients.
     pub fn whiten(&self, spring: f64) -> Result<Whitened, Error> {
         self.whiten_held(spring, &self.held)
+    }
+
+    /// The same without the determinant, for which a large frame needs no factor.
+    pub fn whiten_data(&self, spring: f64) -> Result<Whitened, Error> {
+        let mixed = self.mixed(spring);
+        let (solved, left) = self.solutions_with_left(spring, &mixed)?;
+        Ok(self.whitened(spring, &self.held, (&mixed, &solved, &left), f64::NAN))
     }
 
     /// The same with the unknowns held otherwise.
@@ -358,19 +367,7 @@ impl Linearisation {
             log_determinant: log_determinant - self.measured_components() * spring.ln(),
         }
     }
-
-    /// Directions of the nudges that the data determine, `df = n − k tr (JᵀJ + kHᵀH)⁻¹HᵀH`, which is n less the derivative of
-    /// `log det(JᵀJ + kHᵀH)` with respect to log k.
-    pub fn degrees_of_freedom(&self, spring: f64) -> Result<f64, Error> {
-        let above = self.factor(spring * STEP.exp())?.log_determinant();
-        let below = self.factor(spring * (-STEP).exp())?.log_determinant();
-        let n = self.order() as f64;
-        Ok((n - (above - below) / (2.0 * STEP)).clamp(0.0, n))
-    }
 }
-
-/// Step in log k of the derivative of the log determinant; its square is the relative error.
-const STEP: f64 = 2e-4;
 
 /// The product of column a of one matrix and column b of another, both of n rows.
 fn product(left: &[f64], right: &[f64], n: usize, a: usize, b: usize) -> f64 {

@@ -11,7 +11,7 @@ use crate::placing::Placing;
 use crate::position_rows;
 use crate::spread::OwnParts;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
-pub(crate) use linearised::Free;
+pub(crate) use linearised::{Free, Linear};
 use nalgebra::{DMatrix, DVector};
 pub(crate) use patches::Patches;
 use rayon::prelude::*;

@@ -87,6 +87,14 @@ impl PositionRows {
         free.renumber(&mut self.jacobian);
     }
 
+    /// Those that depend on free cells, with columns of these alone.
+    pub fn around(&self, free: &Free) -> Self {
+        let mut jacobian = self.jacobian.only(|cell| free.column_index(cell).is_some());
+        let rows = self.rows.iter().filter(|row| jacobian.row(row.0).next().is_some()).cloned().collect();
+        free.renumber(&mut jacobian);
+        Self { jacobian, rows }
+    }
+
     pub fn rows(&self) -> Rows<'_> {
         Rows { jacobian: &self.jacobian, rows: &self.rows }
     }

@@ -10,14 +10,16 @@
 //! The weight is that of the posterior, `w = 1 − p (1 − κ⁻²)`, with the probability p of a large error; η follows from all
 //! velocities together. Where no velocity is more likely faulty than not, the fit stays as it is, and so do its intervals.
 
+mod leverage;
+
 use crate::least_squares::residuals;
 use crate::objective::Objective;
+use crate::placing::Placing;
 use crate::{Error, Observation};
+use leverage::About;
 use nalgebra::Matrix2;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
-use voronudge_linalg::SelectedInverse;
-use voronudge_model::BlockMatrix;
 
 /// κ²: variance of the errors of faulty velocities, in units of that of the others.
 const VARIANCE: f64 = 100.0;
@@ -30,9 +32,6 @@ const STEPS: usize = 20;
 
 /// Squared residual, in units of σ_v², below which a velocity is sound without looking at its leverage.
 const SOUND: f64 = 2.0;
-
-/// Velocities to be looked at from which on it costs less to have the whole of G at once than a solution for each.
-const MANY: usize = 64;
 
 /// Median of χ²₂.
 const MEDIAN: f64 = 1.386_294_361_119_890_6;
@@ -101,46 +100,24 @@ pub(crate) fn loss(square: f64, share: f64) -> f64 {
 fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)>>, Error> {
     let (free, nudges) = objective.split(at);
     let coefficients = objective.space.coefficients(free);
-    let equations = objective.linearise(at)?;
+    let placed = objective.placed_at(at)?;
     let variance = objective.levels.velocity.powi(2);
-    (objective.frames.par_iter().zip(&nudges).zip(&equations.frames).enumerate())
-        .map(|(index, ((frame, nudges), linearised))| {
-            let nudged = objective.place(index, nudges)?;
-            let evaluated = nudged.evaluate(coefficients.as_slice());
-            let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated.of_cells);
-            let factor = linearised.factor(objective.spring())?;
-            let rests = residuals(frame, &evaluated.predicted);
+    (objective.linear(&placed, at, &[])?.into_par_iter().zip(&placed).zip(&nudges))
+        .map(|((linear, (nudged, predicted)), nudges)| {
+            let frame = linear.frame;
+            let rests = residuals(frame, predicted.as_measured());
             let is_sound = |rest: &Vector<f64>| rest.norm_squared() / variance < SOUND;
-            let inverse = match rests.iter().filter(|(_, rest)| !is_sound(rest)).count() < MANY {
-                true => None,
-                false => Some(factor.selected_inverse()?),
-            };
-            let mut right = vec![0.0; 2 * nudges.len()];
-            let mut solved = |datum: usize| {
-                right.iter_mut().for_each(|x| *x = 0.0);
-                let (along_x, along_y) = right.split_at_mut(nudges.len());
-                for (cell, b) in jacobian.row(datum) {
-                    along_x[2 * cell..2 * cell + 2].copy_from_slice(&b[..2]);
-                    along_y[2 * cell..2 * cell + 2].copy_from_slice(&b[2..]);
-                }
-                factor.solve(&mut right);
-                let mut g = Matrix2::zeros();
-                for (cell, b) in jacobian.row(datum) {
-                    for (column, solved) in right.chunks_exact(nudges.len()).enumerate() {
-                        let [x, y] = [solved[2 * cell], solved[2 * cell + 1]];
-                        g[(0, column)] += b[0] * x + b[1] * y;
-                        g[(1, column)] += b[2] * x + b[3] * y;
-                    }
-                }
-                g
-            };
+            let jacobian = nudged.jacobian(coefficients.as_slice(), &predicted.of_cells);
+            let asked: Vec<usize> =
+                rests.iter().filter(|(_, rest)| !is_sound(rest)).map(|(datum, _)| *datum).collect();
+            let about = About { linear: &linear, jacobian: &jacobian, nudges, spring: objective.spring() };
+            let mut leverages = about.leverages(&asked)?.into_iter();
             let mut square = |datum: usize, rest: Vector<f64>| {
                 let plain = rest.norm_squared() / variance;
                 if is_sound(&rest) {
                     return plain;
                 }
-                let g = inverse.as_ref().and_then(|inverse| of_entries(&jacobian, datum, inverse));
-                let g = g.unwrap_or_else(|| solved(datum));
+                let Some(g) = leverages.next() else { return plain };
                 let own = Matrix2::identity() - g * frame.weight(datum);
                 let Some(inverse) = own.try_inverse() else { return plain };
                 let error = inverse * rest;
@@ -150,25 +127,6 @@ fn squares(objective: &Objective<'_>, at: &[f64]) -> Result<Vec<Vec<(usize, f64)
             Ok(rests.into_iter().map(|(datum, rest)| (datum, square(datum, rest))).collect())
         })
         .collect()
-}
-
-/// G of a datum, where the inverse is known between all cells that it depends on.
-fn of_entries(jacobian: &BlockMatrix, datum: usize, inverse: &SelectedInverse) -> Option<Matrix2<f64>> {
-    let mut g = Matrix2::zeros();
-    for (cell, b) in jacobian.row(datum) {
-        for (other, c) in jacobian.row(datum) {
-            for (axis, side) in (0..2).flat_map(|axis| (0..2).map(move |side| (axis, side))) {
-                let entry = inverse.entry(2 * cell + axis, 2 * other + side)?;
-                g += Matrix2::new(
-                    b[axis] * c[side],
-                    b[axis] * c[2 + side],
-                    b[2 + axis] * c[side],
-                    b[2 + axis] * c[2 + side],
-                ) * entry;
-            }
-        }
-    }
-    Some(g)
 }
 
 #[cfg(test)]

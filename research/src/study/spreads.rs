@@ -3,7 +3,7 @@
 use super::seeds::{on_one_core_each, quartiles};
 use crate::Outcome;
 use claims::Noise;
-use claims::differing::Differing;
+use claims::differing::{Differing, Since};
 use std::collections::BTreeMap;
 use std::ops::ControlFlow;
 use voronudge_infer::discover::{Discovery, Search, discover};
@@ -17,12 +17,17 @@ const LEVEL: f64 = 0.05;
 
 const NOISE: Noise = Noise { position: 0.02, velocity: 0.05 };
 
+/// Of cells that settle alike and differ from the first frame on.
+const LATELY: &str = "all, 5 % and 25 %, from the frame on";
+
 /// What a fit says of one set.
 struct Row {
     /// p of each parameter that was let vary, its spread, and whether its interval covers.
     spreads: Vec<(f64, f64, bool)>,
     /// Whether the intervals of the mean parameters cover, with and without spreads.
     covered: [[bool; 4]; 2],
+    /// K_A and K_P over the true ones, and what is left of them where shapes have followed what cells have of their own.
+    elasticities: [[f64; 2]; 2],
     seconds: f64,
 }
 
@@ -44,7 +49,7 @@ pub fn run(seeds: u64, cells: Option<usize>, only: &[String], searching: bool) -
     }
     let all = [PreferredPerimeter, Chirality, PreferredArea, AreaElasticity];
     let three = &all[..3];
-    let settings: [(&str, &[CellParameter], [f64; 4]); 7] = [
+    let settings: [(&str, &[CellParameter], [f64; 4]); 8] = [
         ("nothing", three, [0.0; 4]),
         ("P_0 2 %", &[PreferredPerimeter], [0.02, 0.0, 0.0, 0.0]),
         ("alpha 10 %", &[Chirality], [0.0, 0.1, 0.0, 0.0]),
@@ -52,20 +57,22 @@ pub fn run(seeds: u64, cells: Option<usize>, only: &[String], searching: bool) -
         ("K_A 25 %", &[AreaElasticity], [0.0, 0.0, 0.0, 0.25]),
         ("all, 2 % and 10 %", three, [0.02, 0.1, 0.1, 0.0]),
         ("all, 5 % and 25 %", three, [0.05, 0.25, 0.25, 0.0]),
+        (LATELY, three, [0.05, 0.25, 0.25, 0.0]),
     ];
     for frames in [1, 6] {
         for (name, varied, sizes) in settings {
             let full = format!("{name}; {frames} frames");
+            let since = if name == LATELY { Since::FirstFrame } else { Since::Placement };
             if !only.is_empty() && !only.iter().any(|part| full.contains(part.as_str())) {
                 continue;
             }
             let spreads: Vec<(CellParameter, f64)> = all.into_iter().zip(sizes).collect();
             if searching {
-                let found = on_one_core_each(seeds, |seed| searched(cells, frames, seed, &spreads))?;
+                let found = on_one_core_each(seeds, |seed| searched((since, cells, frames, seed), &spreads))?;
                 print_found(name, frames, &found);
                 continue;
             }
-            let rows = on_one_core_each(seeds, |seed| row(cells, frames, seed, &spreads, varied))?;
+            let rows = on_one_core_each(seeds, |seed| row((since, cells, frames, seed), &spreads, varied))?;
             print(name, varied, frames, &rows, &spreads);
         }
     }
@@ -74,19 +81,17 @@ pub fn run(seeds: u64, cells: Option<usize>, only: &[String], searching: bool) -
 
 fn head() {
     println!(
-        "| cells differ by | let vary | frames | named | median s/truth (quartiles) | s covers | means cover | without spreads | seconds |"
+        "| cells differ by | let vary | frames | named | median s/truth (quartiles) | s covers | means cover | without spreads | K_A, K_P over the truth | foreseen | seconds |"
     );
-    println!("|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|");
 }
 
 /// What is found to be missing in one set.
 fn searched(
-    cells: usize,
-    frames: usize,
-    seed: u64,
+    (since, cells, frames, seed): (Since, usize, usize, u64),
     spreads: &[(CellParameter, f64)],
 ) -> Result<(Discovery, f64), Box<dyn std::error::Error>> {
-    let tissue = Differing::new(cells, seed, frames, spreads)?;
+    let tissue = Differing::since(since, cells, seed, frames, spreads)?;
     let measured = tissue.measured(NOISE, seed)?;
     let begun = std::time::Instant::now();
     let found = discover(&measured, &Search::new(tissue.request(&[])), &mut Unkept, &mut |_| {
@@ -116,13 +121,11 @@ fn print_found(name: &str, frames: usize, all: &[(Discovery, f64)]) {
 }
 
 fn row(
-    cells: usize,
-    frames: usize,
-    seed: u64,
+    (since, cells, frames, seed): (Since, usize, usize, u64),
     spreads: &[(CellParameter, f64)],
     varied: &[CellParameter],
 ) -> Result<Row, Box<dyn std::error::Error>> {
-    let tissue = Differing::new(cells, seed, frames, spreads)?;
+    let tissue = Differing::since(since, cells, seed, frames, spreads)?;
     let measured = tissue.measured(NOISE, seed)?;
     let begun = std::time::Instant::now();
     let fit = infer(&measured, &tissue.request(varied), &mut |_| ControlFlow::Continue(()))?;
@@ -135,7 +138,9 @@ fn row(
         let covers = low.is_none_or(|low| low <= truth) && high.is_none_or(|high| truth <= high);
         (found.p, found.value, covers)
     };
-    Ok(Row { spreads: fit.spreads.iter().map(of).collect(), covered, seconds })
+    let elasticity = |q: FitParameter| fit.parameters.get(q).value / tissue.truth(q);
+    let elasticities = [[MEANS[0], MEANS[1]].map(elasticity), tissue.left_of_elasticities()?];
+    Ok(Row { spreads: fit.spreads.iter().map(of).collect(), covered, elasticities, seconds })
 }
 
 fn print(
@@ -159,14 +164,25 @@ fn print(
     });
     let covers = each(&|k| format!("{}/{count}", rows.iter().filter(|row| row.spreads[k].2).count()));
     let means = |which: usize| {
-        let count: usize = rows.iter().flat_map(|row| row.covered[which]).filter(|covered| *covered).count();
-        format!("{count}/{}", rows.len() * MEANS.len())
+        let own = |k: usize| rows.iter().filter(|row| row.covered[which][k]).count().to_string();
+        format!("{} of {count}", (0..MEANS.len()).map(own).collect::<Vec<_>>().join(", "))
+    };
+    let elasticities = |which: usize| {
+        let one = |k: usize| {
+            let all = rows.iter().map(|row| row.elasticities[which][k]);
+            let mean = all.clone().sum::<f64>() / count as f64;
+            let squares: f64 = all.map(|own| (own - mean).powi(2)).sum();
+            format!("{mean:.2} ± {:.2}", (squares / (count * (count - 1)) as f64).sqrt())
+        };
+        format!("{}, {}", one(0), one(1))
     };
     let [_, seconds, _] = quartiles(rows.iter().map(|row| row.seconds).collect());
     println!(
-        "| {name} | {} | {frames} | {named} | {sizes} | {covers} | {} | {} | {seconds:.0} |",
+        "| {name} | {} | {frames} | {named} | {sizes} | {covers} | {} | {} | {} | {} | {seconds:.0} |",
         varied.iter().map(|own| own.name()).collect::<Vec<_>>().join(", "),
         means(0),
-        means(1)
+        means(1),
+        elasticities(0),
+        elasticities(1)
     );
 }

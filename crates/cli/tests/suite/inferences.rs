@@ -266,4 +266,16 @@ fn cells_may_differ() {
     let (deviations, errors) = (own("deviation_alpha.npy"), own("deviation_error_alpha.npy"));
     assert_eq!(deviations.len(), errors.len());
     assert!(errors.iter().all(|error| *error <= value + 1e-9));
+    assert_eq!(told["warnings"], serde_json::json!([]));
+}
+
+/// Where cells differ in P_0 it is said what that does to K_P.
+#[test]
+fn elasticities_are_not_to_be_quoted_where_shapes_may_have_followed() {
+    let data = Folder::new();
+    let line = "simulate --cells 144 --P_0 4 --alpha 1 --cell-spread P_0=0.05 --time 5 --frames 1 --seed 1";
+    succeed(line, &[("--out", data.path())]);
+    let told = report(infer(data.path(), "--fix K_A=0.1 --vary P_0 --position-noise 0.005").path());
+    assert_eq!(told["spreads"][0]["named"], serde_json::json!(true));
+    assert!(told["warnings"].to_string().contains("K_P comes out too small"), "{}", told["warnings"]);
 }

@@ -199,7 +199,7 @@ impl Lineup {
         let equations = objective.linearise_with(&at, unknowns)?;
         let spring = objective.spring();
         let parts: Vec<Result<Whitened, Error>> =
-            equations.frames.par_iter().map(|frame| frame.whiten(spring)).collect();
+            equations.frames.par_iter().map(|frame| frame.whiten_data(spring)).collect();
         let parts = parts.into_iter().collect::<Result<Vec<_>, _>>()?;
         let p = space.dimension() + unknowns.len();
         let Whitened { free: information, mixed: score, data, .. } = Whitened::sum(&parts, p);

@@ -16,6 +16,9 @@ use voronudge_linalg::Cholesky;
 const MANY: usize = 6000;
 const FEW_SIDES: usize = 16;
 
+/// Unknowns above which a factor is dear whatever the number of right-hand sides.
+const FACTORED: usize = 16_000;
+
 /// Right-hand sides that go together.
 pub(super) const LANES: usize = 4;
 
@@ -43,9 +46,9 @@ impl Accuracy {
 pub(super) type Iterated = (Vec<f64>, Vec<f64>);
 
 impl Linearisation {
-    /// Whether the unknowns are so many that they are eliminated by iteration.
-    pub(super) fn are_many(&self) -> bool {
-        !self.chains.is_empty() && self.order() >= MANY && self.velocities.free_gradient.len() < FEW_SIDES
+    /// Whether the unknowns are so many that they are eliminated from so many right-hand sides by iteration.
+    pub(super) fn are_many(&self, sides: usize) -> bool {
+        !self.chains.is_empty() && self.order() >= MANY && sides < FEW_SIDES
     }
 
     /// `A⁻¹` of some right-hand sides, one after the other, with A = JᵀJ + kHᵀH + λ and what stiffness there is beside. None if the iteration does not come
@@ -68,6 +71,29 @@ impl Linearisation {
         };
         let (solved, left): (Vec<Vec<f64>>, Vec<Vec<f64>>) = found.into_iter().unzip();
         Ok(Some((solved.concat(), left.concat())))
+    }
+
+    /// `A⁻¹` times some vectors, one after the other, with A = JᵀJ + kHᵀH and what stiffness there is beside.
+    pub fn solutions(&self, spring: f64, right: &[f64]) -> Result<Vec<f64>, Error> {
+        Ok(self.solutions_with_left(spring, right)?.0)
+    }
+
+    /// The same, with what they leave of the vectors where they come from iteration.
+    pub(super) fn solutions_with_left(&self, spring: f64, right: &[f64]) -> Result<Iterated, Error> {
+        let sides = right.len() / self.order().max(1);
+        if (self.are_many(sides) || self.is_past_factors())
+            && let Some(found) = self.iterated(spring, &[], right, Accuracy::OfResults)?
+        {
+            return Ok(found);
+        }
+        let mut solved = right.to_vec();
+        self.factor(spring)?.solve(&mut solved);
+        Ok((solved, Vec::new()))
+    }
+
+    /// Whether a frame is so large that factors are not taken where there is another way.
+    pub(super) fn is_past_factors(&self) -> bool {
+        !self.chains.is_empty() && self.order() > FACTORED
     }
 
     /// A, with the factor of each chain by itself; none if one has none.

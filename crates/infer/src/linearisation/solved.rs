@@ -11,6 +11,7 @@
 //! Traces of M⁻¹ are those of draws `x = L⁻ᵀz` of u, with random signs z (Hutchinson 1990), and of what β adds: exact, because it is few. A is
 //! M without β, whose part in the last term is left out.
 
+use super::freedom::SEED;
 use super::{Held, Linearisation, product};
 use crate::Error;
 use crate::diagnostics::random_signs;
@@ -25,9 +26,6 @@ use voronudge_linalg::DissectedCholesky;
 
 /// Right-hand sides per task.
 const TOGETHER: usize = 8;
-
-/// The signs are the same ones at each point.
-const SEED: u64 = 0x5eed;
 
 /// What multiplies data and unknowns: or, of a direction, by how much that changes.
 #[derive(Debug, Clone)]

@@ -169,7 +169,7 @@ impl<'a> Objective<'a> {
     }
 
     /// What is measured of each frame, linearised.
-    pub(super) fn linear(
+    pub fn linear(
         &self,
         placed: &[Moving<'_>],
         parameters: &[f64],
@@ -206,8 +206,8 @@ impl<'a> Objective<'a> {
 }
 
 /// What is measured of one frame, linearised about its nudges.
-pub(super) struct Linear<'a> {
-    frame: &'a Observation,
+pub(crate) struct Linear<'a> {
+    pub frame: &'a Observation,
     /// Stiffness of cells that were not seen.
     floor: f64,
     /// Number of free coefficients.
@@ -230,6 +230,17 @@ impl Linear<'_> {
         free.renumber(&mut self.jacobian);
         self.positions.keep(free);
         self.of_cells(&free.cells, &free.of(nudges))
+    }
+
+    /// That of the nudges of some cells with all data that depend on them, the others held.
+    pub fn around(&self, free: &Free, nudges: &[f64]) -> Linearisation {
+        let mut jacobian = self.jacobian.only(|cell| free.column_index(cell).is_some());
+        let meets = |row: &&Row| jacobian.row(row.0).next().is_some();
+        let rows = self.rows.iter().filter(meets).cloned().collect();
+        free.renumber(&mut jacobian);
+        let Self { frame, floor, p, .. } = *self;
+        let positions = self.positions.around(free);
+        Linear { frame, floor, p, rows, jacobian, positions }.of_cells(&free.cells, &free.of(nudges))
     }
 
     fn of_cells(&self, cells: &[usize], nudges: &[f64]) -> Linearisation {

@@ -5,10 +5,11 @@
 //! small factor. It is a likelihood of fewer data, and exact; velocities at the borders of patches are not asked. Which are is a matter of the contacts as
 //! measured, so that likelihoods of different fits are of the same data.
 
+use super::Free;
 use crate::objective::Row;
 use crate::rows::Rows;
 use crate::{Observation, Velocities};
-use voronudge_geometry::Vector;
+use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;
 
 /// Cells of a frame up to which all of its velocities are asked, and those of a patch.
@@ -87,6 +88,26 @@ impl Patches {
         }
         let of_positions = if frame.share() == 0.0 { 0 } else { OF_CENTROIDS };
         Self { cells, patch, seat, contacts, of_positions }
+    }
+
+    /// The patch of a cell.
+    pub fn patch(&self, cell: usize) -> usize {
+        self.patch[cell]
+    }
+
+    /// The cells of a patch and of so many rings around it.
+    pub fn with_rings(&self, patch: usize, tessellation: &Tessellation, rings: usize) -> Free {
+        let mut within = vec![false; self.patch.len()];
+        let mut last = self.cells[patch].clone();
+        for _ in 0..=rings {
+            last.retain(|cell| !std::mem::replace(&mut within[*cell], true));
+            last = last
+                .iter()
+                .flat_map(|cell| tessellation.neighbours(*cell))
+                .map(|cell| *cell as usize)
+                .collect();
+        }
+        Free::new(within.len(), |cell| within[cell])
     }
 
     /// Rows of velocities of a patch.

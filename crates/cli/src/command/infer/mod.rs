@@ -188,6 +188,7 @@ impl Reporting for Arguments {
         doubts.iter().for_each(|(_, doubt)| run.warn(doubt));
         let caution = tracked.as_ref().and_then(|tracked| activity::caution(&result, tracked));
         caution.into_iter().for_each(|caution| run.warn(caution));
+        spreads::cautions(&result).into_iter().for_each(|caution| run.warn(caution));
         arrays::write(&mut out, "", &data, &prepared, &result)?;
         super::fit::spreads::write(&mut out, "", &data, &prepared, &result)?;
         latent::write(&mut out, &data, &prepared, &result)?;
