@@ -89,9 +89,7 @@ impl PositionRows {
 
     /// Those that depend on free cells, with columns of these alone.
     pub fn around(&self, free: &Free) -> Self {
-        let mut jacobian = self.jacobian.only(|cell| free.column_index(cell).is_some());
-        let rows = self.rows.iter().filter(|row| jacobian.row(row.0).next().is_some()).cloned().collect();
-        free.renumber(&mut jacobian);
+        let (jacobian, rows) = free.part_of(&self.rows());
         Self { jacobian, rows }
     }
 

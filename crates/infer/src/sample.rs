@@ -1,11 +1,12 @@
 //! A small tissue for the tests of this crate.
 
-use crate::{Flow, Observation, Velocities, Window};
+use crate::objective::Objective;
+use crate::{CoefficientSpace, Constraints, Flow, NoiseLevels, Observation, Velocities, Window};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
 use voronudge_geometry::{Domain, FieldOfView, Grid, PeriodicBox, Tessellation, Vector, Visibility};
-use voronudge_model::{Model, velocities};
+use voronudge_model::{Model, Structure, velocities};
 
 /// Coefficients of the tissue, `(K_A, K_P P_0, K_P, K_P α)`.
 pub const COEFFICIENTS: [f64; 4] = [0.1, 4.0, 1.0, 1.5];
@@ -30,6 +31,18 @@ pub fn observation_of(side: u32, position_noise: f64, velocity_noise: f64, seed:
     let measured = positions.iter().map(|r| noisy(r, position_noise)).collect();
     let velocities: Vec<_> = v.iter().map(|v| Some(noisy(v, velocity_noise))).collect();
     Observation::new(0, measured, velocities, domain, FieldOfView::default()).unwrap()
+}
+
+/// Hands on the objective of such a tissue, of whose positions a share is that of centroids, and the point of some coefficients and no nudges.
+pub fn with_objective(side: u32, share: f64, test: impl FnOnce(&Objective<'_>, &[f64])) {
+    let levels = NoiseLevels { position: 0.02, velocity: 0.02 };
+    let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+    let structure = Structure::base(1.0);
+    let frames = [observation_of(side, 0.02, 0.02, 3).with_positions_at(share).unwrap()];
+    let objective = Objective::new(&frames, &structure, &space, levels);
+    let mut at = vec![0.1, 3.9, 1.0, 1.6];
+    at.resize(4 + objective.nudge_count(), 0.0);
+    test(&objective, &at);
 }
 
 /// Positions of the tissue, without noise.

@@ -1,6 +1,6 @@
 //! Cells that differ: how often it is told, how large it is said to be, and whether the mean parameters are right.
 
-use super::seeds::{on_one_core_each, quartiles};
+use super::seeds::{mean, on_one_core_each, quartiles};
 use crate::Outcome;
 use claims::Noise;
 use claims::differing::{Differing, Since};
@@ -169,10 +169,9 @@ fn print(
     };
     let elasticities = |which: usize| {
         let one = |k: usize| {
-            let all = rows.iter().map(|row| row.elasticities[which][k]);
-            let mean = all.clone().sum::<f64>() / count as f64;
-            let squares: f64 = all.map(|own| (own - mean).powi(2)).sum();
-            format!("{mean:.2} ± {:.2}", (squares / (count * (count - 1)) as f64).sqrt())
+            let all: Vec<f64> = rows.iter().map(|row| row.elasticities[which][k]).collect();
+            let (mean, error) = mean(&all);
+            format!("{mean:.2} ± {error:.2}")
         };
         format!("{}, {}", one(0), one(1))
     };

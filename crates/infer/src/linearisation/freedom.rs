@@ -50,26 +50,18 @@ impl Linearisation {
 
 #[cfg(test)]
 mod tests {
-    use crate::objective::Objective;
-    use crate::sample::observation_of;
-    use crate::{CoefficientSpace, Constraints, NoiseLevels};
-    use voronudge_model::Structure;
+    use crate::sample::with_objective;
 
     /// Random signs against factors.
     #[test]
     fn signs_have_the_trace_of_factors() {
-        let levels = NoiseLevels { position: 0.02, velocity: 0.02 };
-        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
-        let structure = Structure::base(1.0);
         for share in [0.0, 0.8] {
-            let frames = [observation_of(24, 0.02, 0.02, 3).with_positions_at(share).unwrap()];
-            let objective = Objective::new(&frames, &structure, &space, levels);
-            let mut at = vec![0.1, 3.9, 1.0, 1.6];
-            at.resize(4 + objective.nudge_count(), 0.0);
-            let frame = &objective.linearise(&at).unwrap().frames[0];
-            let trace = frame.order() as f64 - frame.degrees_of_freedom(1.0).unwrap();
-            let signs = frame.trace_of_signs(1.0).unwrap();
-            assert!((signs - trace).abs() < 0.03 * trace, "{signs} {trace}");
+            with_objective(24, share, |objective, at| {
+                let frame = &objective.linearise(at).unwrap().frames[0];
+                let trace = frame.order() as f64 - frame.degrees_of_freedom(1.0).unwrap();
+                let signs = frame.trace_of_signs(1.0).unwrap();
+                assert!((signs - trace).abs() < 0.03 * trace, "{signs} {trace}");
+            });
         }
     }
 }

@@ -57,6 +57,21 @@ impl Free {
         all
     }
 
+    /// The rows that depend on free cells, with the columns of these alone.
+    pub fn part_of(&self, rows: &Rows<'_>) -> (BlockMatrix, Vec<Row>) {
+        let jacobian = self.columns_of(rows.jacobian);
+        let meets = |row: &&Row| jacobian.row(row.0).next().is_some();
+        let rows = rows.rows.iter().filter(meets).cloned().collect();
+        (jacobian, rows)
+    }
+
+    /// The columns that a matrix has of free cells.
+    pub fn columns_of(&self, matrix: &BlockMatrix) -> BlockMatrix {
+        let mut columns = matrix.only(|cell| self.column_index(cell).is_some());
+        self.renumber(&mut columns);
+        columns
+    }
+
     /// Makes the columns of a matrix those of free cells.
     pub fn renumber(&self, matrix: &mut BlockMatrix) {
         matrix.column.iter_mut().for_each(|column| *column = self.seat[*column as usize]);
@@ -234,10 +249,7 @@ impl Linear<'_> {
 
     /// That of the nudges of some cells with all data that depend on them, the others held.
     pub fn around(&self, free: &Free, nudges: &[f64]) -> Linearisation {
-        let mut jacobian = self.jacobian.only(|cell| free.column_index(cell).is_some());
-        let meets = |row: &&Row| jacobian.row(row.0).next().is_some();
-        let rows = self.rows.iter().filter(meets).cloned().collect();
-        free.renumber(&mut jacobian);
+        let (jacobian, rows) = free.part_of(&Rows { jacobian: &self.jacobian, rows: &self.rows });
         let Self { frame, floor, p, .. } = *self;
         let positions = self.positions.around(free);
         Linear { frame, floor, p, rows, jacobian, positions }.of_cells(&free.cells, &free.of(nudges))

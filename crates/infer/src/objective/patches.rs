@@ -169,49 +169,43 @@ fn bisect(positions: &[Vector<f64>], mut cells: Vec<usize>, largest: usize, into
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::objective::Objective;
     use crate::placing::Placing;
-    use crate::sample::observation_of;
+    use crate::sample::with_objective;
     use crate::whitened::Whitened;
-    use crate::{CoefficientSpace, Constraints, NoiseLevels};
-    use voronudge_model::Structure;
 
     /// The likelihood of the velocities that patches are asked for is that of these velocities in one problem.
     #[test]
     fn patches_together_are_one_problem() {
-        let levels = NoiseLevels { position: 0.02, velocity: 0.02 };
-        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
-        let structure = Structure::base(1.0);
         for share in [0.0, 0.8] {
-            let frames = [observation_of(24, 0.02, 0.02, 3).with_positions_at(share).unwrap()];
-            let objective = Objective::new(&frames, &structure, &space, levels);
-            let mut at = vec![0.1, 3.9, 1.0, 1.6];
-            at.resize(4 + objective.nudge_count(), 0.0);
-            let mut linear = objective.linear(&objective.placed_at(&at).unwrap(), &at, &[]).unwrap();
-            let linear = &mut linear[0];
-            let patches = Patches::new(&frames[0], 200);
-            assert_eq!(patches.cells.len(), 4);
-            let (own, components) = linear.in_patches(&patches, &at[4..]);
-            linear.rows.retain(|row| patches.contacts[row.0] >= OF_VELOCITIES);
-            assert!((100..400).contains(&linear.rows.len()), "{}", linear.rows.len());
-            let data = linear.rows.len();
-            let whole = linear.whole(&at[4..]);
-            for spring in [1.0, 10.0] {
-                let parts: Vec<Whitened> = own.iter().map(|part| part.whiten(spring).unwrap()).collect();
-                let (sum, whole) = (Whitened::sum(&parts, 4), whole.whiten(spring).unwrap());
-                if share > 0.0 {
-                    // Cells at the borders are without a measured position, which costs data, and tells less.
+            with_objective(24, share, |objective, at| {
+                let mut linear = objective.linear(&objective.placed_at(at).unwrap(), at, &[]).unwrap();
+                let linear = &mut linear[0];
+                let patches = Patches::new(linear.frame, 200);
+                assert_eq!(patches.cells.len(), 4);
+                let (own, components) = linear.in_patches(&patches, &at[4..]);
+                linear.rows.retain(|row| patches.contacts[row.0] >= OF_VELOCITIES);
+                assert!((100..400).contains(&linear.rows.len()), "{}", linear.rows.len());
+                let data = linear.rows.len();
+                let whole = linear.whole(&at[4..]);
+                for spring in [1.0, 10.0] {
+                    let parts: Vec<Whitened> = own.iter().map(|part| part.whiten(spring).unwrap()).collect();
+                    let (sum, whole) = (Whitened::sum(&parts, 4), whole.whiten(spring).unwrap());
+                    if share > 0.0 {
+                        // Cells at the borders are without a measured position, which costs data, and tells less.
+                        assert!(
+                            components < 2 * data && sum.data < whole.data && sum.log_determinant.is_finite()
+                        );
+                        continue;
+                    }
+                    assert_eq!(components, 2 * data);
                     assert!(
-                        components < 2 * data && sum.data < whole.data && sum.log_determinant.is_finite()
+                        (sum.log_determinant - whole.log_determinant).abs() < 1e-8 * whole.log_determinant
                     );
-                    continue;
+                    assert!((sum.data - whole.data).abs() < 1e-9 * whole.data);
+                    assert!((sum.free - &whole.free).amax() < 1e-9 * whole.free.amax());
+                    assert!((sum.mixed - &whole.mixed).amax() < 1e-9 * whole.mixed.amax());
                 }
-                assert_eq!(components, 2 * data);
-                assert!((sum.log_determinant - whole.log_determinant).abs() < 1e-8 * whole.log_determinant);
-                assert!((sum.data - whole.data).abs() < 1e-9 * whole.data);
-                assert!((sum.free - &whole.free).amax() < 1e-9 * whole.free.amax());
-                assert!((sum.mixed - &whole.mixed).amax() < 1e-9 * whole.mixed.amax());
-            }
+            });
         }
     }
 }

@@ -45,8 +45,7 @@ impl About<'_> {
         let of_patch = |patch: usize| {
             let own: Vec<usize> = (0..data.len()).filter(|k| patches.patch(data[*k]) == patch).collect();
             let free = patches.with_rings(patch, &self.linear.frame.tessellation, rings);
-            let mut jacobian = self.jacobian.only(|cell| free.column_index(cell).is_some());
-            free.renumber(&mut jacobian);
+            let jacobian = free.columns_of(self.jacobian);
             let linear = self.linear.around(&free, self.nudges);
             let asked: Vec<usize> = own.iter().map(|k| data[*k]).collect();
             let found = leverages(&linear, self.spring, &jacobian, &asked)?;
@@ -118,39 +117,31 @@ fn of_entries(jacobian: &BlockMatrix, datum: usize, inverse: &SelectedInverse) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::objective::Objective;
     use crate::placing::Placing;
-    use crate::sample::observation_of;
-    use crate::{CoefficientSpace, Constraints, NoiseLevels};
-    use voronudge_model::Structure;
+    use crate::sample::with_objective;
 
     /// What is far away hardly counts.
     #[test]
     fn patches_with_rings_around_are_as_the_whole() {
-        let levels = NoiseLevels { position: 0.02, velocity: 0.02 };
-        let space = CoefficientSpace::new(&Constraints::default()).unwrap();
-        let structure = Structure::base(1.0);
         for share in [0.0, 0.8] {
-            let frames = [observation_of(40, 0.02, 0.02, 3).with_positions_at(share).unwrap()];
-            let objective = Objective::new(&frames, &structure, &space, levels);
-            let mut at = vec![0.1, 3.9, 1.0, 1.6];
-            at.resize(4 + objective.nudge_count(), 0.0);
-            let placed = objective.placed_at(&at).unwrap();
-            let linear = &objective.linear(&placed, &at, &[]).unwrap()[0];
-            let (nudged, predicted) = &placed[0];
-            let coefficients = space.coefficients(&at[..4]);
-            let jacobian = &nudged.jacobian(coefficients.as_slice(), &predicted.of_cells);
-            let about = About { linear, jacobian, nudges: &at[4..], spring: objective.spring() };
-            let data: Vec<usize> = (0..1600).step_by(3).collect();
-            let whole = about.leverages(&data).unwrap();
-            let patches = Patches::new(&frames[0], 100);
-            assert_eq!(patches.cells.len(), 16);
-            let off = |rings: usize| {
-                let found = about.in_patches(&patches, &data, rings).unwrap();
-                let pairs = found.iter().zip(&whole);
-                pairs.map(|(one, other)| (one - other).norm() / other.norm()).fold(0.0, f64::max)
-            };
-            assert!(off(RINGS) < 0.01 && off(2) > 0.05);
+            with_objective(40, share, |objective, at| {
+                let placed = objective.placed_at(at).unwrap();
+                let linear = &objective.linear(&placed, at, &[]).unwrap()[0];
+                let (nudged, predicted) = &placed[0];
+                let coefficients = objective.space.coefficients(&at[..4]);
+                let jacobian = &nudged.jacobian(coefficients.as_slice(), &predicted.of_cells);
+                let about = About { linear, jacobian, nudges: &at[4..], spring: objective.spring() };
+                let data: Vec<usize> = (0..1600).step_by(3).collect();
+                let whole = about.leverages(&data).unwrap();
+                let patches = Patches::new(linear.frame, 100);
+                assert_eq!(patches.cells.len(), 16);
+                let off = |rings: usize| {
+                    let found = about.in_patches(&patches, &data, rings).unwrap();
+                    let pairs = found.iter().zip(&whole);
+                    pairs.map(|(one, other)| (one - other).norm() / other.norm()).fold(0.0, f64::max)
+                };
+                assert!(off(RINGS) < 0.01 && off(2) > 0.05);
+            });
         }
     }
 }
