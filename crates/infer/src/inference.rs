@@ -6,7 +6,7 @@ use crate::curvature;
 use crate::doubts::examine;
 use crate::estimates::Fitted;
 use crate::least_squares::{self, invert, residuals_as_measured, within_bounds};
-use crate::noisy_fit::{at_limit, fit, go_on};
+use crate::noisy_fit::{at_limit, fit, go_on, to_the_end};
 use crate::normal_equations::{NormalEquations, Reduced};
 use crate::objective::{Nudged, Objective};
 use crate::robust::reweighed;
@@ -79,6 +79,7 @@ fn nudged(
     }
     let given = frames;
     let mut frames = weighted.as_deref().unwrap_or(given);
+    found = to_the_end(&Objective { frames, levels, ..objective }, found, request)?;
     // Velocities held out are predicted with the parameters that all cells share.
     let folds = match request.cross_validation {
         CrossValidation::Done => {

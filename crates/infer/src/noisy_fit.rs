@@ -4,9 +4,9 @@ use crate::excerpt::excerpts;
 use crate::least_squares::{self, residuals_as_measured};
 use crate::measurement::Unknown;
 use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
-use crate::objective::Objective;
+use crate::objective::{Objective, Patches};
 use crate::search::{Effort, Found, Watch, descend, follow, improve, refine};
-use crate::{Error, KnownNoise, Method, NoiseLevels, Request};
+use crate::{Error, KnownNoise, Method, NoiseLevels, Observation, Request};
 
 /// Rounds of estimating the noise levels before contacts are flipped, and after.
 const ROUNDS: [usize; 2] = [6, 3];
@@ -23,7 +23,12 @@ const ALMOST_EXACT: f64 = 2e-3;
 /// Change of log σ that counts as none.
 pub(crate) const SETTLED: f64 = 0.02;
 
-/// Finds parameters, nudges and, where they are not known, noise levels. The objective has the levels on return.
+/// Steps of the optimiser, of those that are allowed, before it is known which velocities count: large frames are led to their end once it is.
+fn on_the_way(frames: &[Observation], most: u64) -> u64 {
+    if frames.iter().any(Patches::are_of) { STEPS_PER_ROUND.min(most) } else { most }
+}
+
+/// Finds parameters, nudges and, where they are not known, noise levels, large frames [to the end](to_the_end) but for some steps. The objective has the levels on return.
 pub(crate) fn fit(
     objective: &mut Objective<'_>,
     naive: &[f64],
@@ -59,7 +64,8 @@ pub(crate) fn fit(
     };
     improve(objective, &mut found, &Effort { max_steps, starts, seed: request.seed }, watch)?;
     if estimated {
-        found = settle(objective, found, request, max_steps, ROUNDS[1], watch)?.found;
+        let most = on_the_way(objective.frames, max_steps);
+        found = settle(objective, found, request, most, ROUNDS[1], watch)?.found;
     }
     Ok(found)
 }
@@ -91,7 +97,7 @@ struct Settled {
     criterion: f64,
 }
 
-/// Goes on from a fit to data with other weights.
+/// Goes on from a fit to data with other weights, large frames [to the end](to_the_end) but for some steps.
 pub(crate) fn go_on(
     objective: &mut Objective<'_>,
     found: Found,
@@ -104,7 +110,30 @@ pub(crate) fn go_on(
         Method::Descent { .. } => return Ok(found),
     };
     // Known levels stay as they are.
-    Ok(settle(objective, found, request, max_steps, ROUNDS[1], watch)?.found)
+    let most = on_the_way(objective.frames, max_steps);
+    Ok(settle(objective, found, request, most, ROUNDS[1], watch)?.found)
+}
+
+/// Leads a fit to its end, levels and weights as they are, where that was left for then.
+pub(crate) fn to_the_end(objective: &Objective<'_>, found: Found, request: &Request) -> Result<Found, Error> {
+    match request.method {
+        Method::Search { max_steps, .. } if on_the_way(objective.frames, max_steps) < max_steps => {
+            further(objective, found, max_steps)
+        }
+        Method::Search { .. } | Method::Descent { .. } => Ok(found),
+    }
+}
+
+/// Some steps more.
+fn further(objective: &Objective<'_>, found: Found, steps: u64) -> Result<Found, Error> {
+    let optimum = refine(objective, found.parameters, steps)?;
+    Ok(Found {
+        steps: found.steps + optimum.steps,
+        parameters: optimum.parameters,
+        value: optimum.value,
+        status: optimum.status,
+        ..found
+    })
 }
 
 /// The levels and the fit that follow if positions are taken to be almost exact at first; `None` if their noise is known or
@@ -160,14 +189,7 @@ fn settle(
         objective.levels = next;
         let settled = change < SETTLED || round + 1 == rounds;
         let steps = if settled { max_steps } else { STEPS_PER_ROUND.min(max_steps) };
-        let optimum = refine(objective, found.parameters, steps)?;
-        found = Found {
-            steps: found.steps + optimum.steps,
-            parameters: optimum.parameters,
-            value: optimum.value,
-            status: optimum.status,
-            ..found
-        };
+        found = further(objective, found, steps)?;
         if settled {
             break;
         }

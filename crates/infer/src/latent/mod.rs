@@ -216,9 +216,12 @@ impl Search<'_> {
                 }
                 match stage {
                     _ if !settled => idle = 0,
+                    Stage::Additions if made + undone == 0 => (stage, idle) = (Stage::Others, 0),
                     Stage::Additions => (stage, idle) = (Stage::All, 0),
-                    Stage::All => break,
+                    Stage::Others | Stage::All => break,
                 }
+            } else if stage == Stage::Others {
+                stage = Stage::All;
             }
             free = self.coefficients(scenes, Some(&free))?;
         }

@@ -71,13 +71,20 @@ pub(super) enum Stage {
     /// Those that keep detections where they are: coefficients are rough as long as cells are missing, and a detection that is let
     /// go can make up for one.
     Additions,
+    /// The others, where nothing has changed since there was no such change.
+    Others,
     /// All.
     All,
 }
 
 impl Stage {
     fn has(self, kind: ChangeKind) -> bool {
-        self == Self::All || matches!(kind, ChangeKind::Inserted | ChangeKind::Merged)
+        let adds = matches!(kind, ChangeKind::Inserted | ChangeKind::Merged);
+        match self {
+            Self::Additions => adds,
+            Self::Others => !adds,
+            Self::All => true,
+        }
     }
 }
 
@@ -152,7 +159,7 @@ pub(super) fn reassess(
         ChangeKind::Split => {
             change.added.iter().map(|place| proposal(ChangeKind::Inserted, *place, Vec::new())).collect()
         }
-        ChangeKind::Inserted if stage == Stage::All => {
+        ChangeKind::Inserted if stage != Stage::Additions => {
             let distance = |cell: usize| scene.between(centre, scene.measured.positions[cell]).norm();
             let detections = scene.origins.iter().filter_map(|origin| match origin {
                 Origin::Detected(cell) => Some(*cell),

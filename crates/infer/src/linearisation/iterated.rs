@@ -32,12 +32,13 @@ pub(crate) enum Accuracy {
 }
 
 impl Accuracy {
-    /// Size of what is left of a right-hand side, relative to it, both as the preconditioner measures them. What is computed from solutions errs by
-    /// the square.
-    pub(super) fn tolerance(self) -> f64 {
-        match self {
-            Self::OfSteps => 1e-3,
-            Self::OfResults => 1e-6,
+    /// Size of what is left of a right-hand side, relative to it, both as the preconditioner measures them, perhaps of a large frame by itself.
+    /// What is computed from solutions errs by the square.
+    pub(super) fn tolerance(self, large_frame: bool) -> f64 {
+        match (self, large_frame) {
+            (Self::OfSteps, false) => 1e-3,
+            (Self::OfSteps, true) => 1e-2,
+            (Self::OfResults, _) => 1e-6,
         }
     }
 }
@@ -61,10 +62,11 @@ impl Linearisation {
         accuracy: Accuracy,
     ) -> Result<Option<Iterated>, Error> {
         let Some(operator) = self.operator(spring, &self.held, damping)? else { return Ok(None) };
+        let tolerance = accuracy.tolerance(self.is_past_factors() && self.is_frame_by_itself());
         let n = self.order().max(1);
         let of_some = |some: &[f64]| match some.len() / n {
-            1 => lanes::<1>(&operator, some, accuracy),
-            _ => lanes::<LANES>(&operator, some, accuracy),
+            1 => lanes::<1>(&operator, some, tolerance),
+            _ => lanes::<LANES>(&operator, some, tolerance),
         };
         let Some(found) = right.par_chunks(LANES * n).map(of_some).collect::<Option<Vec<Iterated>>>() else {
             return Ok(None);
@@ -96,6 +98,11 @@ impl Linearisation {
         !self.chains.is_empty() && self.order() > FACTORED
     }
 
+    /// Whether no cell is there at several times.
+    fn is_frame_by_itself(&self) -> bool {
+        self.chains.iter().zip(0..).all(|(chain, own)| *chain == own)
+    }
+
     /// A, with the factor of each chain by itself; none if one has none.
     pub(super) fn operator<'a>(
         &'a self,
@@ -120,9 +127,9 @@ impl Linearisation {
 }
 
 /// Solutions for as many right-hand sides as there are lanes, or fewer.
-fn lanes<const L: usize>(operator: &Operator<'_>, right: &[f64], accuracy: Accuracy) -> Option<Iterated> {
+fn lanes<const L: usize>(operator: &Operator<'_>, right: &[f64], tolerance: f64) -> Option<Iterated> {
     let n = operator.frame.order();
     let sides = right.len() / n.max(1);
-    let end = operator.solve::<L>(to_lanes(right, n), accuracy.tolerance())?;
+    let end = operator.solve::<L>(to_lanes(right, n), tolerance)?;
     Some((from_lanes(&end.at, sides), from_lanes(&end.left, sides)))
 }

@@ -57,8 +57,13 @@ impl OwnRows {
 impl Patches {
     /// Those of a frame; none if it is asked as a whole.
     pub fn of(frame: &Observation) -> Option<Self> {
+        Self::are_of(frame).then(|| Self::new(frame, LARGEST))
+    }
+
+    /// Whether a frame is asked in patches.
+    pub fn are_of(frame: &Observation) -> bool {
         let of_cells = matches!(frame.velocities, Velocities::OfCells(_)) && frame.is_free();
-        (of_cells && frame.positions.len() > WHOLE).then(|| Self::new(frame, LARGEST))
+        of_cells && frame.positions.len() > WHOLE
     }
 
     /// Patches of so many cells at most.
