@@ -65,7 +65,8 @@ for _ in $(seq 100); do sinfo --noheader -o %t 2>/dev/null | grep -q idle && bre
 sinfo --noheader -o %t | grep -q idle
 
 submit=$root/docs/cluster/submit.sh
-diagram=(phase-diagram --P_0 3.5 4 2 --alpha 0.5 1 2 --replicas 4 --cells 100 --time 20 --seed 5)
+# A part takes some seconds: it still runs when it is requeued or killed.
+diagram=(phase-diagram --P_0 3.5 4 2 --alpha 0.5 1 2 --replicas 4 --cells 100 --time 60 --seed 5)
 cd "$scratch"
 "$VORONUDGE" "${diagram[@]}" --quiet --out single
 
