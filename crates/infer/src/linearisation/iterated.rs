@@ -31,18 +31,6 @@ pub(crate) enum Accuracy {
     OfResults,
 }
 
-impl Accuracy {
-    /// Size of what is left of a right-hand side, relative to it, both as the preconditioner measures them, perhaps of a large frame by itself.
-    /// What is computed from solutions errs by the square.
-    pub(super) fn tolerance(self, large_frame: bool) -> f64 {
-        match (self, large_frame) {
-            (Self::OfSteps, false) => 1e-3,
-            (Self::OfSteps, true) => 1e-2,
-            (Self::OfResults, _) => 1e-6,
-        }
-    }
-}
-
 /// Solutions, one after the other, and what they leave of the right-hand sides.
 pub(super) type Iterated = (Vec<f64>, Vec<f64>);
 
@@ -62,7 +50,7 @@ impl Linearisation {
         accuracy: Accuracy,
     ) -> Result<Option<Iterated>, Error> {
         let Some(operator) = self.operator(spring, &self.held, damping)? else { return Ok(None) };
-        let tolerance = accuracy.tolerance(self.is_past_factors() && self.is_frame_by_itself());
+        let tolerance = self.tolerance(accuracy);
         let n = self.order().max(1);
         let of_some = |some: &[f64]| match some.len() / n {
             1 => lanes::<1>(&operator, some, tolerance),
@@ -96,6 +84,16 @@ impl Linearisation {
     /// Whether a frame is so large that factors are not taken where there is another way.
     pub(super) fn is_past_factors(&self) -> bool {
         !self.chains.is_empty() && self.order() > FACTORED
+    }
+
+    /// Size of what is left of a right-hand side, relative to it, both as the preconditioner measures them. What is computed from solutions errs by the
+    /// square.
+    fn tolerance(&self, accuracy: Accuracy) -> f64 {
+        match accuracy {
+            Accuracy::OfSteps if self.is_past_factors() && self.is_frame_by_itself() => 1e-2,
+            Accuracy::OfSteps => 1e-3,
+            Accuracy::OfResults => 1e-6,
+        }
     }
 
     /// Whether no cell is there at several times.
