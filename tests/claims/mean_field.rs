@@ -195,8 +195,7 @@ fn an_edge_row_feels_the_force_and_the_stiffness_of_the_estimate() {
     for (p_0, alpha) in CASES {
         let (chiral, achiral) = (theory(p_0, alpha), theory(p_0, 0.0));
         let from_below = |theory: &MeanField| -> f64 {
-            let mut forces = HalfEdgeForces::default();
-            forces.evaluate(tessellation, &lattice.positions, &model(theory), &mut Vec::new());
+            let forces = HalfEdgeForces::of(tessellation, &lattice.positions, &model(theory));
             let below = tessellation.ring(cell).filter(|&h| shift(tessellation.neighbour(h)).y < -0.1);
             below.map(|h| forces.on_neighbour(tessellation.twin(h)).x).sum()
         };

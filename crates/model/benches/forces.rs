@@ -10,7 +10,8 @@ use rand_pcg::Pcg64Mcg;
 use std::sync::Arc;
 use voronudge_geometry::{Domain, Grid, PeriodicBox, Tessellation, Vector};
 use voronudge_model::{
-    BlockMatrix, Effect, Environment, HalfEdgeForces, JacobianBuilder, Model, Parameters, VectorMap, jvp, vjp,
+    BlockMatrix, Effect, Environment, JacobianBuilder, Model, Parameters, VectorMap, VelocityAssembly, jvp,
+    vjp,
 };
 
 fn main() {
@@ -35,9 +36,9 @@ fn tissue(side: usize) -> (Vec<Vector<f64>>, Tessellation, Model<f64>) {
 #[divan::bench(args = [10, 100, 1000])]
 fn velocities(bencher: Bencher, side: usize) {
     let (positions, tessellation, model) = tissue(side);
-    let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
+    let (mut assembly, mut v) = (VelocityAssembly::default(), Vec::new());
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
-        forces.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
+        assembly.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
     });
 }
 
@@ -100,9 +101,9 @@ fn with(id: &str) -> Option<(Vec<Vector<f64>>, Tessellation, Model<f64>)> {
 #[divan::bench(args = effects())]
 fn velocities_with(bencher: Bencher, id: &str) {
     let (positions, tessellation, model) = with(id).expect("an effect that applies");
-    let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
+    let (mut assembly, mut v) = (VelocityAssembly::default(), Vec::new());
     bencher.counter(ItemsCount::new(positions.len())).bench_local(|| {
-        forces.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
+        assembly.evaluate(&tessellation, divan::black_box(&positions), &model, &mut v);
     });
 }
 

@@ -1,7 +1,8 @@
 //! From elements to the velocities of all cells.
 //!
 //! Each element writes the forces on its ring into its own half-edges; each cell then gathers what its neighbours wrote
-//! about it, in the order of its ring. No two threads write to one place and no sum depends on their number.
+//! about it, in the order of its ring. No two threads write to one place and no sum depends on their number. Where only sums are asked for,
+//! what cells of a chunk write for each other stays in the cache, and what goes from chunk to chunk passes through memory.
 
 use crate::element_lanes::{elements_in_lanes, fit_lanes};
 use crate::mirrored_jacobian::signs_of;
@@ -33,21 +34,39 @@ fn split_by_cells<T>(
     tasks
 }
 
-/// Forces of every cell on its neighbours, one per half-edge. Reusable from call to call.
+/// The work space of velocities. Reusable from call to call.
 #[derive(Debug, Clone)]
-pub struct HalfEdgeForces<S> {
+pub struct VelocityAssembly<S> {
+    /// What the elements of a chunk wrote for their rings.
+    on_rings: Vec<Vector<S>>,
+    /// What passes between chunks.
+    passing: Vec<Passing<S>>,
+    /// Where what concerns a cell with neighbours in another chunk begins among what its own chunk passes on.
+    begins: Vec<u32>,
+}
+
+/// Cells of a chunk that have neighbours in others, and for each neighbour of such a cell one force: that of the neighbour on the cell if it belongs
+/// to the same chunk, else that of the cell on the neighbour.
+#[derive(Debug, Clone)]
+struct Passing<S> {
+    cells: Vec<u32>,
     forces: Vec<Vector<S>>,
 }
 
-impl<S: Scalar> Default for HalfEdgeForces<S> {
+impl<S: Scalar> Default for VelocityAssembly<S> {
     fn default() -> Self {
-        Self { forces: Vec::new() }
+        Self { on_rings: Vec::new(), passing: Vec::new(), begins: Vec::new() }
     }
 }
 
-impl<S: Scalar> HalfEdgeForces<S> {
-    /// Evaluates all elements, sums them into velocities (N) and lets the responses act on these. The forces of a cell
-    /// whose polygon is not closed are NaN. Responses add no forces.
+impl<S> Default for Passing<S> {
+    fn default() -> Self {
+        Self { cells: Vec::new(), forces: Vec::new() }
+    }
+}
+
+impl<S: Scalar> VelocityAssembly<S> {
+    /// Evaluates all elements, sums them into velocities (N) and lets the responses act on these.
     pub fn evaluate(
         &mut self,
         tessellation: &Tessellation,
@@ -72,7 +91,104 @@ impl<S: Scalar> HalfEdgeForces<S> {
         let evaluate = |cells: Range<usize>, forces: &mut [Vector<S>], velocities: &mut [Vector<S>]| {
             elements(tessellation, positions, from_ref(model), cells, forces, velocities);
         };
-        assemble_half_edges(tessellation, &mut self.forces, velocities, evaluate);
+        self.assemble(tessellation, velocities, evaluate);
+    }
+
+    /// Lets elements write what they have for their rings and for their cells, chunk by chunk, and adds up what there is for each cell.
+    pub(crate) fn assemble(
+        &mut self,
+        tessellation: &Tessellation,
+        sums: &mut Vec<Vector<S>>,
+        elements: impl Fn(Range<usize>, &mut [Vector<S>], &mut [Vector<S>]) + Sync,
+    ) {
+        let nan = Vector::new(S::constant(f64::NAN), S::constant(f64::NAN));
+        let cells = tessellation.len();
+        sums.resize(cells, nan);
+        if cells <= CHUNK {
+            self.on_rings.resize(tessellation.half_edges(), nan);
+            elements(0..cells, &mut self.on_rings, sums);
+            return gather(tessellation, 0..cells, &self.on_rings, sums, |_| {});
+        }
+        self.begins.resize(cells, 0);
+        self.passing.resize_with(cells.div_ceil(CHUNK), Passing::default);
+        // What a chunk wrote is still in the cache when its own cells gather it; the others wait until all have written.
+        let passing = self.passing.par_iter_mut().zip(self.begins.par_chunks_mut(CHUNK));
+        passing.zip(sums.par_chunks_mut(CHUNK)).enumerate().for_each_init(
+            Vec::new,
+            |on_rings, (chunk, ((passing, begins), sums))| {
+                let range = chunk * CHUNK..chunk * CHUNK + sums.len();
+                let first = tessellation.half_edge_start(range.start);
+                on_rings.resize(tessellation.half_edge_start(range.end) - first, nan);
+                elements(range.clone(), on_rings, sums);
+                passing.cells.clear();
+                passing.forces.clear();
+                gather(tessellation, range.clone(), on_rings, sums, |cell| {
+                    begins[cell - range.start] = passing.forces.len() as u32;
+                    passing.cells.push(cell as u32);
+                    passing.forces.extend(tessellation.ring(cell).map(|h| {
+                        let twin = tessellation.twin(h).wrapping_sub(first);
+                        *on_rings.get(twin).unwrap_or(&on_rings[h - first])
+                    }));
+                });
+            },
+        );
+        let (passing, begins) = (&self.passing, &self.begins);
+        sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
+            let mut own = passing[chunk].forces.iter();
+            for &cell in &passing[chunk].cells {
+                let sum = &mut sums[cell as usize - chunk * CHUNK];
+                for (h, own) in tessellation.ring(cell as usize).zip(&mut own) {
+                    let other = tessellation.neighbour(h);
+                    *sum += match other / CHUNK == chunk {
+                        true => *own,
+                        false => {
+                            let place = tessellation.twin(h) - tessellation.half_edge_start(other);
+                            passing[other / CHUNK].forces[begins[other] as usize + place]
+                        }
+                    };
+                }
+            }
+        });
+    }
+}
+
+/// Forces of every cell on its neighbours, one per half-edge. Reusable from call to call.
+#[derive(Debug, Clone)]
+pub struct HalfEdgeForces<S> {
+    forces: Vec<Vector<S>>,
+}
+
+impl<S: Scalar> Default for HalfEdgeForces<S> {
+    fn default() -> Self {
+        Self { forces: Vec::new() }
+    }
+}
+
+impl<S: Scalar> HalfEdgeForces<S> {
+    /// As [`VelocityAssembly::evaluate`], and keeps the forces. Those of a cell whose polygon is not closed are NaN. Responses add no forces.
+    pub fn evaluate(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<S>],
+        model: &Model<S>,
+        velocities: &mut Vec<Vector<S>>,
+    ) {
+        let (zero, cells) = (Vector::new(S::constant(0.0), S::constant(0.0)), tessellation.len());
+        self.forces.resize(tessellation.half_edges(), zero);
+        velocities.resize(cells, zero);
+        split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
+            .into_par_iter()
+            .zip(velocities.par_chunks_mut(CHUNK))
+            .for_each(|((range, forces), velocities)| {
+                elements(tessellation, positions, from_ref(model), range, forces, velocities);
+            });
+        let gathered = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
+        gathered.for_each(|(cell, sum)| {
+            tessellation.ring(cell).for_each(|h| *sum += self.forces[tessellation.twin(h)]);
+        });
+        if !model.responses.is_empty() {
+            respond(tessellation, positions, model, velocities);
+        }
     }
 
     /// Velocities of the first cells of a tessellation, as many as `velocities` has, of which the others are mirror images: as many
@@ -111,6 +227,13 @@ impl<S: Scalar> HalfEdgeForces<S> {
         }
     }
 
+    /// The forces at some positions.
+    pub fn of(tessellation: &Tessellation, positions: &[Vector<S>], model: &Model<S>) -> Self {
+        let mut forces = Self::default();
+        forces.evaluate(tessellation, positions, model, &mut Vec::new());
+        forces
+    }
+
     /// The force of the half-edge's cell on the neighbour it points at.
     #[inline]
     pub fn on_neighbour(&self, half_edge: usize) -> Vector<S> {
@@ -118,50 +241,15 @@ impl<S: Scalar> HalfEdgeForces<S> {
     }
 }
 
-/// Lets elements write what they have for their rings and for their cells, chunk by chunk, and adds up what there is for each cell.
-pub(crate) fn assemble_half_edges<S: Scalar>(
-    tessellation: &Tessellation,
-    on_rings: &mut Vec<Vector<S>>,
-    sums: &mut Vec<Vector<S>>,
-    elements: impl Fn(Range<usize>, &mut [Vector<S>], &mut [Vector<S>]) + Sync,
-) {
-    let nan = Vector::new(S::constant(f64::NAN), S::constant(f64::NAN));
-    let cells = tessellation.len();
-    on_rings.resize(tessellation.half_edges(), nan);
-    sums.resize(cells, nan);
-    if cells <= CHUNK {
-        elements(0..cells, on_rings, sums);
-        gather(tessellation, 0..cells, on_rings, 0, sums);
-        return;
-    }
-    // What a chunk wrote is still in the cache when its own cells gather it; the others wait until all have written.
-    let waiting: Vec<Vec<u32>> = split_by_cells(on_rings, cells, |cell| tessellation.half_edge_start(cell))
-        .into_par_iter()
-        .zip(sums.par_chunks_mut(CHUNK))
-        .map(|((range, on_rings), sums)| {
-            elements(range.clone(), on_rings, sums);
-            gather(tessellation, range.clone(), on_rings, tessellation.half_edge_start(range.start), sums)
-        })
-        .collect();
-    let on_rings = &*on_rings;
-    sums.par_chunks_mut(CHUNK).zip(waiting).enumerate().for_each(|(chunk, (sums, waiting))| {
-        for cell in waiting {
-            let sum = &mut sums[cell as usize - chunk * CHUNK];
-            tessellation.ring(cell as usize).for_each(|h| *sum += on_rings[tessellation.twin(h)]);
-        }
-    });
-}
-
-/// Adds what the neighbours of cells wrote for them, if all of it stands in a stretch of half-edges from `first` on; returns the cells for which it
-/// does not.
+/// Adds what the neighbours of some cells wrote for them, if all of it stands among what these cells wrote; tells of cells for which it does not.
 fn gather<S: Scalar>(
     tessellation: &Tessellation,
     cells: Range<usize>,
     on_rings: &[Vector<S>],
-    first: usize,
     sums: &mut [Vector<S>],
-) -> Vec<u32> {
-    let mut waiting = Vec::new();
+    mut incomplete: impl FnMut(usize),
+) {
+    let first = tessellation.half_edge_start(cells.start);
     for (cell, sum) in cells.zip(sums) {
         let mut total = *sum;
         // Twins before the stretch are far beyond its end.
@@ -170,10 +258,9 @@ fn gather<S: Scalar>(
         if complete {
             *sum = total;
         } else {
-            waiting.push(cell as u32);
+            incomplete(cell);
         }
     }
-    waiting
 }
 
 /// The elements of some cells, a chunk at most, under some models: for each cell the forces on its ring, one model after another, and those on the cell itself.
@@ -261,9 +348,8 @@ pub fn velocities<S: Scalar>(
     positions: &[Vector<S>],
     model: &Model<S>,
 ) -> Vec<Vector<S>> {
-    let mut forces = HalfEdgeForces::default();
     let mut v = Vec::new();
-    forces.evaluate(tessellation, positions, model, &mut v);
+    VelocityAssembly::default().evaluate(tessellation, positions, model, &mut v);
     v
 }
 

@@ -50,7 +50,7 @@ mod structure;
 mod term;
 mod transition;
 
-pub use assembly::{HalfEdgeForces, columns, velocities};
+pub use assembly::{HalfEdgeForces, VelocityAssembly, columns, velocities};
 pub use axis::Axis;
 pub use block_matrix::BlockMatrix;
 pub use cell_element::{CellElement, RingForces, Site};

@@ -1,6 +1,6 @@
 //! Products with the Jacobian, without the matrix.
 
-use crate::assembly::{HalfEdgeForces, assemble_half_edges};
+use crate::assembly::VelocityAssembly;
 use crate::element_jacobian::{ByShape, held, seeded, turn};
 use crate::jacobian::has_velocity;
 use crate::{Model, VertexForces, WeightedTerm, jacobian};
@@ -22,7 +22,7 @@ pub fn jvp(
         .map(|(r, u)| Vector::new(Dual64::new(r.x, u.x), Dual64::new(r.y, u.y)))
         .collect();
     let mut v = Vec::new();
-    HalfEdgeForces::default().evaluate(tessellation, &moved, &model.lift(), &mut v);
+    VelocityAssembly::default().evaluate(tessellation, &moved, &model.lift(), &mut v);
     let change = |(cell, v): (usize, Vector<Dual64>)| match has_velocity(tessellation, cell) {
         true => Vector::new(v.x.eps, v.y.eps),
         false => Vector::zeros(),
@@ -56,8 +56,8 @@ pub fn vjp(
         if has_velocity(tessellation, cell) { *w } else { Vector::zeros() }
     };
     let w: Vec<Vector<f64>> = w.iter().enumerate().map(counts).collect();
-    let (mut on_rings, mut sums) = (Vec::new(), Vec::new());
-    assemble_half_edges(tessellation, &mut on_rings, &mut sums, |cells, on_rings, on_cells| {
+    let mut sums = Vec::new();
+    VelocityAssembly::default().assemble(tessellation, &mut sums, |cells, on_rings, on_cells| {
         let mut chunk = Chunk { tessellation, positions, w: &w, cells, on_rings, on_cells };
         chunk.differentiate(model);
     });

@@ -14,7 +14,7 @@ pub fn stress<S: Scalar>(
     model: &Model<S>,
     counts: impl Fn(usize) -> bool,
 ) -> [[S; 2]; 2] {
-    let forces = forces(tessellation, positions, model);
+    let forces = HalfEdgeForces::of(tessellation, positions, model);
     let mut sum = Sum::default();
     let mut polygon = CellPolygon::default();
     for cell in (0..tessellation.len()).filter(|&cell| tessellation.is_closed(cell) && counts(cell)) {
@@ -30,7 +30,7 @@ pub fn cell_stresses<S: Scalar>(
     positions: &[Vector<S>],
     model: &Model<S>,
 ) -> Vec<[[S; 2]; 2]> {
-    let forces = forces(tessellation, positions, model);
+    let forces = HalfEdgeForces::of(tessellation, positions, model);
     let mut polygon = CellPolygon::default();
     (0..tessellation.len())
         .map(|cell| {
@@ -42,16 +42,6 @@ pub fn cell_stresses<S: Scalar>(
             sum.stress()
         })
         .collect()
-}
-
-fn forces<S: Scalar>(
-    tessellation: &Tessellation,
-    positions: &[Vector<S>],
-    model: &Model<S>,
-) -> HalfEdgeForces<S> {
-    let mut forces = HalfEdgeForces::default();
-    forces.evaluate(tessellation, positions, model, &mut Vec::new());
-    forces
 }
 
 /// `Σ f ⊗ d` over rings, and the area of their cells.

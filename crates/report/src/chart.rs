@@ -23,6 +23,9 @@ pub enum AxisScale {
 /// Decades that a logarithmic axis has at least.
 const NARROWEST: f64 = 0.3;
 
+/// Span that a linear axis has at least, as a share of its end: ticks of a closer one would need digits that nobody reads.
+const LEAST_SHARE: f64 = 1e-3;
+
 /// One axis of a chart.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Axis {
@@ -63,7 +66,7 @@ impl Axis {
         let room = match logarithmic {
             // Ticks of less than a factor of two would need digits that nobody reads.
             true => (0.04 * span).max(0.5 * (NARROWEST - span)),
-            false => 0.04 * span.max(1e-9 * ends[1].abs()).max(1e-12),
+            false => (0.04 * span).max(0.5 * (LEAST_SHARE * ends[1].abs() - span)).max(1e-12),
         };
         let at_zero = !logarithmic && ends[0] >= 0.0 && ends[0] < 0.2 * ends[1];
         let range = [if at_zero { 0.0 } else { ends[0] - room }, ends[1] + room];

@@ -32,6 +32,7 @@ pub mod figure;
 pub mod histogram;
 pub mod infer_report;
 pub mod key;
+mod many_cells;
 pub mod map;
 pub mod markers;
 mod model_parameters;

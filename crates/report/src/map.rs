@@ -14,6 +14,8 @@ const RING: f64 = 3.4;
 pub const MAP_WIDTH: f64 = 380.0;
 /// Greatest nominal height of the mapped area in pixels.
 const MAX_HEIGHT: f64 = 480.0;
+/// Cells up to which all are outlined.
+pub(crate) const MOST_OUTLINED: usize = 12_000;
 /// Line distance of hatching in pixels.
 const HATCH: f64 = 4.0;
 
@@ -133,10 +135,12 @@ impl Map {
         Self { view, layer: Svg::new(view.size, &title), title, entries }
     }
 
-    /// Draws faint outlines of all cells, those left out on grey, uncertain ones hatched, the box and the field of view.
+    /// Draws faint outlines of all cells, unless there are so many that they are all one sees, those left out on grey, uncertain ones hatched, the box
+    /// and the field of view.
     pub fn outlines(&mut self, frame: &FrameView) {
         let [mut used, mut left_out, mut hatching] = std::array::from_fn(|_| PathData::new());
-        for cell in &frame.cells {
+        let all = frame.cells.len() <= MOST_OUTLINED;
+        for cell in frame.cells.iter().filter(|cell| all || !cell.is_used()) {
             if let Some(polygon) = self.view.polygon(cell) {
                 let left_out = match cell.status {
                     CellStatus::LeftOut | CellStatus::Uncertain => &mut left_out,

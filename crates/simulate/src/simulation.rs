@@ -14,8 +14,9 @@ use crate::scaled::{real, without_derivatives, zero};
 use crate::turning::Headings;
 use crate::walls::{self, Mirrored};
 use crate::{Driving, Error, Method, Shear, Walls};
+use std::borrow::Cow;
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
-use voronudge_model::{HalfEdgeForces, Model};
+use voronudge_model::{HalfEdgeForces, Model, VelocityAssembly};
 
 /// Cells in a periodic box that move under a model: `dr_i/dt = v_i(r)`, and what [`Driving`] adds.
 ///
@@ -37,7 +38,9 @@ pub struct Simulation<S: Scalar = f64> {
     spacing: f64,
     now: State<S>,
     velocities: Vec<Vector<S>>,
-    forces: HalfEdgeForces<S>,
+    assembly: VelocityAssembly<S>,
+    /// Those at the current positions, where they are kept.
+    forces: Option<HalfEdgeForces<S>>,
     /// What drives the polarities now.
     drive: Vec<Vector<S>>,
     stage: Stage<S>,
@@ -85,7 +88,8 @@ impl<S: Scalar> Simulation<S> {
             spacing,
             now: State { positions, ..State::default() },
             velocities: Vec::new(),
-            forces: HalfEdgeForces::default(),
+            assembly: VelocityAssembly::default(),
+            forces: None,
             drive: Vec::new(),
             stage: Stage::default(),
             places,
@@ -238,15 +242,28 @@ impl<S: Scalar> Simulation<S> {
         self.tessellation.tessellation()
     }
 
+    /// The same, which keeps the forces for [`Simulation::bonds`], where these are asked for after each step.
+    pub(crate) fn keeping_bonds(mut self) -> Result<Self, Error> {
+        self.forces = Some(HalfEdgeForces::default());
+        self.settle()?;
+        Ok(self)
+    }
+
     /// The force of each cell's element on each of its neighbours; the opposite force acts on the cell. Between walls of the cells, not
     /// of their images.
     pub fn bonds(&self) -> impl Iterator<Item = Bond<S>> {
         let (tessellation, positions) = (self.tessellation(), self.positions_with_images());
+        let forces = match &self.forces {
+            Some(kept) => Cow::Borrowed(kept),
+            None => Cow::Owned(HalfEdgeForces::of(tessellation, positions, &self.model)),
+        };
         (0..self.now.positions.len()).flat_map(move |cell| {
             let displacements = tessellation.displacements(positions, cell);
-            tessellation.ring(cell).zip(displacements).map(move |(half_edge, to)| {
-                let force = self.forces.on_neighbour(half_edge);
-                Bond { from: positions[cell], to, force }
+            let on_ring: Vec<_> = tessellation.ring(cell).map(|h| forces.on_neighbour(h)).collect();
+            on_ring.into_iter().zip(displacements).map(move |(force, to)| Bond {
+                from: positions[cell],
+                to,
+                force,
             })
         })
     }
@@ -283,7 +300,8 @@ impl<S: Scalar> Simulation<S> {
             spacing: self.spacing,
             now,
             velocities: Vec::new(),
-            forces: HalfEdgeForces::default(),
+            assembly: VelocityAssembly::default(),
+            forces: self.forces.as_ref().map(|_| HalfEdgeForces::default()),
             drive: Vec::new(),
             stage: Stage::default(),
             places: Vec::new(),
@@ -316,7 +334,8 @@ impl<S: Scalar> Simulation<S> {
             let tessellation = self.tessellation.tessellation();
             let (all, mirrors) = (&mirrored.positions, mirrored.walls.mirrors());
             velocities.resize(positions.len(), zero());
-            self.forces.evaluate_with_images(tessellation, all, &self.model, mirrors, velocities);
+            let forces = self.forces.get_or_insert_default();
+            forces.evaluate_with_images(tessellation, all, &self.model, mirrors, velocities);
             mirrored.unfold(velocities);
             self.driving.add_to(velocities, positions, headings, time);
             return Ok(());
@@ -326,7 +345,11 @@ impl<S: Scalar> Simulation<S> {
         domain
             .and_then(|domain| self.tessellation.renew_in(places, domain))
             .map_err(|source| Error::Tessellation { time, source })?;
-        self.forces.evaluate(self.tessellation.tessellation(), positions, &self.model, velocities);
+        let tessellation = self.tessellation.tessellation();
+        match &mut self.forces {
+            Some(forces) => forces.evaluate(tessellation, positions, &self.model, velocities),
+            None => self.assembly.evaluate(tessellation, positions, &self.model, velocities),
+        }
         self.driving.add_to(velocities, positions, headings, time);
         Ok(())
     }

@@ -8,7 +8,7 @@ use rand_distr::StandardNormal;
 use rayon::prelude::*;
 use std::sync::Arc;
 use voronudge_geometry::{Scalar, Tessellation, Vector};
-use voronudge_model::{Environment, HalfEdgeForces, Model, effect::away_from_contacts};
+use voronudge_model::{Environment, Model, VelocityAssembly, effect::away_from_contacts};
 
 /// Polarities of cells, `p = v₀ s (cos θ, sin θ)`.
 #[derive(Debug, Clone)]
@@ -70,8 +70,8 @@ impl Driving {
             let (column, sign) = away_from_contacts();
             let strength = S::constant(sign * self.contact_inhibition);
             let away = Model::with_coefficients(&[], &[]).with(column, strength);
-            let mut forces = HalfEdgeForces::default();
-            forces.evaluate(tessellation, positions, &away.within(environment), &mut drive);
+            let mut assembly = VelocityAssembly::default();
+            assembly.evaluate(tessellation, positions, &away.within(environment), &mut drive);
         }
         if self.velocity_alignment != 0.0 {
             let rate = self.shear.map_or(0.0, |shear| shear.rate(time));

@@ -6,7 +6,7 @@ use std::error::Error;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Tessellation, Vector};
-use voronudge_model::{BlockMatrix, HalfEdgeForces, JacobianBuilder, Model, Parameters, jvp, vjp};
+use voronudge_model::{BlockMatrix, JacobianBuilder, Model, Parameters, VelocityAssembly, jvp, vjp};
 use voronudge_simulate::{RandomPlacement, Simulation, generator, sort_in_space};
 use voronudge_spectrum::{Arrangement, Honeycomb, LinearProblem, Request, Selection, modes};
 
@@ -65,9 +65,9 @@ pub const KERNELS: [Kernel; 9] = [
         evaluations: 1,
         prepare: |cells| {
             let Tissue { positions, tessellation, model, .. } = Tissue::new(cells)?;
-            let (mut forces, mut v) = (HalfEdgeForces::default(), Vec::new());
+            let (mut assembly, mut v) = (VelocityAssembly::default(), Vec::new());
             Ok(Box::new(move || {
-                forces.evaluate(&tessellation, black_box(&positions), &model, &mut v);
+                assembly.evaluate(&tessellation, black_box(&positions), &model, &mut v);
                 Ok(())
             }))
         },

@@ -11,8 +11,10 @@ mod vertices;
 
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector, builder};
 use lawson::Lawson;
+use rayon::prelude::*;
 use scan::{Finding, scan};
 use splice::Spare;
+use split::CHUNK;
 
 /// Into how many parts a displacement is cut if it turns triangles over.
 const PARTS: u32 = 4;
@@ -106,8 +108,9 @@ impl MovingTessellation {
     pub fn renew_in(&mut self, positions: &[Vector<f64>], domain: Domain) -> Result<Renewal, Error> {
         let renewal = self.follow(positions, domain);
         self.sound = renewal.is_ok();
-        self.positions.clear();
-        self.positions.extend_from_slice(positions);
+        self.positions.resize(positions.len(), Vector::zeros());
+        let chunks = self.positions.par_chunks_mut(CHUNK).zip(positions.par_chunks(CHUNK));
+        chunks.for_each(|(own, given)| own.copy_from_slice(given));
         renewal
     }
 

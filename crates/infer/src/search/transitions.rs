@@ -44,9 +44,10 @@ const MOST_ROUNDS: u64 = 12;
 /// tissue that the model does not describe has thousands of such flips.
 const WORTHWHILE: f64 = 0.02;
 
-/// Trials at once, cheapest first, whatever the number of threads. Where so many are not worthwhile together, dearer ones
-/// are not tried.
+/// Trials at once, cheapest first, whatever the number of threads: at least so many, and a share of all. Where those are not worthwhile
+/// together, dearer ones are not tried; of more parts, one that is not would come sooner by chance.
 const AT_ONCE: usize = 256;
+const MOST_PARTS: usize = 16;
 
 /// A side, by the frame and its four cells.
 type Key = (usize, [usize; 4]);
@@ -170,8 +171,9 @@ fn trials(
             .filter(|side| may_be_cheap(objective, side) && !failed.contains(&(index, side.cells)))
             .collect();
         sides.sort_by(|a, b| least_cost(a).total_cmp(&least_cost(b)));
-        for (done, chunk) in sides.chunks(AT_ONCE).enumerate() {
-            let progress = ((done * AT_ONCE) as u64, sides.len() as u64);
+        let at_once = sides.len().div_ceil(MOST_PARTS).max(AT_ONCE);
+        for (done, chunk) in sides.chunks(at_once).enumerate() {
+            let progress = ((done * at_once) as u64, sides.len() as u64);
             watch.tell("contacts", progress, found.value / objective.expected())?;
             let tried = chunk
                 .par_iter()

@@ -1,7 +1,7 @@
 //! Chirality that acts on the centre of the cell.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{Flow, FlowResponse, HalfEdgeForces, Linearisation, Parity, Rows};
+use crate::{Flow, FlowResponse, Linearisation, Parity, Rows, VelocityAssembly};
 use voronudge_geometry::{Scalar, Vector, quarter_turn};
 
 /// The velocity of all forces that descend an energy, turned by a quarter at the centre of the cell.
@@ -28,7 +28,7 @@ impl FlowResponse for CellCentreChirality {
     fn respond<S: Scalar>(&self, flow: &Flow<'_, S>, coefficient: S) -> Vec<Vector<S>> {
         let mut passive = Vec::new();
         let model = flow.model.passive();
-        HalfEdgeForces::default().evaluate_terms(flow.tessellation, flow.positions, &model, &mut passive);
+        VelocityAssembly::default().evaluate_terms(flow.tessellation, flow.positions, &model, &mut passive);
         flow.each(|cell, _| quarter_turn(passive[cell]) * coefficient)
     }
 

@@ -11,7 +11,7 @@
 
 use crate::effect::{columns_of, *};
 use crate::jacobian::has_velocity;
-use crate::{BlockMatrix, HalfEdgeForces, Model, Parity, RowAssembly, assemble};
+use crate::{BlockMatrix, Model, Parity, RowAssembly, VelocityAssembly, assemble};
 use num_dual::Dual;
 use voronudge_geometry::{Scalar, Tessellation, Vector};
 
@@ -48,7 +48,7 @@ impl<S: Scalar> Flow<'_, S> {
             .collect();
         let model = self.model.map(Dual::from_re);
         let mut v = Vec::new();
-        HalfEdgeForces::default().evaluate_terms(self.tessellation, &moved, &model, &mut v);
+        VelocityAssembly::default().evaluate_terms(self.tessellation, &moved, &model, &mut v);
         v.iter().map(|v| Vector::new(v.x.eps, v.y.eps)).collect()
     }
 
@@ -153,7 +153,7 @@ pub(crate) fn respond_jacobian(
     of_terms: BlockMatrix,
 ) -> BlockMatrix {
     let mut velocities = Vec::new();
-    HalfEdgeForces::default().evaluate_terms(tessellation, positions, model, &mut velocities);
+    VelocityAssembly::default().evaluate_terms(tessellation, positions, model, &mut velocities);
     let mut jacobian = of_terms;
     let at_stage = |stage| model.responses.iter().filter(move |w| w.response.stage() == stage);
     // All additive responses act on the same; those that are implicit one after another.

@@ -17,6 +17,7 @@ pub use encoding::UNKNOWN;
 pub use quantity::{ArrowField, Colouring, Quantity};
 
 use crate::figure::{CellScalar, cell_map, no_data};
+use crate::many_cells::{MOST_IN_PART, keep_middle};
 use crate::map::Viewport;
 use crate::units::Units;
 use crate::view::FrameView;
@@ -24,7 +25,7 @@ use crate::view::FrameView;
 /// Frames of a movie at most.
 pub const MOST_FRAMES: usize = 200;
 /// Cells of a frame at most; of more, those in the middle.
-pub const MOST_IN_FRAME: usize = 4000;
+pub const MOST_IN_FRAME: usize = MOST_IN_PART;
 /// Cells in all frames together at most; each takes up to 90 bytes of the page.
 pub const MOST_IN_ALL: usize = 40_000;
 
@@ -65,9 +66,7 @@ impl CellMovie {
     #[must_use]
     pub fn new(mut frames: Vec<FrameView>, of: usize, units: &Units) -> Option<Self> {
         let cells = frames.iter().map(|frame| frame.cells.len()).max()?;
-        if cells > MOST_IN_FRAME {
-            keep_middle(&mut frames, (MOST_IN_FRAME as f64 / cells as f64).sqrt());
-        }
+        keep_middle(&mut frames, cells);
         let view = Viewport::around_all(&frames)?;
         let (quantities, arrows) =
             (Quantity::of_frames(&frames, units), ArrowField::of_frames(&frames, units));
@@ -78,9 +77,7 @@ impl CellMovie {
     /// Also the residuals of another fit to the same frames; `names` are those of the residuals so far and of these.
     #[must_use]
     pub fn with_residuals(mut self, [so_far, name]: [&str; 2], mut frames: Vec<FrameView>) -> Self {
-        if self.thinned.cells > MOST_IN_FRAME {
-            keep_middle(&mut frames, (MOST_IN_FRAME as f64 / self.thinned.cells as f64).sqrt());
-        }
+        keep_middle(&mut frames, self.thinned.cells);
         let same = |(own, other): (&FrameView, &FrameView)| own.cells.len() == other.cells.len();
         if frames.len() != self.frames.len() || !self.frames.iter().zip(&frames).all(same) {
             return self;
@@ -155,18 +152,5 @@ impl CellMovie {
             parts.push(format!("about {MOST_IN_FRAME} of {} cells, in the middle", self.thinned.cells));
         }
         if parts.is_empty() { String::new() } else { format!("Shown are {}.", parts.join(" and ")) }
-    }
-}
-
-/// Keeps the cells within a share of the width and of the height, around the middle of the first frame.
-fn keep_middle(frames: &mut [FrameView], share: f64) {
-    let Some(view) = Viewport::around_all(frames) else { return };
-    let [low, high] = view.corners();
-    let middle = [0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])];
-    let reach = [0.5 * share * (high[0] - low[0]), 0.5 * share * (high[1] - low[1])];
-    for frame in frames {
-        frame.cells.retain(|cell| (0..2).all(|axis| (cell.centre[axis] - middle[axis]).abs() <= reach[axis]));
-        // It would lie outside.
-        frame.outline = None;
     }
 }

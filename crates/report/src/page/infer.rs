@@ -9,7 +9,7 @@ use super::player::Player;
 use super::prospects::ProspectsView;
 use super::spreads::SpreadView;
 use super::uncertainty::{Known, Uncertainty};
-use super::words::{data, fit_status, mean_removed, noise_source, warnings};
+use super::words::{POLARITIES, data, fit_status, mean_removed, noise_source, warnings};
 use super::{Card, Columns, Figure, PageHead, Panel, Template, render};
 use crate::arrows::ArrowScale;
 use crate::error::ReportError;
@@ -19,6 +19,7 @@ use crate::figure::{
     predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
+use crate::many_cells::{MOST_DRAWN, Squares, middle};
 use crate::movie::CellMovie;
 use crate::numbers::{NO_VALUE, significant};
 use crate::units::unit_text;
@@ -144,12 +145,15 @@ impl InferPage<'_> {
                 "after the fit, at nudged positions: too good to be true",
             ),
         };
-        let (pairs, what) = match report.flow {
+        let (mut pairs, what) = match report.flow {
             None => (prediction.of_cells(self.frames), "cell"),
             Some(_) => (prediction.on_grid(self.flows), "grid point"),
         };
+        let one_of = pairs.len().div_ceil(MOST_DRAWN).max(1);
+        pairs = pairs.into_iter().step_by(one_of).collect();
+        let which = if one_of == 1 { format!("Every {what}") } else { format!("One in {one_of} {what}s") };
         let caption = format!(
-            "Every {what} used in the frames drawn, {how}. On the dashed line a prediction is perfect; the error \
+            "{which} used in the frames drawn, {how}. On the dashed line a prediction is perfect; the error \
              written is that of all frames."
         );
         Figure::new(predicted_against_measured(&pairs, nmse, &report.units), &caption)
@@ -158,14 +162,20 @@ impl InferPage<'_> {
     fn panels(&self) -> Vec<Panel> {
         let units = &self.report.units;
         let on_grid = !self.flows.is_empty();
+        let (drawn, squares): (Vec<FrameView>, Vec<Squares>) = self.frames.iter().map(Squares::of).unzip();
         let (velocities, residuals) = match on_grid {
             true => (FlowMap::scale(self.flows), FlowMap::residual_scale(self.flows.iter())),
-            false => (ArrowScale::velocities(self.frames), ArrowScale::residuals(self.frames)),
+            false => (ArrowScale::velocities(&drawn), ArrowScale::residuals(&drawn)),
         };
-        let nudges = ArrowScale::nudges(self.frames);
-        let panel = |(index, frame): (usize, &FrameView)| {
-            let area = CellScalar::area_ratio(frame);
-            let shape = CellScalar::shape_index(frame);
+        let middle: Vec<FrameView> = self.frames.iter().map(middle).collect();
+        let nudges = ArrowScale::nudges(&middle);
+        let panel = |(index, whole): (usize, &FrameView)| {
+            let (frame, squares) = (&drawn[index], &squares[index]);
+            let map = |scalar: CellScalar, caption: &str| {
+                Figure::new(cell_map(frame, &squares.means(scalar), units), &squares.caption(caption))
+            };
+            let is_part = middle[index].cells.len() < whole.cells.len();
+            let part = if is_part { ", of cells in the middle" } else { "" };
             let velocity = |field: VelocityField| {
                 let scale = match field {
                     VelocityField::Residual => residuals.as_ref(),
@@ -175,20 +185,23 @@ impl InferPage<'_> {
                     Some(flow) => flow_map(flow, field, scale, units),
                     None => velocity_map(frame, field, scale, units),
                 };
-                Figure::new(map, &caption(field, [&velocities, &residuals]))
+                let caption = caption(field, [&velocities, &residuals]);
+                Figure::new(map, &if on_grid { caption } else { squares.caption(&caption) })
             };
             let mut figures: Vec<Figure> = VelocityField::ALL.map(velocity).into();
             if self.report.activity.is_some() {
                 let map = polarity_map(frame, velocities.as_ref(), units);
-                figures.push(Figure::new(map, "polarities: what the cells move by of themselves"));
+                figures.push(Figure::new(map, &squares.caption(POLARITIES)));
             }
-            figures.extend(self.spreads.iter().map(|spread| spread.drawn_on(frame, index, units)));
+            let spreads = self.spreads.iter();
+            figures.extend(spreads.map(|spread| spread.drawn_on((frame, squares), index, units)));
+            let nudges = nudge_map(&middle[index], nudges.as_ref(), units);
             figures.extend([
-                Figure::new(nudge_map(frame, nudges.as_ref(), units), "nudges, magnified as stated"),
-                Figure::new(cell_map(frame, &area, units), "cell areas"),
-                Figure::new(cell_map(frame, &shape, units), "cell shapes (hexagon: 3.72)"),
+                Figure::new(nudges, &format!("nudges, magnified as stated{part}")),
+                map(CellScalar::area_ratio(whole), "cell areas"),
+                map(CellScalar::shape_index(whole), "cell shapes (hexagon: 3.72)"),
             ]);
-            Panel { label: frame.label.clone(), figures, columns: Columns::for_cells(frame.cells.len()) }
+            Panel { label: whole.label.clone(), figures, columns: Columns::for_cells(whole.cells.len()) }
         };
         self.frames.iter().enumerate().map(panel).collect()
     }

@@ -3,6 +3,7 @@
 use super::Figure;
 use crate::colour::Palette;
 use crate::figure::{CellScalar, cell_map, distribution};
+use crate::many_cells::Squares;
 use crate::units::Units;
 use crate::view::FrameView;
 
@@ -21,9 +22,14 @@ impl SpreadView {
     }
 
     /// A map of one of the frames drawn.
-    pub(super) fn drawn_on(&self, frame: &FrameView, index: usize, units: &Units) -> Figure {
+    pub(super) fn drawn_on(
+        &self,
+        (frame, squares): (&FrameView, &Squares),
+        index: usize,
+        units: &Units,
+    ) -> Figure {
         let caption = format!("deviations of {}, shrunk towards the mean", self.symbol);
-        Figure::new(cell_map(frame, &self.map(index), units), &caption)
+        Figure::new(cell_map(frame, &squares.means(self.map(index)), units), &squares.caption(&caption))
     }
 
     fn map(&self, index: usize) -> CellScalar {

@@ -5,6 +5,9 @@ use crate::infer_report::{FitStatus, FlowGrid, MeanRemoved, NoiseSource, RunReco
 use crate::numbers::{NO_VALUE, significant, with_interval};
 use crate::svg::{SubscriptMarkup, subscripts};
 
+/// The caption of a map of polarities.
+pub(super) const POLARITIES: &str = "polarities: what the cells move by of themselves";
+
 /// What velocities belong to.
 pub(super) fn data(flow: Option<&FlowGrid>) -> &'static str {
     if flow.is_some() { "grid points" } else { "cells" }

@@ -19,6 +19,27 @@ fn errors(report: &InferReport) -> Vec<String> {
     written.map_or_else(|error| vec![error.to_string()], |report| schema_errors::<InferReport>(&report))
 }
 
+/// A picture has an arrow for each cell as long as one can tell them apart.
+#[test]
+fn very_many_cells_are_averaged_over_squares() {
+    let report = sample::report();
+    let page = |side: usize| {
+        let frames = [sample::frame("frame 6", side)];
+        sample::page(&report, &frames, &Uncertainty::default()).render().unwrap()
+    };
+    let [few, many] = [page(100), page(150)];
+    assert!(!few.contains("squares of") && few.contains("Every cell used") && few.len() > 3_500_000);
+    for text in [
+        "measured velocities, means over squares of about 13 cells",
+        "cell areas, means over squares of about 13 cells",
+        "nudges, magnified as stated, of cells in the middle",
+        "One in 2 cells used",
+    ] {
+        assert!(many.contains(text), "{text}");
+    }
+    assert!(many.len() < 2_500_000, "{}", many.len());
+}
+
 #[test]
 fn the_page_is_self_contained() {
     let report = sample::report();

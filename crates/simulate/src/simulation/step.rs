@@ -41,15 +41,19 @@ impl<S: Scalar> Simulation<S> {
 
     pub(super) fn runge_kutta(&mut self, stage: &mut Stage<S>, time_step: f64) -> Result<(), Error> {
         let Stage { positions, headings, slopes: [slope, sum, _] } = stage;
-        sum.clone_from(&self.velocities);
-        slope.clone_from(&self.velocities);
+        let middle = self.now.time + 0.5 * time_step;
         *headings = self.now.polarities();
-        for (reach, weight) in [(0.5, 2.0), (0.5, 2.0), (1.0, 1.0)] {
-            self.displace(positions, slope, reach * time_step, time_step)?;
-            self.evaluate(positions, headings, self.now.time + reach * time_step, slope)?;
-            add_scaled(sum, slope, weight);
-        }
-        self.displace(positions, sum, time_step / 6.0, time_step)?;
+        self.displace(positions, &[&self.velocities], 0.5 * time_step, time_step)?;
+        self.evaluate(positions, headings, middle, slope)?;
+        sum.resize(slope.len(), zero());
+        let all = sum.par_iter_mut().zip(&self.velocities).zip(&*slope).with_min_len(CHUNK);
+        all.for_each(|((sum, first), second)| *sum = first + times(*second, 2.0));
+        self.displace(positions, &[slope], 0.5 * time_step, time_step)?;
+        self.evaluate(positions, headings, middle, slope)?;
+        add_scaled(sum, slope, 2.0);
+        self.displace(positions, &[slope], time_step, time_step)?;
+        self.evaluate(positions, headings, self.now.time + time_step, slope)?;
+        self.displace(positions, &[sum, slope], time_step / 6.0, time_step)?;
         self.arrive(positions, headings, slope, time_step)
     }
 
@@ -124,9 +128,9 @@ impl<S: Scalar> Simulation<S> {
         let Stage { positions, headings, slopes: [second, third, fourth] } = stage;
         let now = self.now.time;
         *headings = self.now.polarities();
-        self.displace(positions, &self.velocities, 0.5 * time_step, time_step)?;
+        self.displace(positions, &[&self.velocities], 0.5 * time_step, time_step)?;
         self.evaluate(positions, headings, now + 0.5 * time_step, second)?;
-        self.displace(positions, second, 0.75 * time_step, time_step)?;
+        self.displace(positions, &[second], 0.75 * time_step, time_step)?;
         self.evaluate(positions, headings, now + 0.75 * time_step, third)?;
         positions.clone_from(&self.now.positions);
         for (slope, weight) in [&self.velocities, &*second, &*third].into_iter().zip(THIRD_ORDER) {
@@ -137,21 +141,23 @@ impl<S: Scalar> Simulation<S> {
         Ok(largest_error([&self.velocities, second, third, fourth], time_step))
     }
 
-    /// `to = r + h v`, within the limit of displacements.
-    fn displace(
+    /// `to = r + h Σ v`, the sum over some fields, within the limit of displacements.
+    fn displace<const FIELDS: usize>(
         &self,
         to: &mut Vec<Vector<S>>,
-        v: &[Vector<S>],
+        v: &[&Vec<Vector<S>>; FIELDS],
         h: f64,
         time_step: f64,
     ) -> Result<(), Error> {
-        to.resize(v.len(), zero());
+        to.resize(self.now.positions.len(), zero());
         let from = self.now.positions.par_chunks(CHUNK);
         let limit = (LIMIT * self.spacing).powi(2);
-        let near = to.par_chunks_mut(CHUNK).zip(from).zip(v.par_chunks(CHUNK)).map(|((to, from), v)| {
+        let near = to.par_chunks_mut(CHUNK).zip(from).enumerate().map(|(chunk, (to, from))| {
+            let own = v.map(|field| &field[chunk * CHUNK..chunk * CHUNK + to.len()]);
             let mut near = true;
-            for ((to, from), v) in to.iter_mut().zip(from).zip(v) {
-                let d = times(*v, h);
+            for (cell, (to, from)) in to.iter_mut().zip(from).enumerate() {
+                let sum = own[1..].iter().fold(own[0][cell], |sum, field| sum + field[cell]);
+                let d = times(sum, h);
                 *to = from + d;
                 near &= real(&d).norm_squared() < limit;
             }

@@ -99,6 +99,7 @@ impl LivingTissue {
             cycles.extend((0..cells).map(|_| cycle.anywhere(&mut rng)));
             simulation.give_factors(cycle.factors(&cycles))?;
         }
+        let simulation = simulation.keeping_bonds()?;
         Ok(Self { simulation, turnover, channel, identities, lives, cycles, last: LastStep::default() })
     }
 

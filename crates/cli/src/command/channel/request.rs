@@ -11,6 +11,7 @@ use std::path::{Path, PathBuf};
 use voronudge_geometry::PeriodicBox;
 use voronudge_model::Parameters;
 use voronudge_report::Units;
+use voronudge_report::numbers::significant;
 use voronudge_simulate::{
     CellCycle, ChannelSchedule, EdgeRate, Injection, Proliferation, Turnover, Walls, recommended_time_step,
 };
@@ -259,7 +260,8 @@ impl ChannelRequest {
             (self.schedule.time_step, recommended_time_step(&self.parameters, self.cell_size));
         (step > 1.0001 * advised).then(|| {
             format!(
-                "the time step {step} is above the {advised:.2e} advised for these parameters; velocities can come out wrong by tens of per cent"
+                "the time step {step} is above the {} advised for these parameters; velocities can come out wrong by tens of per cent",
+                significant(advised, 2)
             )
         })
     }

@@ -4,6 +4,7 @@ use crate::failure::Failure;
 use clap::Args;
 use std::f64::consts::TAU;
 use voronudge_model::Parameters;
+use voronudge_report::numbers::significant;
 use voronudge_simulate::moduli::{
     DynamicProtocol, FEWEST_PERIODS, Flowing, Relaxation, Settings, ViscosityProtocol,
 };
@@ -130,8 +131,9 @@ impl Protocol {
         let (time_step, advised) = (self.settings.relaxation.time_step, self.advised_step);
         (time_step > 2.0 * advised).then(|| {
             format!(
-                "the time step {time_step} is more than twice the {advised:.2e} advised for these parameters; flowing tissues can come \
-                 out wrong by tens of per cent"
+                "the time step {time_step} is more than twice the {} advised for these parameters; flowing tissues can come \
+                 out wrong by tens of per cent",
+                significant(advised, 2)
             )
         })
     }

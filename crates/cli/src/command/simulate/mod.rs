@@ -36,6 +36,7 @@ use surroundings::SurroundingsArguments;
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Tessellation};
 use voronudge_model::Model;
 use voronudge_report::Units;
+use voronudge_report::numbers::significant;
 use voronudge_simulate::{
     Completion, Event, Method, RunState, Schedule, Shear, Simulation, recommended_time_step, resume,
 };
@@ -161,8 +162,9 @@ impl Reporting for Arguments {
         let advised = recommended_time_step(&parameters, (start.cell_box.area() / cells as f64).sqrt());
         if request.method == Method::RungeKutta4 && request.dt > advised {
             run.warn(format!(
-                "the time step {} is above the {advised:.2e} advised for these parameters; velocities can come out wrong by tens of per cent",
-                request.dt
+                "the time step {} is above the {} advised for these parameters; velocities can come out wrong by tens of per cent",
+                request.dt,
+                significant(advised, 2)
             ));
         }
         let inputs = self.start.file().into_iter().chain(self.parameters.file());

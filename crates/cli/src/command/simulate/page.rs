@@ -15,7 +15,7 @@ use voronudge_report::figure::{
     distribution, points_and_curves,
 };
 use voronudge_report::markers::Marker;
-use voronudge_report::movie::CellMovie;
+use voronudge_report::movie::{CellMovie, MOST_IN_FRAME};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::{Card, Figure};
 use voronudge_report::units::label_with_unit;
@@ -23,8 +23,6 @@ use voronudge_report::{ChangedEdges, FrameView, SimulatePage, Units};
 use voronudge_simulate::{Derivatives, Simulation};
 use voronudge_theory::hexagon_perimeter;
 
-/// Cells up to which all are drawn; of more, those in a corner of the box.
-const MOST_DRAWN: usize = 2500;
 /// Points of a curve up to which they are marked.
 const MOST_MARKS: usize = 60;
 /// Mean speeds below this share of K_P ℓ₀ are rest.
@@ -43,7 +41,12 @@ pub(super) fn page(
         headline: &headline(report, units),
         summary: &paragraphs(report, measurements),
         cards: &cards(report, units),
-        configuration: &configuration(simulation, &cell_box(simulation, &report.request)?, units),
+        configuration: &configuration(
+            simulation,
+            &cell_box(simulation, &report.request)?,
+            movie.is_some(),
+            units,
+        ),
         movie,
         course: &in_time,
         structure: &structure(measurements, simulation, units),
@@ -126,15 +129,18 @@ fn cards(report: &Report, units: &Units) -> Vec<Card> {
     cards
 }
 
-fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units) -> Figure {
+/// The cells at the end, or of many those in the middle of the box; as the still of a movie, which says so itself.
+fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, is_still: bool, units: &Units) -> Figure {
     let (tessellation, positions) = (simulation.tessellation(), simulation.positions_with_images());
-    let share = (MOST_DRAWN as f64 / simulation.positions().len() as f64).min(1.0).sqrt();
+    let share = (MOST_IN_FRAME as f64 / simulation.positions().len() as f64).min(1.0).sqrt();
     let [width, height] = cell_box.lengths();
     let mut polygon = CellPolygon::default();
     let mut cells = Vec::new();
     for (cell, v) in simulation.velocities().iter().enumerate() {
         let centre = cell_box.wrap(positions[cell]);
-        if centre.x <= share * width && centre.y <= share * height {
+        if (centre.x - 0.5 * width).abs() <= 0.5 * share * width
+            && (centre.y - 0.5 * height).abs() <= 0.5 * share * height
+        {
             let mut view = cell_view(tessellation, positions, cell, &mut polygon);
             view.measured = Some([v.x, v.y]);
             cells.push(view);
@@ -153,13 +159,16 @@ fn configuration(simulation: &Simulation, cell_box: &PeriodicBox, units: &Units)
     let scalar = CellScalar::shape_index(&frame);
     let caption = format!(
         "Cells at the end of the run, coloured by shape index, with their velocities.{}{}",
-        if whole { "" } else { " A corner of the box." },
+        if whole || is_still { "" } else { " Shown is the middle of the box." },
         if arrows.is_none() { " Nothing moves." } else { "" }
     );
     Figure::new(configuration_map(&frame, &scalar, arrows.as_ref(), units), &caption)
 }
 
 fn course(report: &Report, measurements: &Measurements, units: &Units) -> Vec<Figure> {
+    if measurements.velocities.len() < 2 {
+        return Vec::new();
+    }
     let velocity = label_with_unit("⟨v²⟩", &units.powers(2, -2));
     let squares = || measurements.velocities.iter().map(|point| point[1]).filter(|&square| square > 0.0);
     let (low, high) = (squares().fold(f64::INFINITY, f64::min), squares().fold(0.0, f64::max));
@@ -252,13 +261,16 @@ fn structure(measurements: &Measurements, simulation: &Simulation, units: &Units
             curve("transverse", VERMILLION, Stroke::Solid, shells(|shell| shell.transverse)),
         ],
     );
-    let frames = measurements.structure_frames;
     vec![
         Figure::new(shape, "Shape index of the cells at the end of the run."),
         Figure::new(
             density,
             &format!(
-                "Structure factor of the density, mean over {frames} frames of the second half. Random positions have 1."
+                "Structure factor of the density, {}. Random positions have 1.",
+                match measurements.structure_frames {
+                    1 => "of the last frame".to_owned(),
+                    frames => format!("mean over {frames} frames of the second half"),
+                }
             ),
         ),
         Figure::new(

@@ -32,6 +32,7 @@ use crate::figure::{
     CorrelationFunction, FlowMap, Outlier, PartialRegression, noise_budget, outlier_map, polarity_map,
     residual_flow_maps, residual_maps,
 };
+use crate::many_cells::Squares;
 use crate::movie::CellMovie;
 use crate::numbers::significant;
 use crate::view::FrameView;
@@ -183,38 +184,42 @@ impl DiscoverPage<'_> {
     /// One panel of maps for each frame: residuals before and after, and suspicious cells.
     fn panels(&self) -> Vec<Panel> {
         let units = &self.report.units;
-        let frames: Vec<FrameView> = self.frames.iter().map(|frames| frames.before.clone()).collect();
+        let (frames, squares): (Vec<FrameView>, Vec<Squares>) =
+            self.frames.iter().map(|frames| Squares::of(&frames.before)).unzip();
         let cells = ArrowScale::residuals(&frames);
         let polarities = ArrowScale::velocities(&frames);
         let grid = FlowMap::residual_scale(self.flows.iter().map(|flows| &flows.before));
-        let panel = |(index, frames): (usize, &BeforeAfter<FrameView>)| {
-            let maps = match self.flows.get(index) {
+        let panel = |(index, whole): (usize, &BeforeAfter<FrameView>)| {
+            let (before, squares) = (&frames[index], &squares[index]);
+            let drawn = BeforeAfter { before: before.clone(), after: Squares::of(&whole.after).0 };
+            let on_grid = self.flows.get(index);
+            let maps = match on_grid {
                 Some(flows) => residual_flow_maps(flows, grid.as_ref(), units),
-                None => residual_maps(frames, cells.as_ref(), units),
+                None => residual_maps(&drawn, cells.as_ref(), units),
             };
-            let before = if self.report.is_extended() { "before: " } else { "" };
-            let caption = format!("{before}what the base model leaves unexplained");
-            let mut figures = vec![Figure::new(maps.before, &caption)];
+            let averaged =
+                |caption: &str| if on_grid.is_some() { caption.to_owned() } else { squares.caption(caption) };
+            let which = if self.report.is_extended() { "before: " } else { "" };
+            let caption = format!("{which}what the base model leaves unexplained");
+            let mut figures = vec![Figure::new(maps.before, &averaged(&caption))];
             if self.report.is_extended() {
                 let caption = format!("after adding {}, arrows on the same scale", self.added());
-                figures.push(Figure::new(maps.after, &caption));
+                figures.push(Figure::new(maps.after, &averaged(&caption)));
             }
             if self.report.selected.iter().any(|own| own.effect == "polarity") {
-                figures.push(Figure::new(
-                    polarity_map(&frames.after, polarities.as_ref(), units),
-                    "polarities: what the cells move by of themselves",
-                ));
+                let map = polarity_map(&drawn.after, polarities.as_ref(), units);
+                figures.push(Figure::new(map, &squares.caption(words::POLARITIES)));
             }
             let spreads = self.figures.spreads.iter();
-            figures.extend(spreads.map(|spread| spread.drawn_on(&frames.before, index, units)));
+            figures.extend(spreads.map(|spread| spread.drawn_on((before, squares), index, units)));
             if let Some(outliers) = self.figures.outliers.get(index).filter(|found| !found.is_empty()) {
                 figures.push(Figure::new(
-                    outlier_map(&frames.before, outliers, units),
+                    outlier_map(&whole.before, outliers, units),
                     "cells that may be merged, split or mis-tracked; look at them in the images",
                 ));
             }
-            let cells = frames.before.cells.len();
-            Panel { label: frames.before.label.clone(), figures, columns: Columns::for_cells(cells) }
+            let cells = whole.before.cells.len();
+            Panel { label: whole.before.label.clone(), figures, columns: Columns::for_cells(cells) }
         };
         self.frames.iter().enumerate().map(panel).collect()
     }
