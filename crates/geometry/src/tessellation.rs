@@ -15,7 +15,8 @@ pub struct Tessellation {
     pub(crate) start: Vec<u32>,
     pub(crate) neighbour: Vec<u32>,
     pub(crate) image: Vec<[i16; 2]>,
-    pub(crate) twin: Vec<u32>,
+    /// Where in the ring of the neighbour it points back: no number of a half-edge, so that it stays when others move.
+    pub(crate) twin_place: Vec<u32>,
     /// Cells whose ring does not close: those on the convex hull of an open field.
     pub(crate) on_hull: Vec<bool>,
 }
@@ -48,7 +49,7 @@ impl Tessellation {
             start: Vec::new(),
             neighbour: Vec::new(),
             image: Vec::new(),
-            twin: Vec::new(),
+            twin_place: Vec::new(),
             on_hull: Vec::new(),
         };
         builder::rebuild(&mut tessellation, positions)?;
@@ -129,7 +130,13 @@ impl Tessellation {
     /// The same side seen from the other cell.
     #[inline]
     pub fn twin(&self, h: usize) -> usize {
-        self.twin[h] as usize
+        self.start[self.neighbour[h] as usize] as usize + self.twin_place[h] as usize
+    }
+
+    /// The place of the same side in the ring of the other cell.
+    #[inline]
+    pub fn twin_place(&self, h: usize) -> usize {
+        self.twin_place[h] as usize
     }
 
     /// Whether the polygon of a cell is closed.

@@ -142,8 +142,8 @@ impl<S: Scalar> VelocityAssembly<S> {
                     *sum += match other / CHUNK == chunk {
                         true => *own,
                         false => {
-                            let place = tessellation.twin(h) - tessellation.half_edge_start(other);
-                            passing[other / CHUNK].forces[begins[other] as usize + place]
+                            let begin = begins[other] as usize;
+                            passing[other / CHUNK].forces[begin + tessellation.twin_place(h)]
                         }
                     };
                 }
@@ -377,7 +377,7 @@ pub fn columns(
             let mut v = on_cells[count * cell + term];
             for (h, neighbour) in tessellation.ring(cell).zip(tessellation.neighbours(cell)) {
                 let other = tessellation.ring(*neighbour as usize);
-                v += forces[count * other.start + term * other.len() + tessellation.twin(h) - other.start];
+                v += forces[count * other.start + term * other.len() + tessellation.twin_place(h)];
             }
             v
         };

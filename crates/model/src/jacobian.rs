@@ -111,7 +111,7 @@ fn fill_row<'a>(
     add(cell, 0);
     for h in tessellation.ring(cell) {
         let owner = tessellation.neighbour(h);
-        add(owner, 1 + tessellation.twin(h) - tessellation.half_edge_start(owner));
+        add(owner, 1 + tessellation.twin_place(h));
     }
     places
 }

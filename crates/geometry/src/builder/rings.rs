@@ -132,11 +132,11 @@ fn clear_to<T: Clone>(array: &mut Vec<T>, length: usize, value: T) {
 /// Finds each half-edge's twin; fails where two images of one circle of cells were triangulated differently.
 pub(crate) fn find_twins(tessellation: &mut Tessellation) -> Result<(), Error> {
     let cells = tessellation.len();
-    let mut twin = std::mem::take(&mut tessellation.twin);
-    clear_to(&mut twin, tessellation.half_edges(), u32::MAX);
+    let mut places = std::mem::take(&mut tessellation.twin_place);
+    clear_to(&mut places, tessellation.half_edges(), u32::MAX);
     for cell in 0..cells {
         for h in tessellation.ring(cell) {
-            if twin[h] != u32::MAX {
+            if places[h] != u32::MAX {
                 continue;
             }
             let (other, [x, y]) = (tessellation.neighbour(h), tessellation.image[h]);
@@ -146,11 +146,11 @@ pub(crate) fn find_twins(tessellation: &mut Tessellation) -> Result<(), Error> {
             let Some(g) = found else {
                 return Err(Error::Inconsistent { cells, cell });
             };
-            twin[h] = g as u32;
-            twin[g] = h as u32;
+            places[h] = (g - tessellation.half_edge_start(other)) as u32;
+            places[g] = (h - tessellation.half_edge_start(cell)) as u32;
         }
     }
-    tessellation.twin = twin;
+    tessellation.twin_place = places;
     Ok(())
 }
 

@@ -92,7 +92,7 @@ fn renumbered(before: &Tessellation, changes: &Lawson, after: &[u32], cells: usi
         start: vec![0; cells + 1],
         neighbour: Vec::with_capacity(before.half_edges()),
         image: Vec::with_capacity(before.half_edges()),
-        twin: Vec::new(),
+        twin_place: Vec::new(),
         on_hull: vec![false; cells],
     };
     let (mut ring, mut filled) = (Vec::new(), 0);

@@ -7,27 +7,26 @@ use crate::Tessellation;
 use rayon::prelude::*;
 use std::ops::Range;
 
-/// The shift of a cell whose ring has changed: its half-edges have to be looked for.
-const CHANGED: i32 = i32::MIN;
-
 /// A second set of arrays: what is read and what is written change places.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Spare {
     start: Vec<u32>,
     neighbour: Vec<u32>,
     image: Vec<[i16; 2]>,
-    twin: Vec<u32>,
-    /// How far the half-edges of a cell move.
-    shift: Vec<i32>,
+    twin_place: Vec<u32>,
     /// The cells whose rings have changed, in rising order: all is copied in runs between them.
     changed: Vec<u32>,
+    /// Whether the ring of a neighbour has changed, of each cell.
+    beside: Vec<bool>,
 }
 
-/// The arrays over the half-edges of some cells, from the first of them on.
+/// The arrays over some cells and their half-edges, from the first of them on.
 struct Stretch<'a> {
+    start: &'a mut [u32],
     neighbour: &'a mut [u32],
     image: &'a mut [[i16; 2]],
-    twin: &'a mut [u32],
+    twin_place: &'a mut [u32],
+    beside: &'a mut [bool],
 }
 
 impl Spare {
@@ -36,51 +35,57 @@ impl Spare {
         if changes.touched().is_empty() {
             return;
         }
+        let cells = tessellation.len();
         self.changed.clear();
         self.changed.extend_from_slice(changes.touched());
         self.changed.sort_unstable();
-        self.renumber(tessellation, changes);
-        let cells = tessellation.len();
+        self.beside.resize(cells, false);
+        for cell in &self.changed {
+            for (other, _) in changes.ring(*cell as usize).unwrap_or_default() {
+                self.beside[*other as usize] = true;
+            }
+        }
+        self.begin_chunks(tessellation, changes);
         let half_edges = self.start[cells] as usize;
         self.neighbour.resize(half_edges, 0);
         self.image.resize(half_edges, [0, 0]);
-        self.twin.resize(half_edges, 0);
-        let Self { start, neighbour, image, twin, shift, changed } = self;
-        let move_over = MoveOver { old: tessellation, changes, start, shift };
-        by_cells(neighbour, start)
+        self.twin_place.resize(half_edges, 0);
+        let Self { start, neighbour, image, twin_place, changed, beside } = self;
+        let move_over = MoveOver { old: tessellation, changes };
+        let of_chunks = by_cells(neighbour, start)
             .into_par_iter()
             .zip(by_cells(image, start))
-            .zip(by_cells(twin, start))
+            .zip(by_cells(twin_place, start));
+        of_chunks
+            .zip(start[..cells].par_chunks_mut(CHUNK))
+            .zip(beside.par_chunks_mut(CHUNK))
             .enumerate()
-            .for_each(|(chunk, ((neighbour, image), twin))| {
-                let cells = chunk * CHUNK..((chunk + 1) * CHUNK).min(cells);
+            .for_each(|(chunk, ((((neighbour, image), twin_place), start), beside))| {
+                let cells = chunk * CHUNK..chunk * CHUNK + start.len();
                 let place = |cell: usize| changed.partition_point(|&c| (c as usize) < cell);
                 let changed = &changed[place(cells.start)..place(cells.end)];
-                move_over.cells(cells, changed, Stretch { neighbour, image, twin });
+                let mut to = Stretch { start, neighbour, image, twin_place, beside };
+                move_over.cells(cells.clone(), changed, &mut to);
+                move_over.point_back(cells, &mut to);
             });
         std::mem::swap(&mut tessellation.start, &mut self.start);
         std::mem::swap(&mut tessellation.neighbour, &mut self.neighbour);
         std::mem::swap(&mut tessellation.image, &mut self.image);
-        std::mem::swap(&mut tessellation.twin, &mut self.twin);
+        std::mem::swap(&mut tessellation.twin_place, &mut self.twin_place);
     }
 
-    /// The new beginnings of the rings.
-    fn renumber(&mut self, tessellation: &Tessellation, changes: &Lawson) {
-        let old = tessellation.start.as_slice();
+    /// The new beginnings of the first ring of each chunk, and their end.
+    fn begin_chunks(&mut self, tessellation: &Tessellation, changes: &Lawson) {
         let cells = tessellation.len();
         self.start.resize(cells + 1, 0);
-        self.shift.resize(cells, 0);
-        let (mut first, mut by) = (0, 0);
-        for cell in self.changed.iter().map(|&cell| cell as usize).chain([cells]) {
-            for (new, old) in self.start[first..=cell].iter_mut().zip(&old[first..]) {
-                *new = old.wrapping_add_signed(by);
-            }
-            self.shift[first..cell].fill(by);
-            if let Some(ring) = (cell < cells).then(|| changes.ring(cell)).flatten() {
-                self.shift[cell] = CHANGED;
+        let mut changed = self.changed.iter().map(|cell| *cell as usize).peekable();
+        let mut by = 0;
+        for first in (0..cells).step_by(CHUNK).chain([cells]) {
+            while let Some(cell) = changed.next_if(|cell| *cell < first) {
+                let ring = changes.ring(cell).unwrap_or_default();
                 by += ring.len() as i32 - tessellation.ring(cell).len() as i32;
             }
-            first = cell + 1;
+            self.start[first] = tessellation.start[first].wrapping_add_signed(by);
         }
     }
 }
@@ -89,64 +94,60 @@ impl Spare {
 struct MoveOver<'a> {
     old: &'a Tessellation,
     changes: &'a Lawson,
-    start: &'a [u32],
-    shift: &'a [i32],
 }
 
 impl MoveOver<'_> {
-    /// Writes the rings of some cells, given those among them that have changed.
-    fn cells(&self, cells: Range<usize>, changed: &[u32], mut to: Stretch<'_>) {
-        let offset = self.start[cells.start] as usize;
-        let mut first = cells.start;
-        for &cell in changed {
-            let cell = cell as usize;
-            self.unchanged(first..cell, offset, &mut to);
-            self.changed(cell, offset, &mut to);
+    /// Writes the rings of some cells, given those among them that have changed, but for where changed rings are pointed back from.
+    fn cells(&self, cells: Range<usize>, changed: &[u32], to: &mut Stretch<'_>) {
+        let offset = to.start[0];
+        let (mut first, mut next) = (cells.start, 0);
+        for cell in changed.iter().map(|cell| *cell as usize).chain([cells.end]) {
+            let from = self.old.start[first] as usize..self.old.start[cell] as usize;
+            let own = next..next + from.len();
+            to.neighbour[own.clone()].copy_from_slice(&self.old.neighbour[from.clone()]);
+            to.image[own.clone()].copy_from_slice(&self.old.image[from.clone()]);
+            to.twin_place[own.clone()].copy_from_slice(&self.old.twin_place[from.clone()]);
+            let by = (offset + next as u32).wrapping_sub(from.start as u32);
+            let starts = &mut to.start[first - cells.start..cell - cells.start];
+            for (new, old) in starts.iter_mut().zip(&self.old.start[first..cell]) {
+                *new = old.wrapping_add(by);
+            }
+            next = own.end;
+            if cell == cells.end {
+                break;
+            }
+            to.start[cell - cells.start] = offset + next as u32;
+            for &(other, image) in self.changes.ring(cell).unwrap_or_default() {
+                (to.neighbour[next], to.image[next]) = (other, image);
+                next += 1;
+            }
+            to.beside[cell - cells.start] = true;
             first = cell + 1;
         }
-        self.unchanged(first..cells.end, offset, &mut to);
     }
 
-    fn unchanged(&self, cells: Range<usize>, offset: usize, to: &mut Stretch<'_>) {
-        if cells.is_empty() {
-            return;
-        }
-        let from = self.old.start[cells.start] as usize..self.old.start[cells.end] as usize;
-        let own = self.start[cells.start] as usize - offset..self.start[cells.end] as usize - offset;
-        to.neighbour[own.clone()].copy_from_slice(&self.old.neighbour[from.clone()]);
-        to.image[own.clone()].copy_from_slice(&self.old.image[from.clone()]);
-        let old = self.old.neighbour[from.clone()].iter().zip(&self.old.twin[from]);
-        for (twin, (&other, &before)) in to.twin[own].iter_mut().zip(old) {
-            *twin = match self.shift[other as usize] {
-                CHANGED => {
-                    let back = before as usize;
-                    self.half_edge(other, (self.old.neighbour[back], self.old.image[back]))
-                }
-                by => before.wrapping_add_signed(by),
-            };
-        }
-    }
-
-    fn changed(&self, cell: usize, offset: usize, to: &mut Stretch<'_>) {
-        let own = self.start[cell] as usize - offset..self.start[cell + 1] as usize - offset;
-        for (h, &(other, [x, y])) in own.zip(self.changes.ring(cell).unwrap_or_default()) {
-            to.neighbour[h] = other;
-            to.image[h] = [x, y];
-            to.twin[h] = self.half_edge(other, (cell as u32, [-x, -y]));
-        }
-    }
-
-    /// The new number of the half-edge from a cell to a site.
-    fn half_edge(&self, from: u32, to: Site) -> u32 {
-        let cell = from as usize;
-        let place = match self.changes.ring(cell) {
-            Some(ring) => ring.iter().position(|site| *site == to),
-            None => {
-                let old = self.old;
-                old.ring(cell).position(|h| (old.neighbour[h], old.image[h]) == to)
+    /// Finds where the twins are that changed rings have, or that are pointed at from these.
+    fn point_back(&self, cells: Range<usize>, to: &mut Stretch<'_>) {
+        let offset = to.start[0];
+        for (own, cell) in cells.enumerate().filter(|(own, _)| to.beside[*own]) {
+            let begin = (to.start[own] - offset) as usize;
+            let end = to.start.get(own + 1).map_or(to.neighbour.len(), |next| (next - offset) as usize);
+            let has_changed = self.changes.ring(cell).is_some();
+            for h in begin..end {
+                let (other, [x, y]) = (to.neighbour[h] as usize, to.image[h]);
+                let back: Site = (cell as u32, [-x, -y]);
+                let place = match self.changes.ring(other) {
+                    Some(ring) => ring.iter().position(|site| *site == back),
+                    None if has_changed => {
+                        let old = self.old;
+                        old.ring(other).position(|h| (old.neighbour[h], old.image[h]) == back)
+                    }
+                    None => continue,
+                };
+                // Every flip changes both ends of an edge, so the place is there.
+                to.twin_place[h] = place.unwrap_or_default() as u32;
             }
-        };
-        // Every flip changes both ends of an edge, so the place is there.
-        self.start[cell] + place.unwrap_or_default() as u32
+        }
+        to.beside.fill(false);
     }
 }
