@@ -133,6 +133,14 @@ impl Tessellation {
         self.start[self.neighbour[h] as usize] as usize + self.twin_place[h] as usize
     }
 
+    /// The sides of a cell seen from the other cells, in the order of its ring.
+    #[inline]
+    pub fn twins(&self, cell: usize) -> impl ExactSizeIterator<Item = usize> {
+        let ring = self.ring(cell);
+        let pairs = self.neighbour[ring.clone()].iter().zip(&self.twin_place[ring]);
+        pairs.map(|(&other, &place)| self.start[other as usize] as usize + place as usize)
+    }
+
     /// The place of the same side in the ring of the other cell.
     #[inline]
     pub fn twin_place(&self, h: usize) -> usize {

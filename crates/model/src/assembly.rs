@@ -125,9 +125,9 @@ impl<S: Scalar> VelocityAssembly<S> {
                 gather(tessellation, range.clone(), on_rings, sums, |cell| {
                     begins[cell - range.start] = passing.forces.len() as u32;
                     passing.cells.push(cell as u32);
-                    passing.forces.extend(tessellation.ring(cell).map(|h| {
-                        let twin = tessellation.twin(h).wrapping_sub(first);
-                        *on_rings.get(twin).unwrap_or(&on_rings[h - first])
+                    let sides = tessellation.ring(cell).zip(tessellation.twins(cell));
+                    passing.forces.extend(sides.map(|(h, twin)| {
+                        *on_rings.get(twin.wrapping_sub(first)).unwrap_or(&on_rings[h - first])
                     }));
                 });
             },
@@ -184,7 +184,7 @@ impl<S: Scalar> HalfEdgeForces<S> {
             });
         let gathered = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
         gathered.for_each(|(cell, sum)| {
-            tessellation.ring(cell).for_each(|h| *sum += self.forces[tessellation.twin(h)]);
+            tessellation.twins(cell).for_each(|twin| *sum += self.forces[twin]);
         });
         if !model.responses.is_empty() {
             respond(tessellation, positions, model, velocities);
@@ -253,8 +253,8 @@ fn gather<S: Scalar>(
     for (cell, sum) in cells.zip(sums) {
         let mut total = *sum;
         // Twins before the stretch are far beyond its end.
-        let written = |h: usize| on_rings.get(tessellation.twin(h).wrapping_sub(first));
-        let complete = tessellation.ring(cell).all(|h| written(h).inspect(|of| total += **of).is_some());
+        let mut written = tessellation.twins(cell).map(|twin| on_rings.get(twin.wrapping_sub(first)));
+        let complete = written.all(|of| of.inspect(|of| total += **of).is_some());
         if complete {
             *sum = total;
         } else {
