@@ -205,26 +205,27 @@ impl<S: Scalar> HalfEdgeForces<S> {
         mirrors: &[usize],
         velocities: &mut [Vector<S>],
     ) {
-        let cells = velocities.len();
-        let zero = Vector::new(S::constant(0.0), S::constant(0.0));
-        self.forces.resize(tessellation.half_edges(), zero);
-        let mut polygon = CellPolygon::default();
-        for (cell, v) in velocities.iter_mut().enumerate() {
-            polygon.fill(tessellation, positions, cell);
-            let own = &mut self.forces[tessellation.ring(cell)];
-            let site = model.site(cell, polygon.len(), positions[cell]);
-            *v = VertexForces::of_cell(model, site, polygon.shape()).on_ring(&polygon, own);
-        }
-        for image in 0..tessellation.len() {
-            let ([x, y], cell) = (signs_of(image / cells, mirrors), image % cells);
-            for h in tessellation.ring(image) {
-                if (tessellation.neighbours(image)[h - tessellation.half_edge_start(image)] as usize) < cells
-                {
-                    let force = self.forces[tessellation.twin(h)];
-                    velocities[cell] += Vector::new(force.x * x, force.y * y);
+        let (zero, cells) = (Vector::new(S::constant(0.0), S::constant(0.0)), velocities.len());
+        self.forces.resize(tessellation.half_edge_start(cells), zero);
+        split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
+            .into_par_iter()
+            .zip(velocities.par_chunks_mut(CHUNK))
+            .for_each(|((range, forces), velocities)| {
+                elements(tessellation, positions, from_ref(model), range, forces, velocities);
+            });
+        let images = tessellation.len() / cells.max(1);
+        let gathered = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
+        gathered.for_each(|(cell, sum)| {
+            for image in 0..images {
+                let ([x, y], own) = (signs_of(image, mirrors), image * cells + cell);
+                for (other, twin) in tessellation.neighbours(own).iter().zip(tessellation.twins(own)) {
+                    if (*other as usize) < cells {
+                        let force = self.forces[twin];
+                        *sum += Vector::new(force.x * x, force.y * y);
+                    }
                 }
             }
-        }
+        });
     }
 
     /// The forces at some positions.

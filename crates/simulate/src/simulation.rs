@@ -1,20 +1,21 @@
 //! The state of a simulation.
 
+mod bonds;
 mod derivatives;
 mod replacement;
 mod state;
 mod step;
 
+pub use bonds::Bond;
 pub(crate) use derivatives::slopes;
 pub use derivatives::{Direction, derivatives};
 use state::Stage;
-pub use state::{Bond, State};
+pub use state::State;
 
 use crate::scaled::{real, without_derivatives, zero};
 use crate::turning::Headings;
 use crate::walls::{self, Mirrored};
 use crate::{Driving, Error, Method, Shear, Walls};
-use std::borrow::Cow;
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};
 use voronudge_model::{HalfEdgeForces, Model, VelocityAssembly};
 
@@ -240,32 +241,6 @@ impl<S: Scalar> Simulation<S> {
     /// The tessellation of the current positions; between walls of [`Simulation::positions_with_images`].
     pub fn tessellation(&self) -> &Tessellation {
         self.tessellation.tessellation()
-    }
-
-    /// The same, which keeps the forces for [`Simulation::bonds`], where these are asked for after each step.
-    pub(crate) fn keeping_bonds(mut self) -> Result<Self, Error> {
-        self.forces = Some(HalfEdgeForces::default());
-        self.settle()?;
-        Ok(self)
-    }
-
-    /// The force of each cell's element on each of its neighbours; the opposite force acts on the cell. Between walls of the cells, not
-    /// of their images.
-    pub fn bonds(&self) -> impl Iterator<Item = Bond<S>> {
-        let (tessellation, positions) = (self.tessellation(), self.positions_with_images());
-        let forces = match &self.forces {
-            Some(kept) => Cow::Borrowed(kept),
-            None => Cow::Owned(HalfEdgeForces::of(tessellation, positions, &self.model)),
-        };
-        (0..self.now.positions.len()).flat_map(move |cell| {
-            let displacements = tessellation.displacements(positions, cell);
-            let on_ring: Vec<_> = tessellation.ring(cell).map(|h| forces.on_neighbour(h)).collect();
-            on_ring.into_iter().zip(displacements).map(move |(force, to)| Bond {
-                from: positions[cell],
-                to,
-                force,
-            })
-        })
     }
 
     /// The model that moves the cells.

@@ -4,17 +4,6 @@ use crate::turning::Headings;
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Scalar, Vector};
 
-/// A force between two places.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Bond<S: Scalar = f64> {
-    /// Where one end is.
-    pub from: Vector<S>,
-    /// Where the other end is, relative to it.
-    pub to: Vector<S>,
-    /// The force on the other end; its opposite acts on the first.
-    pub force: Vector<S>,
-}
-
 /// All that a simulation needs to go on, besides what it was made of.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(bound = "")]

@@ -152,7 +152,7 @@ impl LivingTissue {
         self.last.to.extend_from_slice(self.simulation.positions());
         self.last.bonds.clear();
         moved?;
-        self.last.bonds.extend(self.simulation.bonds());
+        self.simulation.put_bonds(&mut self.last.bonds);
         self.run_on(time_step);
         self.turn_over(time_step)
     }

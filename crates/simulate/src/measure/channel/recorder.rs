@@ -66,12 +66,16 @@ impl ChannelRecorder {
         let (bins, walled, width) =
             (self.bins, self.channel.is_walled(), self.channel.width() / self.bins as f64);
         let number = |bin: f64| match bin as i64 {
+            bin if (0..bins as i64).contains(&bin) => bin as usize,
             bin if walled => bin.clamp(0, bins as i64 - 1) as usize,
             bin => bin.rem_euclid(bins as i64) as usize,
         };
         // What a cell does behind a wall, its mirror image does in front of it.
         let mirrored = |bin: f64| {
-            let (middle, sign) = if walled { fold(bin + 0.5, bins as f64) } else { (bin, 1.0) };
+            if !walled {
+                return (number(bin), 1.0);
+            }
+            let (middle, sign) = fold(bin + 0.5, bins as f64);
             (number(middle.floor()), sign)
         };
         let sample = &mut self.current;
@@ -192,10 +196,16 @@ impl Sample {
     }
 }
 
+/// The largest whole number below, of one that is far smaller than 2⁶³: without a call, where the processor's own instruction may not be used.
+fn floor(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole > x { whole - 1.0 } else { whole }
+}
+
 /// The bins between two places, in widths of a bin, and the share of the path in each.
 fn along(start: f64, end: f64, mut enter: impl FnMut(f64, f64)) {
     let [low, high] = if start <= end { [start, end] } else { [end, start] };
-    let (first, last) = (low.floor(), high.floor());
+    let (first, last) = (floor(low), floor(high));
     if first == last {
         enter(first, 1.0);
         return;
