@@ -173,19 +173,8 @@ impl<S: Scalar> HalfEdgeForces<S> {
         model: &Model<S>,
         velocities: &mut Vec<Vector<S>>,
     ) {
-        let (zero, cells) = (Vector::new(S::constant(0.0), S::constant(0.0)), tessellation.len());
-        self.forces.resize(tessellation.half_edges(), zero);
-        velocities.resize(cells, zero);
-        split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
-            .into_par_iter()
-            .zip(velocities.par_chunks_mut(CHUNK))
-            .for_each(|((range, forces), velocities)| {
-                elements(tessellation, positions, from_ref(model), range, forces, velocities);
-            });
-        let gathered = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
-        gathered.for_each(|(cell, sum)| {
-            tessellation.twins(cell).for_each(|twin| *sum += self.forces[twin]);
-        });
+        velocities.resize(tessellation.len(), zero());
+        self.evaluate_with_images(tessellation, positions, model, &[], velocities);
         if !model.responses.is_empty() {
             respond(tessellation, positions, model, velocities);
         }
@@ -196,7 +185,7 @@ impl<S: Scalar> HalfEdgeForces<S> {
     /// mirror `k` of `mirrors`.
     ///
     /// Only the cells themselves act. Images move with them, so a force on an image is a mirrored force on its cell; by that,
-    /// vertices on a mirror move along it. The model has shape terms only.
+    /// vertices on a mirror move along it. Between mirrors the model has shape terms only; with none these are all cells.
     pub fn evaluate_with_images(
         &mut self,
         tessellation: &Tessellation,
@@ -205,14 +194,8 @@ impl<S: Scalar> HalfEdgeForces<S> {
         mirrors: &[usize],
         velocities: &mut [Vector<S>],
     ) {
-        let (zero, cells) = (Vector::new(S::constant(0.0), S::constant(0.0)), velocities.len());
-        self.forces.resize(tessellation.half_edge_start(cells), zero);
-        split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
-            .into_par_iter()
-            .zip(velocities.par_chunks_mut(CHUNK))
-            .for_each(|((range, forces), velocities)| {
-                elements(tessellation, positions, from_ref(model), range, forces, velocities);
-            });
+        let cells = velocities.len();
+        self.write(tessellation, positions, model, velocities);
         let images = tessellation.len() / cells.max(1);
         let gathered = velocities.par_iter_mut().enumerate().with_min_len(CHUNK);
         gathered.for_each(|(cell, sum)| {
@@ -231,8 +214,26 @@ impl<S: Scalar> HalfEdgeForces<S> {
     /// The forces at some positions.
     pub fn of(tessellation: &Tessellation, positions: &[Vector<S>], model: &Model<S>) -> Self {
         let mut forces = Self::default();
-        forces.evaluate(tessellation, positions, model, &mut Vec::new());
+        forces.write(tessellation, positions, model, &mut vec![zero(); tessellation.len()]);
         forces
+    }
+
+    /// Writes the forces of the elements of the first cells, as many as `on_cells` has, on their rings and on the cells.
+    fn write(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<S>],
+        model: &Model<S>,
+        on_cells: &mut [Vector<S>],
+    ) {
+        let cells = on_cells.len();
+        self.forces.resize(tessellation.half_edge_start(cells), zero());
+        split_by_cells(&mut self.forces, cells, |cell| tessellation.half_edge_start(cell))
+            .into_par_iter()
+            .zip(on_cells.par_chunks_mut(CHUNK))
+            .for_each(|((range, forces), on_cells)| {
+                elements(tessellation, positions, from_ref(model), range, forces, on_cells);
+            });
     }
 
     /// The force of the half-edge's cell on the neighbour it points at.
@@ -240,6 +241,10 @@ impl<S: Scalar> HalfEdgeForces<S> {
     pub fn on_neighbour(&self, half_edge: usize) -> Vector<S> {
         self.forces[half_edge]
     }
+}
+
+fn zero<S: Scalar>() -> Vector<S> {
+    Vector::new(S::constant(0.0), S::constant(0.0))
 }
 
 /// Adds what the neighbours of some cells wrote for them, if all of it stands among what these cells wrote; tells of cells for which it does not.

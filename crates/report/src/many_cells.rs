@@ -1,14 +1,11 @@
 //! Frames of so many cells that what one does is finer than a picture shows: means over squares, or those in the middle.
 
 use crate::figure::CellScalar;
-use crate::map::{MOST_OUTLINED, Viewport};
+use crate::map::{MOST_DRAWN, Viewport};
 use crate::view::{CellStatus, CellView, FrameView, Segment, is_finite};
 
-/// Cells of a frame up to which each is drawn.
-pub(crate) const MOST_DRAWN: usize = MOST_OUTLINED;
-
-/// Cells of the part of a frame in which single cells can be looked at.
-pub(crate) const MOST_IN_PART: usize = 4000;
+/// Cells of the part of a frame in which single cells can be looked at: of more, those in the middle.
+pub const MOST_IN_FRAME: usize = 4000;
 
 /// Squares that a frame of more is averaged over, about.
 const SQUARES: f64 = 1600.0;
@@ -34,7 +31,14 @@ impl Squares {
         let own = |(square, members): (usize, &Vec<usize>)| grid.cell(frame, square, members);
         let cells = members.iter().enumerate().filter(|(_, own)| !own.is_empty()).map(own).collect();
         members.retain(|own| !own.is_empty());
-        let squares = FrameView { cells, changed_edges: Default::default(), ..frame.clone() };
+        let squares = FrameView {
+            label: frame.label.clone(),
+            time: frame.time,
+            cells,
+            changed_edges: Default::default(),
+            outline: frame.outline,
+            region: frame.region.clone(),
+        };
         (squares, Self { members: Some(members) })
     }
 
@@ -113,7 +117,7 @@ impl Grid {
             predicted: mean(|cell| cell.predicted),
             polarity: mean(|cell| cell.polarity),
             held_out: None,
-            nudge: mean(|cell| Some(cell.nudge)).unwrap_or_default(),
+            nudge: [0.0; 2],
         }
     }
 }
@@ -127,12 +131,12 @@ pub(crate) fn middle(frame: &FrameView) -> FrameView {
     own
 }
 
-/// Keeps about [`MOST_IN_PART`] cells of each of some frames, of which none has more than `cells`: those around the middle of all.
+/// Keeps about [`MOST_IN_FRAME`] cells of each of some frames, of which none has more than `cells`: those around the middle of all.
 pub(crate) fn keep_middle(frames: &mut [FrameView], cells: usize) {
-    if cells <= MOST_IN_PART {
+    if cells <= MOST_IN_FRAME {
         return;
     }
-    let share = (MOST_IN_PART as f64 / cells as f64).sqrt();
+    let share = (MOST_IN_FRAME as f64 / cells as f64).sqrt();
     let Some(view) = Viewport::around_all(frames) else { return };
     let [low, high] = view.corners();
     let is_near = |at: [f64; 2]| {

@@ -14,8 +14,8 @@ const RING: f64 = 3.4;
 pub const MAP_WIDTH: f64 = 380.0;
 /// Greatest nominal height of the mapped area in pixels.
 const MAX_HEIGHT: f64 = 480.0;
-/// Cells up to which all are outlined.
-pub(crate) const MOST_OUTLINED: usize = 12_000;
+/// Cells of a frame up to which each is drawn.
+pub(crate) const MOST_DRAWN: usize = 12_000;
 /// Line distance of hatching in pixels.
 const HATCH: f64 = 4.0;
 
@@ -139,7 +139,7 @@ impl Map {
     /// and the field of view.
     pub fn outlines(&mut self, frame: &FrameView) {
         let [mut used, mut left_out, mut hatching] = std::array::from_fn(|_| PathData::new());
-        let all = frame.cells.len() <= MOST_OUTLINED;
+        let all = frame.cells.len() <= MOST_DRAWN;
         for cell in frame.cells.iter().filter(|cell| all || !cell.is_used()) {
             if let Some(polygon) = self.view.polygon(cell) {
                 let left_out = match cell.status {

@@ -17,15 +17,14 @@ pub use encoding::UNKNOWN;
 pub use quantity::{ArrowField, Colouring, Quantity};
 
 use crate::figure::{CellScalar, cell_map, no_data};
-use crate::many_cells::{MOST_IN_PART, keep_middle};
+pub use crate::many_cells::MOST_IN_FRAME;
+use crate::many_cells::keep_middle;
 use crate::map::Viewport;
 use crate::units::Units;
 use crate::view::FrameView;
 
 /// Frames of a movie at most.
 pub const MOST_FRAMES: usize = 200;
-/// Cells of a frame at most; of more, those in the middle.
-pub const MOST_IN_FRAME: usize = MOST_IN_PART;
 /// Cells in all frames together at most; each takes up to 90 bytes of the page.
 pub const MOST_IN_ALL: usize = 40_000;
 

@@ -19,7 +19,8 @@ use crate::figure::{
     predicted_against_measured, velocity_map,
 };
 use crate::infer_report::InferReport;
-use crate::many_cells::{MOST_DRAWN, Squares, middle};
+use crate::many_cells::{Squares, middle};
+use crate::map::MOST_DRAWN;
 use crate::movie::CellMovie;
 use crate::numbers::{NO_VALUE, significant};
 use crate::units::unit_text;
