@@ -2,6 +2,7 @@
 
 use crate::colour::INK;
 use crate::numbers::{Ticks, as_given, superscript, ticks};
+use crate::series::{ErrorPoint, SeriesTable};
 use crate::svg::{Anchor, PathData, Svg, TextStyle};
 
 /// Room above and to the right of the plotting area.
@@ -140,6 +141,7 @@ pub struct Chart {
     x: Axis,
     y: Axis,
     plot: [[f64; 2]; 2],
+    series: SeriesTable,
 }
 
 impl Chart {
@@ -157,7 +159,7 @@ impl Chart {
         if !(usable(&x) && usable(&y) && is_roomy) {
             return None;
         }
-        let mut chart = Self { svg: Svg::new(size, title), x, y, plot };
+        let mut chart = Self { svg: Svg::new(size, title), x, y, plot, series: SeriesTable::default() };
         chart.draw_axes();
         Some(chart)
     }
@@ -259,10 +261,22 @@ impl Chart {
         self.svg.path(&path, &format!(r#"fill="none" stroke="{INK}" stroke-width=".9""#));
     }
 
+    /// Notes what is drawn, in axis coordinates, under a name: the picture [hands it on](Svg::with_table).
+    pub fn record(&mut self, name: &str, points: impl IntoIterator<Item = impl Into<ErrorPoint>>) {
+        self.series.push(name, points.into_iter().map(Into::into));
+    }
+
+    /// The picture with what was noted.
+    #[must_use]
+    pub fn into_svg(self) -> Svg {
+        let table = self.series.to_csv([&self.x.label, &self.y.label]);
+        self.svg.with_table(table)
+    }
+
     /// The finished picture.
     #[must_use]
     pub fn finish(self) -> String {
-        self.svg.finish()
+        self.into_svg().finish()
     }
 }
 

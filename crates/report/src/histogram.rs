@@ -70,6 +70,11 @@ impl Histogram {
 
     /// Draws the bars.
     pub fn draw(&self, chart: &mut Chart) {
+        let middle = |bin: usize| (self.first + bin as f64 + 0.5) * self.width;
+        chart.record(
+            "bars, at their middle",
+            self.counts.iter().enumerate().map(|(bin, &count)| [middle(bin), count]),
+        );
         let mut bars = PathData::new();
         for (bin, &count) in self.counts.iter().enumerate().filter(|(_, count)| **count > 0.0) {
             let low = (self.first + bin as f64) * self.width;

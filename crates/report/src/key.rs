@@ -65,11 +65,12 @@ impl Chart {
     /// The picture with a key above it, to be drawn on further.
     #[must_use]
     pub fn with_key(self, entries: &[KeyEntry]) -> Svg {
-        if entries.is_empty() {
-            return self.svg;
-        }
         let [[left, _], [right, _]] = self.plot();
-        let [width, height] = self.svg.size();
+        let picture = self.into_svg();
+        if entries.is_empty() {
+            return picture;
+        }
+        let [width, height] = picture.size();
         let mut lines: Vec<Vec<(f64, &KeyEntry)>> = vec![Vec::new()];
         let mut x = left;
         for entry in entries {
@@ -83,7 +84,7 @@ impl Chart {
             x += entry.width() + 14.0;
         }
         let strip = LINE * lines.len() as f64 + 2.0;
-        let mut svg = Svg::new([width, height + strip], self.svg.title());
+        let mut svg = Svg::new([width, height + strip], picture.title()).with_table(picture.table());
         for (line, entries) in lines.iter().enumerate() {
             let top = 4.0 + LINE * line as f64;
             for (x, entry) in entries {
@@ -92,7 +93,7 @@ impl Chart {
                 svg.text(at, &entry.label, TextStyle::label(Anchor::Start));
             }
         }
-        svg.nest([0.0, strip], &self.svg);
+        svg.nest([0.0, strip], &picture);
         svg
     }
 }

@@ -45,6 +45,7 @@ pub mod phase_diffusion_report;
 pub mod phase_report;
 pub mod rheology_report;
 mod schema;
+mod series;
 pub mod shape_report;
 pub mod spectrum_report;
 pub mod svg;

@@ -49,6 +49,7 @@ impl TextStyle {
 pub struct Svg {
     size: [f64; 2],
     title: String,
+    table: Option<String>,
     body: String,
 }
 
@@ -56,7 +57,7 @@ impl Svg {
     /// An empty picture of the given nominal width and height; `title` is what a screen reader says.
     #[must_use]
     pub fn new(size: [f64; 2], title: &str) -> Self {
-        Self { size, title: title.to_owned(), body: String::new() }
+        Self { size, title: title.to_owned(), table: None, body: String::new() }
     }
 
     /// Nominal width and height.
@@ -69,6 +70,18 @@ impl Svg {
     #[must_use]
     pub fn title(&self) -> &str {
         &self.title
+    }
+
+    /// The picture with a table in CSV of what it shows, which is not seen and goes where the picture goes.
+    #[must_use]
+    pub fn with_table(self, table: Option<String>) -> Self {
+        Self { table, ..self }
+    }
+
+    /// The table of what it shows.
+    #[must_use]
+    pub fn table(&self) -> Option<String> {
+        self.table.clone()
     }
 
     /// Adds a path with presentation attributes such as `fill="none" stroke="#333"`.
@@ -129,9 +142,11 @@ impl Svg {
     pub fn finish(self) -> String {
         let [width, height] = self.size;
         let title = escape(&self.title);
+        let table =
+            self.table.map_or(String::new(), |table| format!("<metadata>{}</metadata>\n", escape(&table)));
         format!(
             "<svg xmlns=\"http://www.w3.org/2000/svg\" viewBox=\"0 0 {width:.1} {height:.1}\" \
-             role=\"img\" font-family=\"sans-serif\">\n<title>{title}</title>\n{}</svg>\n",
+             role=\"img\" font-family=\"sans-serif\">\n<title>{title}</title>\n{table}{}</svg>\n",
             self.body
         )
     }

@@ -54,6 +54,10 @@ pub fn among_simulated(
         let points: Vec<usize> = (0..band.at.len())
             .filter(|k| fits([band.at[*k], band.low[*k]]) && fits([band.at[*k], band.high[*k]]))
             .collect();
+        for (name, values) in [("low", band.low), ("median", band.median), ("high", band.high)] {
+            let all = points.iter().map(|k| [band.at[*k], values[*k]]);
+            chart.record(&format!("{}, {name}", band.label), all);
+        }
         let along = |values: &[f64]| -> Vec<[f64; 2]> {
             points.iter().map(|k| chart.to_pixel([band.at[*k], values[*k]])).collect()
         };
@@ -65,6 +69,7 @@ pub fn among_simulated(
         let middle: Vec<[f64; 2]> = points.iter().map(|k| [band.at[*k], band.median[*k]]).collect();
         chart.clipped_curve(&middle, &line(band.colour));
     }
+    chart.record("measured", measured.iter().copied());
     let mut marks = PathData::new();
     for at in measured.iter().filter(|at| fits(**at)) {
         Marker::Circle.push(&mut marks, chart.to_pixel(*at), MARK);

@@ -41,6 +41,9 @@ pub fn collapse(title: &str, [x_label, y_label]: [&str; 2], rows: &[CollapseRow]
         KeyEntry::new("P_0 < P_0*", |svg, at| solid_mark(svg, &[at], "#555")),
     ];
     for (row, colour) in rows.iter().zip(row_colours(rows.len())) {
+        for (points, side) in [(&row.liquid, "P_0 > P_0*"), (&row.solid, "P_0 < P_0*")] {
+            chart.record(&format!("{}, {side}", row.label), points.iter().copied());
+        }
         let place = |points: &[[f64; 2]]| -> Vec<[f64; 2]> {
             points.iter().filter(fits).map(|&point| chart.to_pixel(point)).collect()
         };

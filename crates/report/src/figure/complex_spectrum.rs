@@ -50,6 +50,7 @@ pub fn complex_spectrum(points: &[SpectrumPoint], unit: &str) -> String {
             chart.curve(&line, &axis);
         }
     }
+    chart.record("modes", points.iter().map(|point| [point.rate, point.frequency]));
     let outside = draw_points(&mut chart, &points);
     if outside > 0 {
         let [[left, top], _] = chart.plot();

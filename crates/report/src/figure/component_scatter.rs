@@ -5,6 +5,8 @@ use crate::chart::Chart;
 use crate::colour::{BLUE, VERMILLION};
 use crate::svg::{Anchor, PathData, TextStyle};
 
+/// Names of the components.
+const COMPONENTS: [&str; 2] = ["x component", "y component"];
 /// Marks are drawn in this many translucent layers, so that dense regions look dense.
 const LAYERS: usize = 24;
 /// Half the size of a mark in pixels.
@@ -15,6 +17,7 @@ pub(super) fn draw(chart: &mut Chart, components: [Vec<[f64; 2]>; 2]) -> usize {
     let mut layers = vec![[PathData::new(), PathData::new()]; LAYERS];
     let mut outside = 0;
     for (axis, points) in components.iter().enumerate() {
+        chart.record(COMPONENTS[axis], points.iter().copied());
         for (index, &point) in points.iter().enumerate() {
             if !chart.contains(point) {
                 outside += 1;
@@ -54,7 +57,7 @@ fn mark_style(axis: usize) -> String {
 /// outside.
 pub(super) fn annotate(chart: &mut Chart, outside: usize, y: f64) {
     let [[left, top], [right, _]] = chart.plot();
-    for (axis, label) in ["x component", "y component"].into_iter().enumerate() {
+    for (axis, label) in COMPONENTS.into_iter().enumerate() {
         let y = top + 16.0 + 16.0 * axis as f64;
         let mut mark = PathData::new();
         push_mark(&mut mark, axis, [left + 14.0, y - 4.0]);

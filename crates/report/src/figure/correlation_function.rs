@@ -5,6 +5,7 @@ use crate::before_after::BeforeAfter;
 use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::{BLUE, GREY, VERMILLION};
 use crate::key::KeyEntry;
+use crate::series::ErrorPoint;
 use crate::svg::PathData;
 use crate::view::is_finite;
 
@@ -112,6 +113,8 @@ pub fn correlation_function(function: &CorrelationFunction) -> String {
         chart.svg.path(&band, &format!(r#"fill="{colour}" opacity=".18""#));
         let style = format!(r#"stroke="{colour}" stroke-width="1.8" stroke-dasharray="{dashes}""#);
         let line: Vec<[f64; 2]> = points.iter().map(|point| [point.distance, point.value]).collect();
+        let errors = points.iter().map(|point| [None, Some(point.standard_error)]);
+        chart.record(name, line.iter().zip(errors).map(|(&at, error)| ErrorPoint { at, error }));
         chart.curve(&line, &style);
         key.push(KeyEntry::line(name, &style));
     }

@@ -72,7 +72,12 @@ pub fn dispersion(points: &[DispersionPoint], part: DispersionPart, unit: &str) 
             .iter()
             .map(|point| [point.distance, point.theory.map_or(f64::NAN, |waves| waves[branch][which])])
             .collect();
+        if points.iter().any(|point| point.theory.is_some()) {
+            chart.record(&format!("mean-field theory, branch {}", branch + 1), line.iter().copied());
+        }
         chart.curve(&line, &line_style);
+        let exact = points.iter().map(|point| [point.distance, point.exact[branch][which]]);
+        chart.record(&format!("Jacobian of the model, branch {}", branch + 1), exact);
     }
     let mut marks = PathData::new();
     for point in points.iter().step_by((points.len() / 60).max(1)) {

@@ -53,6 +53,7 @@ pub fn distribution(title: &str, label: &str, values: &[f64], landmark: Option<&
     if let Some(mark) = landmark {
         let style = format!(r#"stroke="{INK}" stroke-width="1.4" stroke-dasharray="5 3""#);
         chart.clipped_curve(&[[mark.value, 0.0], [mark.value, 1.08 * highest]], &style);
+        chart.record(&mark.label, [[mark.value, f64::NAN]]);
         key.push(KeyEntry::line(&mark.label, &style));
     }
     let outside: usize = bars.outside.iter().sum();

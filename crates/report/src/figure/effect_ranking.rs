@@ -35,6 +35,11 @@ pub fn effect_ranking(ranking: &[RankedEffect]) -> String {
         return no_data(title);
     };
     for (row, effect) in ranking.iter().enumerate() {
+        chart.record(&effect.effect, [[effect.size, f64::NAN]]);
+        for (end, name) in effect.size_ci95.into_iter().flatten().zip(["lower", "upper"]) {
+            chart.record(&format!("{}, {name} end of the 95 % interval", effect.effect), [[end, f64::NAN]]);
+        }
+        chart.record(&format!("{}, detection limit", effect.effect), [[effect.detection_limit, f64::NAN]]);
         draw_row(&mut chart, effect, (count - row as f64 - 0.5, end));
     }
     chart.finish_with_key(&key(ranking))

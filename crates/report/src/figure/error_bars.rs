@@ -5,6 +5,7 @@ use crate::chart::{Axis, Chart, ChartLayout};
 use crate::colour::BLUE;
 use crate::key::KeyEntry;
 use crate::numbers::significant;
+use crate::series::ErrorPoint;
 use crate::svg::{Anchor, PathData, TextStyle};
 
 /// Bars end here however large the error is; the number tells.
@@ -83,6 +84,8 @@ pub fn error_bars_with_floor(bars: &[ErrorBar], floor: Option<f64>) -> String {
     };
     let middle = |row: usize| count - row as f64 - 0.5;
     for (row, bar) in bars.iter().enumerate() {
+        chart
+            .record(&bar.label, [ErrorPoint { at: [bar.nmse, f64::NAN], error: [bar.standard_error, None] }]);
         draw_bar(&mut chart, bar, (middle(row), range));
     }
     let ends = [[1.0, 0.0], [1.0, count]];

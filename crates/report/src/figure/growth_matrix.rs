@@ -6,6 +6,7 @@ use crate::colour::{BLUE, GREEN, GREY, INK, VERMILLION};
 use crate::key::KeyEntry;
 use crate::markers::Marker;
 use crate::numbers::quantile;
+use crate::series::ErrorPoint;
 use crate::svg::PathData;
 use crate::units::Units;
 use crate::units::label_with_unit;
@@ -64,6 +65,14 @@ pub fn growth_matrix(points: &[GrowthPoint], curve: &[GrowthCurve], units: &Unit
         let line_style = format!(r#"stroke="{colour}" stroke-width="1.6""#);
         let line: Vec<[f64; 2]> =
             curve.iter().map(|point| [point.square, point.matrix[row][column]]).collect();
+        chart.record(&format!("{name}, fitted"), line.iter().copied());
+        chart.record(
+            name,
+            points.iter().map(|point| ErrorPoint {
+                at: [point.square, point.matrix[row][column]],
+                error: [None, Some(point.errors[row][column])],
+            }),
+        );
         chart.clipped_curve(&line, &line_style);
         let [mut bars, mut marks] = [PathData::new(), PathData::new()];
         for point in points {

@@ -76,6 +76,8 @@ pub fn method_comparison(comparison: &MethodComparison) -> String {
             .filter_map(|(condition, median, quartiles)| Some((at(condition)? as f64, median, quartiles)))
             .collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        let medians = points.iter().map(|&(condition, median, _)| [conditions[condition as usize], median]);
+        chart.record(&comparison.methods[index].name, medians.collect::<Vec<_>>());
         draw_series(&mut chart, &points, (Style::of(index), aside));
     }
     if let Some((target, name)) = &comparison.target {

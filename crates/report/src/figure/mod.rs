@@ -1,4 +1,4 @@
-//! One module per figure; each returns a stand-alone SVG as text.
+//! One module per figure; each returns a stand-alone SVG as text. Charts carry the numbers that they show, as CSV in their `<metadata>`.
 //!
 //! Figures never fail: numbers that are not finite are skipped, and where nothing is left to draw
 //! the figure says "no data".
@@ -71,9 +71,7 @@ pub use outline_map::outline_map;
 pub use parameter_intervals::{Estimate, ParameterRow, parameter_intervals};
 pub use partial_regression::{PartialPoint, PartialRegression, partial_regression};
 pub use phase_map::{LineStyle, MapLine, PhaseMap, phase_map, row_colours};
-pub use points_and_curves::{
-    CurveSeries, ErrorPoint, PointSeries, PointsAndCurves, Stroke, points_and_curves,
-};
+pub use points_and_curves::{CurveSeries, PointSeries, PointsAndCurves, Stroke, points_and_curves};
 pub use predicted_against_measured::{Prediction, VelocityPair, predicted_against_measured};
 pub use profile::{ProfileCurve, profile};
 pub use residual_maps::{residual_flow_maps, residual_maps};
@@ -81,6 +79,8 @@ pub use shape_scatter::{ShapeMeasure, shape_scatter};
 pub use strip::{BandPart, StripPoint, StripSide, WindingGrid, strip_bands, strip_spectrum};
 pub use trails::{Trails, trails};
 pub use velocity_map::{VelocityField, polarity_map, velocity_map};
+
+pub use crate::series::ErrorPoint;
 
 use crate::svg::{Anchor, Svg, TextStyle};
 

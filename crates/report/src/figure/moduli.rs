@@ -6,6 +6,7 @@ use crate::colour::{BLUE, GREY, INK, VERMILLION};
 use crate::key::KeyEntry;
 use crate::markers::Marker;
 use crate::moduli_report::ModulusRecord;
+use crate::series::ErrorPoint;
 use crate::svg::{Anchor, PathData, TextStyle};
 use crate::units::label_with_unit;
 
@@ -60,6 +61,17 @@ pub fn moduli(records: &[ModulusRecord], unit: &str) -> String {
         if let Some(value) = record.affine {
             Marker::Diamond.push(&mut affine, chart.to_pixel([value, middle + 0.27]), 3.6);
         }
+        let mut note = |what: &str, values: &[f64]| {
+            chart
+                .record(&format!("{}, {what}", record.symbol), values.iter().map(|&value| [value, f64::NAN]));
+        };
+        note("each replica", &record.replicas);
+        note("without relaxation", record.affine.as_slice());
+        note("mean-field theory", record.mean_field.as_slice());
+        chart.record(
+            record.symbol,
+            [ErrorPoint { at: [record.value, f64::NAN], error: [Some(record.error), None] }],
+        );
         if record.value.is_finite() {
             let ends = [record.value - record.error, record.value + record.error].map(|x| [x, middle]);
             chart.curve(&ends, &bar_style);

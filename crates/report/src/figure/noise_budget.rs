@@ -40,6 +40,9 @@ pub fn noise_budget(bars: &[(&str, NoiseBudget)]) -> String {
         let middle = count - row as f64 - 0.5;
         let at = [chart.plot()[0][0] - 9.0, chart.to_pixel([0.0, middle])[1] + 4.0];
         chart.svg.text(at, label, TextStyle::label(Anchor::End));
+        for part in Part::ALL.into_iter().filter(|part| part.share(budget) > 0.0) {
+            chart.record(&format!("{label}, {}", part.name()), [[100.0 * part.share(budget), f64::NAN]]);
+        }
         draw_bar(&mut chart, budget, middle);
     }
     let shown = |part: &&Part| bars.iter().any(|(_, budget)| part.share(budget) > 0.0);

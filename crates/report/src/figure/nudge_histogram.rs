@@ -55,6 +55,7 @@ pub fn nudge_histogram(histogram: &NudgeHistogram) -> String {
         return no_data(title);
     };
     bars.draw(&mut chart);
+    chart.record("position noise", curve.iter().copied());
     chart.curve(&curve, &format!(r#"stroke="{VERMILLION}" stroke-width="1.8""#));
     legend(&mut chart, sigma, bars.outside[1]);
     chart.finish()

@@ -55,6 +55,7 @@ pub fn objective_trace(trace: &ObjectiveTrace<'_>) -> String {
         let label = format!("expected {}", significant(expected, 3));
         chart.svg.text(at, &label, TextStyle::quiet(Anchor::Start));
     }
+    chart.record("objective", points.iter().copied());
     chart.curve(&points, &format!(r#"stroke="{BLUE}" stroke-width="1.6" stroke-linejoin="round""#));
     if points.len() <= 60 {
         let mut dots = PathData::new();

@@ -6,6 +6,7 @@ use crate::colour::INK;
 use crate::key::KeyEntry;
 use crate::markers::Marker;
 use crate::numbers::{quantile, with_interval};
+use crate::series::ErrorPoint;
 use crate::svg::PathData;
 use crate::units::Units;
 use crate::view::is_finite;
@@ -76,6 +77,8 @@ pub fn partial_regression(plot: &PartialRegression, units: &Units) -> String {
     chart.clipped_curve(&line(1.0), EQUAL);
     key.push(KeyEntry::line("slope 1", EQUAL));
     if !groups.is_empty() {
+        let mean = |group: &Group| ErrorPoint { at: group.mean, error: [None, Some(group.error)] };
+        chart.record("means of equal groups", groups.iter().map(mean));
         draw_groups(&mut chart, &groups);
         key.push(KeyEntry::new("means of equal groups ± standard error", |svg, middle| {
             let mut mark = PathData::new();

@@ -5,16 +5,8 @@ use crate::chart::{Axis, AxisScale, Chart, ChartLayout};
 use crate::colour::INK;
 use crate::key::KeyEntry;
 use crate::markers::Marker;
+use crate::series::ErrorPoint;
 use crate::svg::PathData;
-
-/// A measured point.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct ErrorPoint {
-    /// Place in axis coordinates.
-    pub at: [f64; 2],
-    /// Standard error along each axis, where known.
-    pub error: [Option<f64>; 2],
-}
 
 /// Points of one kind.
 #[derive(Debug, Clone, PartialEq)]
@@ -68,12 +60,6 @@ pub struct PointsAndCurves<'a> {
     pub curves: &'a [CurveSeries<'a>],
 }
 
-impl From<[f64; 2]> for ErrorPoint {
-    fn from(at: [f64; 2]) -> Self {
-        Self { at, error: [None; 2] }
-    }
-}
-
 impl PointsAndCurves<'_> {
     fn shows(&self, at: [f64; 2]) -> bool {
         let fits = |(x, scale): (f64, AxisScale)| x.is_finite() && (scale == AxisScale::Linear || x > 0.0);
@@ -116,9 +102,11 @@ pub fn points_and_curves(chart: &PointsAndCurves<'_>) -> String {
     for curve in chart.curves {
         let place = |&at: &[f64; 2]| if chart.shows(at) { at } else { [f64::NAN; 2] };
         let points: Vec<[f64; 2]> = curve.points.iter().map(place).collect();
+        picture.record(curve.label, points.iter().copied());
         picture.clipped_curve(&points, &curve_style(curve));
     }
     for series in chart.series {
+        picture.record(series.label, series.points.iter().copied());
         draw_points(&mut picture, chart, series);
     }
     picture.frame();

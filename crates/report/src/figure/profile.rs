@@ -64,8 +64,10 @@ pub fn profile(curve: &ProfileCurve) -> String {
         let at = |step: usize| low + (high - low) * step as f64 / 300.0;
         let parabola: Vec<[f64; 2]> =
             (0..=300).map(|step| [at(step), ((at(step) - centre) / error).powi(2)]).collect();
+        chart.record("quadratic approximation", parabola.iter().copied());
         chart.clipped_curve(&parabola, &format!(r#"stroke="{VERMILLION}" {QUADRATIC}"#));
     }
+    chart.record("profile", points.iter().copied());
     chart.clipped_curve(&points, &format!(r#"stroke="{BLUE}" {PROFILE}"#));
     mark_points(&mut chart, &points, curve.best);
     draw_limit(&mut chart, shaded);

@@ -44,6 +44,7 @@ pub fn shape_scatter(pairs: &[[f64; 2]], measure: ShapeMeasure, correlation: f64
         &[[0.0, 0.0], [range[1]; 2]],
         &format!(r#"stroke="{INK}" stroke-width=".9" stroke-dasharray="4 3""#),
     );
+    chart.record("cells", pairs.iter().copied());
     let (mut marks, mut outside) = (PathData::new(), 0);
     for &pair in pairs.iter().filter(|pair| pair.iter().all(|x| x.is_finite())) {
         if chart.contains(pair) {

@@ -77,6 +77,7 @@ pub fn strip_spectrum(
         chart.svg.path(&area, style);
     }
     for line in loops {
+        chart.record("periodic", line.iter().copied());
         chart.clipped_curve(line, LOOP);
     }
     draw(&mut chart, points.iter().map(|point| (point.value, *point)));
@@ -123,6 +124,7 @@ pub fn strip_bands(
     let Some(mut chart) = layout.and_then(Chart::new) else {
         return no_data(title);
     };
+    chart.record("periodic", bulk.iter().copied());
     let mut dots = PathData::new();
     bulk.iter().for_each(|&place| dots.dot(chart.to_pixel(place)));
     chart.svg.path(&dots, BULK);
@@ -164,9 +166,11 @@ fn colour(side: StripSide) -> &'static str {
 }
 
 fn draw(chart: &mut Chart, points: impl Iterator<Item = ([f64; 2], StripPoint)> + Clone) {
-    for (side, of_edge, _) in KINDS {
+    for (side, of_edge, label) in KINDS {
         let own = points.clone().filter(|(_, point)| point.side == side && point.of_edge == of_edge);
-        let places: Vec<[f64; 2]> = own.map(|(place, _)| chart.to_pixel(place)).collect();
+        let places: Vec<[f64; 2]> = own.map(|(place, _)| place).collect();
+        chart.record(label, places.iter().copied());
+        let places: Vec<[f64; 2]> = places.into_iter().map(|place| chart.to_pixel(place)).collect();
         mark(&mut chart.svg, (side, of_edge), &places);
     }
 }

@@ -44,7 +44,8 @@ use crate::units::unit_text;
 const BASE: &str = include_str!("../../templates/base.html");
 const MACROS: &str = include_str!("../../templates/macros.html");
 const STYLE: &str = include_str!("../../templates/style.css");
-const SCRIPT: &str = include_str!("../../templates/tabs.js");
+const SCRIPT: &str =
+    concat!(include_str!("../../templates/tabs.js"), include_str!("../../templates/keep.js"));
 
 /// A figure with its caption.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]

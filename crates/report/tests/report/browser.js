@@ -64,6 +64,23 @@ const lookAtWords = (page, fault) => {
   }
 };
 
+// Each figure can be kept, with the numbers in it.
+const keepFigures = async (page, fault) => {
+  for (const figure of page.document.querySelectorAll("figure")) {
+    const table = figure.querySelector("svg > metadata");
+    const wanted = ["SVG", ...(table ? ["CSV"] : []), ...(figure.querySelector("canvas") ? ["PNG"] : [])];
+    const links = [...figure.querySelectorAll(".keep a")], name = figure.querySelector("title")?.textContent;
+    if (links.map((link) => link.textContent).join() !== wanted.join()) fault(`${name}: is kept as ${links.map((link) => link.textContent)}`);
+    for (const link of links.slice(0, 2)) {
+      link.addEventListener("click", (event) => event.preventDefault());
+      link.click();
+      const text = await (await page.fetch(link.href)).text();
+      const begins = { SVG: "<svg xmlns=", CSV: "series,", PNG: "" }[link.textContent];
+      if (!text.startsWith(begins)) fault(`${name}: its ${link.textContent} begins with “${text.slice(0, 20)}”`);
+    }
+  }
+};
+
 const use = async (page, fault) => {
   const figure = page.document.querySelector("figure.player");
   if (!figure) return;
@@ -141,6 +158,7 @@ const look = async (name, width, onPaper) => {
   lookAtWords(page, fault);
   try {
     if (!onPaper) await use(page, fault);
+    if (!onPaper && width === WIDTHS[0]) await keepFigures(page, fault);
   } catch (error) {
     fault(String(error));
   }

@@ -179,3 +179,19 @@ fn the_trace_names_its_axes_and_expectation() {
         assert!(svg.contains(text), "{text}");
     }
 }
+
+#[test]
+fn charts_carry_the_numbers_that_they_show() {
+    let bar = |label: &str, nmse, standard_error| ErrorBar {
+        label: label.into(),
+        nmse,
+        standard_error,
+        emphasis: Emphasis::Main,
+    };
+    let svg = error_bars(&[bar("naive <fit>", 0.5, None), bar("held out, twice", 1.0 / 3.0, Some(0.025))]);
+    let table = svg.split_once("<metadata>").and_then(|(_, rest)| rest.split_once("</metadata>")).unwrap().0;
+    let axis = "NMSE (0: perfect, 1: predicts nothing)";
+    let lines: Vec<&str> = table.lines().collect();
+    assert_eq!(lines[0], format!("series,&quot;{axis}&quot;,&quot;standard error of {axis}&quot;"));
+    assert_eq!(lines[1..], ["naive &lt;fit&gt;,0.5,", "&quot;held out, twice&quot;,0.333333,0.025"]);
+}
