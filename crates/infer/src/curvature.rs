@@ -184,7 +184,7 @@ impl<'a> About<'a> {
         };
         let coefficients = self.objective.space.coefficients(&moved(self.free, step.as_slice()));
         let nudges = moved(self.nudges, nudges);
-        let nudged = self.objective.place(self.index, &nudges).ok()?;
+        let nudged = self.objective.displaced(self.index, &nudges).ok()?;
         let rests = residuals(self.frame, &nudged.evaluate(coefficients.as_slice()).predicted);
         let velocities =
             rests.into_iter().map(|(datum, rest)| rest * self.frame.weight(datum).sqrt()).collect();

@@ -144,7 +144,7 @@ fn nudged(
             Some(folds) => folds.velocities[index].clone(),
             None => vec![None; frame.velocities.values().len()],
         };
-        results.push(frame_result(frame, objective.place(index, nudges)?, &coefficients, held_out));
+        results.push(frame_result(frame, objective.displaced(index, nudges)?, &coefficients, held_out));
     }
     let cells: usize = frames.iter().map(|frame| frame.positions.len()).sum();
     let mut inference = Inference {

@@ -234,7 +234,7 @@ mod tests {
         at.extend((0..72).map(|k| 0.01 * f64::from(k).sin()));
         let equations = objective.linearise(&at).unwrap();
         let (free, nudges) = objective.split(&at);
-        let nudged = objective.place(0, nudges[0]).unwrap();
+        let nudged = objective.displaced(0, nudges[0]).unwrap();
         let c = space.coefficients(free);
         let evaluated = nudged.evaluate(c.as_slice());
         let j =

@@ -231,12 +231,12 @@ impl<'a> Objective<'a> {
     }
 
     /// The frame of an index displaced by its nudges, with a new tessellation; a fault is that frame's.
-    pub fn place(&self, index: usize, nudges: &[f64]) -> Result<Nudged<'a>, Error> {
-        self.place_within(index, nudges, self.frames[index].environment().clone())
+    pub fn displaced(&self, index: usize, nudges: &[f64]) -> Result<Nudged<'a>, Error> {
+        self.displaced_within(index, nudges, self.frames[index].environment().clone())
     }
 
     /// The same where single cells have parts of their own, which depend on the coefficients.
-    fn place_with_own(
+    fn displaced_with_own(
         &self,
         index: usize,
         nudges: &[f64],
@@ -247,10 +247,10 @@ impl<'a> Objective<'a> {
             Some(own) => own.environment(index, around, coefficients)?,
             None => around.clone(),
         };
-        self.place_within(index, nudges, environment)
+        self.displaced_within(index, nudges, environment)
     }
 
-    fn place_within(
+    fn displaced_within(
         &self,
         index: usize,
         nudges: &[f64],
@@ -327,7 +327,7 @@ impl<'a> Placing for Objective<'a> {
         let (free, nudges) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
         let of_frame = |(index, nudges): (usize, &&[f64])| {
-            let nudged = self.place_with_own(index, nudges, coefficients.as_slice())?;
+            let nudged = self.displaced_with_own(index, nudges, coefficients.as_slice())?;
             let predicted = nudged.predict(coefficients.as_slice());
             Ok((nudged, predicted))
         };

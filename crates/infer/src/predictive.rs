@@ -122,7 +122,7 @@ mod tests {
             let (free, nudges) = objective.split(&at);
             let c = space.coefficients(free);
             for (index, nudges) in nudges.iter().enumerate() {
-                let placed = objective.place(index, nudges).unwrap();
+                let placed = objective.displaced(index, nudges).unwrap();
                 let evaluated = placed.evaluate(c.as_slice());
                 let own = DMatrix::from_row_slice(
                     72,

@@ -36,7 +36,7 @@ pub(crate) fn whitened_residuals(
     let coefficients = inference.coefficients.as_slice();
     let mut fields = Vec::with_capacity(frames.len());
     for (index, nudges) in nudges(frames, inference).iter().enumerate() {
-        let placed = objective.place(index, nudges)?;
+        let placed = objective.displaced(index, nudges)?;
         let evaluated = placed.evaluate(coefficients);
         let jacobian = placed.jacobian(coefficients, &evaluated.of_cells);
         let off = misplacements(&frames[index], &placed, nudges);

@@ -80,7 +80,7 @@ pub fn extrema(values: &[f64], size: [usize; 2], search: &ExtremumSearch) -> Res
     let mut kept: Vec<Extremum> = Vec::new();
     for peak in peaks {
         let extremum = Extremum {
-            position: field.place(&peak),
+            position: field.location(&peak),
             value: sign * field.heights[peak.pixel],
             prominence: peak.prominence,
         };
@@ -230,7 +230,7 @@ impl Heights {
     }
 
     /// The place of a peak: by the quadratic `f + g·d + ½ d·H d` through nine pixels, or the middle of a plateau.
-    fn place(&self, peak: &Peak) -> Vector<f64> {
+    fn location(&self, peak: &Peak) -> Vector<f64> {
         let mean = self.centre(peak.pixel) + peak.offset / peak.pixels;
         let refined = (peak.pixels == 1.0).then(|| self.quadratic_step(peak.pixel)).flatten();
         let place = mean + refined.unwrap_or_else(Vector::zeros);

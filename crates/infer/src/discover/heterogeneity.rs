@@ -207,7 +207,7 @@ fn size(setting: &Setting<'_>, model: &Model, parameter: CellParameter) -> Resul
         let objective = model.objective_on(frames);
         let nudges = crate::uncertainty::nudges(frames, inference);
         let of_frame = |(index, own): (usize, &Vec<f64>)| {
-            Ok(objective.place(index, own)?.evaluate(coefficients).predicted)
+            Ok(objective.displaced(index, own)?.evaluate(coefficients).predicted)
         };
         nudges.iter().enumerate().map(of_frame).collect()
     };

@@ -166,7 +166,8 @@ impl<'a> Speaking<'a> {
         let mut all = Vec::new();
         let objective = model.objective(setting.frames);
         for (index, nudges) in nudges(setting.frames, &model.inference).iter().enumerate() {
-            let evaluated = objective.place(index, nudges)?.evaluate(model.inference.coefficients.as_slice());
+            let evaluated =
+                objective.displaced(index, nudges)?.evaluate(model.inference.coefficients.as_slice());
             let rests = residuals(&setting.frames[index], &evaluated.predicted);
             all.extend(rests.into_iter().map(|(datum, rest)| (rest.norm_squared(), index, datum)));
         }
@@ -262,7 +263,7 @@ pub(super) fn partial(
     let base = FitParameter::COEFFICIENTS;
     let (mut rows, mut targets) = (Vec::new(), Vec::new());
     for (index, nudges) in nudges(frames, &model.inference).iter().enumerate() {
-        let evaluated = objective.place(index, nudges)?.evaluate(coefficients);
+        let evaluated = objective.displaced(index, nudges)?.evaluate(coefficients);
         for (datum, rest) in residuals(&frames[index], &evaluated.predicted) {
             let at = |k: usize| evaluated.by_coefficient[k][datum];
             let effect =

@@ -62,7 +62,7 @@ fn the_score_is_that_of_the_dense_problem() {
     let levels = base.inference.noise;
     let objective = crate::objective::Objective::new(&frames, &base.request.structure, &space, levels);
     let nudges = &crate::uncertainty::nudges(&frames, &base.inference)[0];
-    let placed = objective.place(0, nudges).unwrap();
+    let placed = objective.displaced(0, nudges).unwrap();
     let c = base.inference.coefficients.as_slice();
     let evaluated = placed.evaluate(c);
     let n = 2 * frames[0].positions.len();
@@ -84,7 +84,7 @@ fn the_score_is_that_of_the_dense_problem() {
         let mut coefficients = c.to_vec();
         coefficients.resize(structure.dimension(), 0.0);
         let with = crate::objective::Objective { structure: &structure, ..objective };
-        let evaluated = with.place(0, nudges).unwrap().evaluate(&coefficients);
+        let evaluated = with.displaced(0, nudges).unwrap().evaluate(&coefficients);
         let mut wide: Vec<DVector<f64>> = x.column_iter().map(|column| column.into_owned()).collect();
         wide.extend((4..structure.dimension()).map(|k| flat(&evaluated.by_coefficient[k])));
         let rest = misfit(&DMatrix::from_columns(&wide));

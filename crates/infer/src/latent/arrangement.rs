@@ -57,7 +57,7 @@ impl Arrangement {
         let Evidence { law, polygons, rates, .. } = evidence;
         let spread = polygons.spread;
         let guess = Guess { places: start.clone(), start, spread, target: None, labels };
-        let placed = around.place(law, &guess, steps)?;
+        let placed = around.settled(law, &guess, steps)?;
         let n = placed.information.nrows();
         let posterior = DMatrix::identity(n, n) + &placed.information * spread.powi(2);
         let mut cost = placed.deviance + posterior.determinant().max(1.0).ln();

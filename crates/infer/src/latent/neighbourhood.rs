@@ -189,7 +189,7 @@ impl Neighbourhood {
     }
 
     /// Damped Gauss–Newton on the places of free cells, the coefficients held. Steps are counted by evaluations.
-    pub fn place(&self, law: &Law<'_>, guess: &Guess, steps: usize) -> Result<Placed, Error> {
+    pub fn settled(&self, law: &Law<'_>, guess: &Guess, steps: usize) -> Result<Placed, Error> {
         let stiffness = guess.spread.powi(-2);
         let from_prior = |z: &[Vector<f64>]| -> f64 {
             z.iter().zip(&guess.places).map(|(z, at)| (z - at).norm_squared()).sum::<f64>() * stiffness

@@ -204,7 +204,7 @@ fn judge(
             guess.start =
                 start.iter().map(|at| proposal.centre + scene.between(proposal.centre, *at)).collect();
         }
-        let placed = after.as_ref().unwrap_or(&before).place(law, &guess, STEPS)?;
+        let placed = after.as_ref().unwrap_or(&before).settled(law, &guess, STEPS)?;
         let n = placed.information.nrows();
         let posterior = DMatrix::identity(n, n) + &placed.information * guess.spread.powi(2);
         let cost = placed.prior + posterior.determinant().max(1.0).ln();

@@ -91,7 +91,7 @@ impl<'a> Objective<'a> {
         coefficients: &[f64],
         nudges: &[f64],
     ) -> Result<Measurable<'a>, Error> {
-        let nudged = self.place_with_own(index, nudges, coefficients)?;
+        let nudged = self.displaced_with_own(index, nudges, coefficients)?;
         let predicted = nudged.predict(coefficients);
         let placed = (nudged, predicted);
         let (rows, jacobian) = self.derivatives(index, coefficients, nudges, &placed)?;
@@ -109,7 +109,7 @@ impl<'a> Objective<'a> {
         let frame = &self.frames[index];
         let evaluated = match self.own {
             // What a cell has of its own does not change with the coefficients.
-            Some(_) => self.place(index, nudges)?.evaluate(coefficients),
+            Some(_) => self.displaced(index, nudges)?.evaluate(coefficients),
             None => nudged.evaluate(coefficients),
         };
         let of_free = free_rows(frame, &evaluated.by_coefficient, self.space);

@@ -89,7 +89,7 @@ fn refit(objective: &Objective<'_>, parameters: &mut [f64]) -> Result<(), Error>
     let placed = nudges
         .into_iter()
         .enumerate()
-        .map(|(index, nudges)| objective.place(index, nudges))
+        .map(|(index, nudges)| objective.displaced(index, nudges))
         .collect::<Result<Vec<_>, _>>()?;
     let free = fit_at(objective.frames, &placed, objective.structure, objective.space)?;
     parameters[..free.len()].copy_from_slice(&free);
@@ -151,7 +151,7 @@ impl Problem<'_> {
         let (mut of_residual, mut residual, mut squares) = (vec![0.0; parameters.len()], 0.0, 0.0);
         let mut offset = p;
         for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
-            let nudged = objective.place(index, nudges)?;
+            let nudged = objective.displaced(index, nudges)?;
             let evaluated = nudged.evaluate(coefficients.as_slice());
             let jacobian = nudged.jacobian(coefficients.as_slice(), &evaluated.of_cells);
             let rows = free_rows(frame, &evaluated.by_coefficient, objective.space);

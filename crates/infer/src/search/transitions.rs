@@ -156,7 +156,7 @@ fn trials(
     let pinned = CoefficientSpace::pinned(coefficients.as_slice());
     let mut all = Vec::new();
     for (index, (frame, nudges)) in objective.frames.iter().zip(&nudges).enumerate() {
-        let nudged = objective.place(index, nudges)?;
+        let nudged = objective.displaced(index, nudges)?;
         let predicted = nudged.evaluate(coefficients.as_slice()).predicted;
         let mut targets = vec![None; predicted.len()];
         for (datum, rest) in residuals(frame, &predicted) {

@@ -29,12 +29,12 @@ fn the_criterion_is_that_of_the_dense_form() {
 
     let (free, nudges) = objective.split(&at);
     // Columns of the coefficients are those of cells that are alike.
-    let alike = objective.place(0, nudges[0]).unwrap();
+    let alike = objective.displaced(0, nudges[0]).unwrap();
     let c = space.coefficients(free);
     let columns = alike.evaluate(c.as_slice()).by_coefficient;
     let differing = own.frames(&frames).unwrap();
     let differing = Objective { frames: &differing, own: None, ..objective };
-    let nudged = differing.place(0, nudges[0]).unwrap();
+    let nudged = differing.displaced(0, nudges[0]).unwrap();
     let evaluated = nudged.evaluate(c.as_slice());
     let j = DMatrix::from_row_slice(72, 72, &nudged.jacobian(c.as_slice(), &evaluated.of_cells).to_dense());
     let x = DMatrix::from_fn(72, 4, |row, term| columns[term][row / 2][row % 2]);
@@ -47,7 +47,7 @@ fn the_criterion_is_that_of_the_dense_form() {
                 let mut other = u.clone();
                 other[i] += 1.0;
                 let moved = OwnParts { deviations: &other, ..own }.frames(&frames).unwrap();
-                let moved = Objective { frames: &moved, ..differing }.place(0, nudges[0]).unwrap();
+                let moved = Objective { frames: &moved, ..differing }.displaced(0, nudges[0]).unwrap();
                 let moved = moved.evaluate(c.as_slice()).predicted;
                 DVector::from_fn(72, |row, _| (moved[row / 2] - evaluated.predicted[row / 2])[row % 2])
             })

@@ -101,7 +101,12 @@ mod tests {
         };
         let rows = |step: f64| {
             let at = at(step);
-            Anchors::new(&objective, &objective.place(&at).unwrap(), objective.split(&at).1, Share::Unknown)
+            Anchors::new(
+                &objective,
+                &objective.displaced(&at).unwrap(),
+                objective.split(&at).1,
+                Share::Unknown,
+            )
         };
         let exact = rows(0.0);
         let sum: f64 = exact.rows.iter().map(|row| row.1.norm_squared()).sum();
@@ -120,7 +125,7 @@ mod tests {
         let other = states.clone().at_share(0.9);
         let moved = MovieObjective { states: &other, ..objective };
         let further =
-            Anchors::new(&moved, &moved.place(&at(0.0)).unwrap(), moved.split(&at(0.0)).1, Share::Known);
+            Anchors::new(&moved, &moved.displaced(&at(0.0)).unwrap(), moved.split(&at(0.0)).1, Share::Known);
         for ((_, rest, x), (_, after, _)) in exact.rows.iter().zip(&further.rows) {
             assert!((x.column(4) * 0.1 - (rest - after)).norm() < 1e-12);
         }

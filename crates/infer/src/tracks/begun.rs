@@ -118,7 +118,7 @@ impl Course<'_, '_> {
         let at = self.objective(states).start(free);
         let rests = |rule: Rule| {
             let objective = MovieObjective { rule, ..self.objective(states) };
-            objective.place(&at).map(|placed| objective.residuals(&placed, &at)).ok()
+            objective.displaced(&at).map(|placed| objective.residuals(&placed, &at)).ok()
         };
         let mut rule = self.rule;
         let mut coarse = rests(rule);

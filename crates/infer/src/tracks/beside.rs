@@ -59,7 +59,7 @@ impl Followed {
             MovieObjective { rule: self.fit.rule.twice(), ..self.objective(movie, structure, space) };
         let mut at = space.nearest(coefficients);
         at.extend(self.displacements());
-        let placed = objective.place(&at)?;
+        let placed = objective.displaced(&at)?;
         // Φ by itself: what integrating adds is known of the terms of the fit alone, and beside these another that acts alike would be taken for
         // missing.
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
@@ -116,7 +116,7 @@ impl Followed {
         let own_motion = OwnMotion::at(&MovieObjective { states: &states, memory, ..fitted }, &at)?;
         let states = States { own_motion, ..states };
         let objective = MovieObjective { states: &states, memory, ..fitted };
-        let placed = objective.place(&at)?;
+        let placed = objective.displaced(&at)?;
         let components = objective.explained_components(&placed, &at);
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
         Seen { objective, equations: &equations, components, known: request.noise }.hint()

@@ -24,7 +24,7 @@ pub(super) fn naive_coefficients(objective: &MovieObjective<'_>) -> Result<Vec<f
     let mut free = DVector::zeros(objective.space.dimension());
     for _ in 0..LINEAR_STEPS {
         let at = objective.start(free.as_slice());
-        let placed = objective.place(&at)?;
+        let placed = objective.displaced(&at)?;
         let rests = objective.residuals(&placed, &at);
         let columns = objective.columns_of_trapezoid(&objective.states.motions, &placed);
         free = newton(objective, &free, columns.iter().zip(&rests))?;
@@ -36,7 +36,7 @@ pub(super) fn naive_coefficients(objective: &MovieObjective<'_>) -> Result<Vec<f
 pub(super) fn forward_coefficients(objective: &MovieObjective<'_>, first: &[f64]) -> Result<Vec<f64>, Error> {
     let rests = |free: &[f64]| -> Result<_, Error> {
         let at = objective.start(free);
-        let placed = objective.place(&at)?;
+        let placed = objective.displaced(&at)?;
         let rests = objective.residuals(&placed, &at);
         Ok((placed, rests))
     };

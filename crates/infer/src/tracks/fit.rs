@@ -155,7 +155,7 @@ impl<'a> Course<'a, '_> {
                 Some(equations) => equations,
                 None => objective.linearise(&parameters)?,
             };
-            let placed = objective.place(&parameters)?;
+            let placed = objective.displaced(&parameters)?;
             let components = objective.explained_components(&placed, &parameters);
             let seen = Seen { objective, equations: &equations, components, known: self.request.noise };
             let way = Way::Draws(how.draws);
@@ -289,8 +289,8 @@ impl<'a> Course<'a, '_> {
     /// are not determined.
     fn change(&self, states: &States, at: &[f64], rules: [Rule; 2]) -> Result<f64, Error> {
         let [coarse, fine] = rules.map(|rule| MovieObjective { rule, ..self.objective(states) });
-        let placed = coarse.place(at)?;
-        let (before, after) = (coarse.residuals(&placed, at), fine.residuals(&fine.place(at)?, at));
+        let placed = coarse.displaced(at)?;
+        let (before, after) = (coarse.residuals(&placed, at), fine.residuals(&fine.displaced(at)?, at));
         // A cell whose surroundings are close to something else goes anywhere: it counts no more than its error.
         let changed = after
             .iter()

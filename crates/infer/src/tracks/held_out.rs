@@ -84,7 +84,7 @@ impl<'a> AsMeasured<'a> {
     /// Sum of the squares of what some β leave of these velocities, if the cells are followed by a rule from where they were seen.
     pub fn missed(&self, free: &[f64], rule: Rule) -> Result<f64, Error> {
         let objective = MovieObjective { rule, ..self.objective };
-        let placed = objective.place(&self.with(free))?;
+        let placed = objective.displaced(&self.with(free))?;
         let means = objective.seen_velocities(&placed, &self.displacements)?;
         let missed = self.velocities.iter().zip(means);
         let missed = missed.filter_map(|(seen, mean)| Some((seen.as_ref()? - mean).norm_squared()));
@@ -177,7 +177,7 @@ pub(super) fn cross_validate(
             false => (Rule::Trapezoid, measured.at(&without)),
         };
         let objective = MovieObjective { rule, ..*objective };
-        let placed = objective.place(&point)?;
+        let placed = objective.displaced(&point)?;
         let means = objective.seen_velocities(&placed, objective.split(&point).1)?;
         let (mut squares, mut predicted) = (vec![(0.0, 0.0); regions.count()], Vec::new());
         for ((motion, seen), mean) in all.motions.iter().zip(&measured.velocities).zip(means) {

@@ -19,7 +19,7 @@ impl Seen<'_> {
     pub fn hint(&self) -> Result<f64, Error> {
         let (objective, equations) = (&self.objective, self.equations);
         if let Some(memory) = objective.memory.filter(|_| objective.states.polarities.align()) {
-            let own = self.place(memory);
+            let own = self.at(memory);
             // x and what is new in an interval, as multiples of those of polarities that do not align.
             let at = |(alignment, x, news): &(f64, f64, f64)| -> Result<f64, Error> {
                 let times = (memory.times * x).clamp(TIMES[0], TIMES[1]);

@@ -111,7 +111,7 @@ pub(crate) fn follow(
             (2.0 * used as f64 * variance + of_places) / total
         }
     };
-    let placed = objective.place(&found.parameters)?;
+    let placed = objective.displaced(&found.parameters)?;
     let stray = tails(&strays(&objective, &placed, displacements)).map(Doubt::Tails);
     let mut tracked = tracked(&objective, &found);
     let coefficients = space.coefficients(free);

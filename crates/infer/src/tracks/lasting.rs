@@ -17,7 +17,7 @@ impl Fitted<'_> {
     /// Their share is looked for first, then k, then the share once more.
     pub fn evidence_of_memory(&self) -> Result<f64, Error> {
         let Self { seen, memory, .. } = self;
-        let own = seen.place(*memory);
+        let own = seen.at(*memory);
         // The displacements of an interval, (u + u′)/2, are to vary as much.
         let alike = own.ratio / (1.0 + (-memory.times).exp());
         let at = |(share, spring): &(usize, usize)| -> Result<f64, Error> {

@@ -106,7 +106,7 @@ pub(super) fn held(known: &KnownNoise, align: bool) -> [bool; 4] {
 
 impl Seen<'_> {
     /// The present levels and memory.
-    pub fn place(&self, memory: Memory) -> Place {
+    pub fn at(&self, memory: Memory) -> Place {
         Place {
             log_k: self.objective.levels.spring().ln(),
             times: memory.times,
@@ -117,14 +117,14 @@ impl Seen<'_> {
 
     /// The surroundings of the present levels and some memory.
     pub fn about(&self, memory: Memory) -> Spaced {
-        let Place { log_k, ratio, .. } = self.place(memory);
+        let Place { log_k, ratio, .. } = self.at(memory);
         Spaced::about(log_k, ratio.ln(), memory, self.objective.states.polarities.align())
     }
 
     /// The surroundings of some log k where cells do not crawl.
     pub fn about_spring(&self, log_k: f64) -> Spaced {
         let memory = Memory::FIRST;
-        Spaced::about(log_k, self.place(memory).ratio.ln(), memory, false)
+        Spaced::about(log_k, self.at(memory).ratio.ln(), memory, false)
     }
 
     /// Whether both noise levels were given.

@@ -55,12 +55,12 @@ struct Rests<'a> {
 impl MovieObjective<'_> {
     /// The problem linearised about a point, with what integrating over the unknowns adds.
     pub fn linearise(&self, parameters: &[f64]) -> Result<NormalEquations, Error> {
-        self.linearise_of(&self.place(parameters)?, parameters)
+        self.linearise_of(&self.displaced(parameters)?, parameters)
     }
 
     /// Φ by itself, perhaps with the share of the way to the centroids as a further coefficient, after all others.
     pub(super) fn linearise_with(&self, parameters: &[f64], share: Share) -> Result<NormalEquations, Error> {
-        self.linearise_at(&self.place(parameters)?, parameters, share)
+        self.linearise_at(&self.displaced(parameters)?, parameters, share)
     }
 
     /// The same where cells are placed already.
@@ -135,7 +135,7 @@ impl MovieObjective<'_> {
 
     /// `Σ_j ‖∂r/∂x_j‖² / m_j` of each motion: what errors of measured places of unit variance make of the square of what is left of it.
     pub(super) fn sensitivities(&self, parameters: &[f64]) -> Result<Vec<f64>, Error> {
-        let placed = self.place(parameters)?;
+        let placed = self.displaced(parameters)?;
         let (free, displacements) = self.split(parameters);
         let anchors = Anchors::new(self, &placed, displacements, Share::Known);
         let square = |block: &[f64; 4]| block.iter().map(|entry| entry * entry).sum::<f64>();

@@ -198,7 +198,7 @@ mod tests {
             let objective = followed.objective(&movie, &request.structure, &space);
             let at = &followed.fit.parameters;
             let equations = objective.linearise(at).unwrap();
-            let components = objective.explained_components(&objective.place(at).unwrap(), at);
+            let components = objective.explained_components(&objective.displaced(at).unwrap(), at);
             let levels = [
                 KnownNoise::default(),
                 KnownNoise { position: Some(0.006), velocity: None },

@@ -72,7 +72,7 @@ fn estimate(movie: Movie, request: &Request, watch: &mut Watch<'_>) -> Result<Es
         at = course.pass(&states, at)?;
         let objective = course.objective(&states);
         let equations = objective.linearise_with(&at, Share::Unknown)?;
-        let components = objective.explained_components(&objective.place(&at)?, &at);
+        let components = objective.explained_components(&objective.displaced(&at)?, &at);
         let likelihood = Restricted { equations: &equations, components, known: request.noise, held: None };
         let criterion = likelihood.criterion(objective.levels.spring().ln())?;
         let reduced = equations.reduced()?;

@@ -134,7 +134,7 @@ impl<'a> MovieObjective<'a> {
     }
 
     /// The tessellations and velocities at all frames, and the motion between them.
-    pub fn place(&self, parameters: &[f64]) -> Result<Placed<'a>, Error> {
+    pub fn displaced(&self, parameters: &[f64]) -> Result<Placed<'a>, Error> {
         let (free, displacements) = self.split(parameters);
         let coefficients = self.space.coefficients(free);
         let states = self.states;
@@ -267,7 +267,7 @@ impl<'a> MovieObjective<'a> {
 
     /// The parts of Φ.
     pub fn parts(&self, parameters: &[f64]) -> Result<MovieParts, Error> {
-        Ok(self.parts_of(&self.place(parameters)?, parameters))
+        Ok(self.parts_of(&self.displaced(parameters)?, parameters))
     }
 
     fn parts_of(&self, placed: &Placed<'_>, parameters: &[f64]) -> MovieParts {
@@ -291,7 +291,7 @@ impl<'a> MovieObjective<'a> {
 
     /// Φ by itself; infinite where there is no tessellation.
     pub fn phi(&self, parameters: &[f64]) -> f64 {
-        self.place(parameters).map_or(f64::INFINITY, |placed| self.phi_of(&placed, parameters))
+        self.displaced(parameters).map_or(f64::INFINITY, |placed| self.phi_of(&placed, parameters))
     }
 
     /// The same where cells are placed already.
@@ -306,7 +306,7 @@ impl<'a> Placing for MovieObjective<'a> {
     type Placed = Placed<'a>;
 
     fn placed_at(&self, parameters: &[f64]) -> Result<Placed<'a>, Error> {
-        self.place(parameters)
+        self.displaced(parameters)
     }
 
     fn value_of(&self, placed: &Placed<'_>, parameters: &[f64]) -> f64 {

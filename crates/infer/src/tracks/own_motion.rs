@@ -46,7 +46,7 @@ impl OwnMotion {
         if objective.memory.is_none() {
             return Ok(None);
         }
-        let placed = objective.place(parameters)?;
+        let placed = objective.displaced(parameters)?;
         let coefficients = objective.space.coefficients(objective.split(parameters).0);
         let of_interval = |(interval, passage)| {
             let tangent = Tangent::of_ways(objective, interval, passage, coefficients.as_slice());

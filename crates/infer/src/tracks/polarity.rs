@@ -104,7 +104,7 @@ impl Seen<'_> {
             let aligned = Memory { alignment: alignment_of(of_alignment(memory.alignment) + STEP), ..memory };
             slope[3] += (root_mean_square(aligned)? / own).ln() / STEP;
         }
-        let fitted = Fitted { seen: self, memory, criterion: self.likelihood(self.place(memory))?.criterion };
+        let fitted = Fitted { seen: self, memory, criterion: self.likelihood(self.at(memory))?.criterion };
         let spread = QUANTILE * (slope.dot(&(covariance * slope)) + 0.25 * further).max(0.0).sqrt();
         let speed_interval = match spread < BROAD {
             true => [own * (-spread).exp(), own * spread.exp()],
@@ -178,7 +178,7 @@ impl Fitted<'_> {
 
     /// By how much −2 log L falls from no polarity at all, with the noise levels that are then likeliest, to the present one.
     fn evidence(&self) -> Result<f64, Error> {
-        let own = self.seen.place(self.memory);
+        let own = self.seen.at(self.memory);
         let at = |log_k: f64| -> Result<f64, Error> {
             Ok(self.seen.likelihood(Place { log_k, ratio: RATIO[1].exp(), ..own })?.criterion)
         };
@@ -207,7 +207,7 @@ impl Fitted<'_> {
 
     /// Between which multiples of v₀ the likelihood falls by less than an interval of 95 % allows, k and memory held.
     fn slowest_and_fastest(&self) -> Result<[f64; 2], Error> {
-        let place = self.seen.place(self.memory);
+        let place = self.seen.at(self.memory);
         let own = place.ratio.ln();
         // −2 log L and the multiple of v₀ at some log σ_v²/σ_p².
         let at = |ratio: f64| -> Result<(f64, f64), Error> {

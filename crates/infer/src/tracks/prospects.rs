@@ -45,7 +45,7 @@ impl Followed {
         let objective = self.objective(movie, structure, space);
         let mut at = space.nearest(coefficients);
         at.extend(self.displacements());
-        let placed = objective.place(&at)?;
+        let placed = objective.displaced(&at)?;
         // What integrating over the unknowns adds is known of the terms of the fit alone; it moves coefficients, hardly the information.
         let equations = objective.linearise_at(&placed, &at, Share::Known)?;
         let excess = result.excess();

@@ -145,7 +145,7 @@ impl Followed {
         let of_fit = self.objective(movie, &request.structure, space);
         let objective = MovieObjective { rule: of_fit.rule.twice(), ..of_fit };
         let at = &self.fit.parameters;
-        let placed = objective.place(at)?;
+        let placed = objective.displaced(at)?;
         // A track that jumps is no scatter of all cells.
         let states = objective.states;
         let jumps = jumps(&objective, &placed, at)?;

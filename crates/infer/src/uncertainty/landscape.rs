@@ -77,7 +77,7 @@ impl<'a> Slice<'a> {
         for (index, frame) in point.frames.iter().enumerate() {
             let (own, after) = rest.split_at(2 * frame.positions.len());
             rest = after;
-            let placed = objective.place(index, own)?;
+            let placed = objective.displaced(index, own)?;
             squares +=
                 position_rows::squares(frame, &placed.tessellation, &placed.positions, own).sum::<f64>();
             nudged.push(placed);

@@ -59,7 +59,7 @@ fn rows_of_drives_are_derivatives() {
         let objective = case.objective();
         let rows = |step: f64| {
             let at = case.at(step);
-            objective.drive_rows(&objective.place(&at).unwrap(), &at, 4)
+            objective.drive_rows(&objective.displaced(&at).unwrap(), &at, 4)
         };
         let along = |k: usize| (0.9 * k as f64).sin();
         let direction: Vec<Vector<f64>> = (0..case.states.blocks())
@@ -89,7 +89,7 @@ fn driven_polarities_are_held_to_what_is_expected() {
         let objective = case.objective();
         let memory = objective.memory.unwrap();
         let at = case.at(0.0);
-        let placed = objective.place(&at).unwrap();
+        let placed = objective.displaced(&at).unwrap();
         let (free, displacements) = objective.split(&at);
         let polarities = &case.states.polarities;
         let u =

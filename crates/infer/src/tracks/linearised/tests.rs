@@ -66,13 +66,13 @@ impl Around<'_> {
 
     fn residuals(&self, step: f64) -> Vec<Vector<f64>> {
         let at = self.at(step);
-        self.objective.residuals(&self.objective.place(&at).unwrap(), &at)
+        self.objective.residuals(&self.objective.displaced(&at).unwrap(), &at)
     }
 
     /// What the first polarities should be less what they are.
     fn outset(&self, at: &[f64]) -> Outset {
         let Self { objective } = self;
-        Outset::new(objective, &objective.place(at).unwrap(), objective.split(at).1, 4)
+        Outset::new(objective, &objective.displaced(at).unwrap(), objective.split(at).1, 4)
     }
 
     /// Relative error of each row of the motions.
@@ -81,7 +81,7 @@ impl Around<'_> {
         let p = objective.space.dimension();
         let at = self.at(0.0);
         let c = objective.space.coefficients(&at[..p]);
-        let rows = objective.motion_rows(&objective.place(&at).unwrap(), c.as_slice());
+        let rows = objective.motion_rows(&objective.displaced(&at).unwrap(), c.as_slice());
         let by_coefficients = |x: &DMatrix<f64>| -> Vector<f64> {
             (0..p).map(|k| Vector::new(x[(0, k)], x[(1, k)]) * Self::along(k)).sum()
         };
@@ -182,7 +182,7 @@ fn motions_that_are_told_apart_depend_on_their_own_way_alone() {
     let spread = |states: &States| -> f64 {
         let residuals = |at: &[f64]| {
             let own = objective(&movie, states, &structure, &space, rule);
-            own.residuals(&own.place(at).unwrap(), at)
+            own.residuals(&own.displaced(at).unwrap(), at)
         };
         let before = residuals(&at);
         let (mut own, mut others) = (0.0, 0.0);
@@ -235,7 +235,7 @@ fn displacements_are_continuous_where_neighbours_change() {
     largest.sort_by(f64::total_cmp);
     // The transitions alone would make the middle one 1.7e-4.
     assert!(largest[largest.len() / 2] < 3e-5, "{largest:?}");
-    let placed = around.objective.place(&around.at(0.0)).unwrap();
+    let placed = around.objective.displaced(&around.at(0.0)).unwrap();
     let turns = placed.passages.iter().flat_map(|passage| &passage.steps).map(|step| step.turns.len());
     assert!(turns.sum::<usize>() > 20);
 }
