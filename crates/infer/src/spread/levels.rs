@@ -11,6 +11,7 @@ use super::columns::Layout;
 use super::gram::Projected;
 use super::inverse::inverse;
 use crate::Error;
+use crate::noise::SMALLEST_VELOCITY_NOISE;
 use nalgebra::{DMatrix, DVector};
 
 /// Standard deviations below this, relative to the parameter, are none.
@@ -129,13 +130,18 @@ impl Likelihood<'_> {
 
     /// The most likely variances near some, by Fisher's method, and their −2 log L. A spread that becomes negligible is none.
     pub fn most_likely(&self, start: &Variances, held: Held) -> Result<(Variances, f64), Error> {
+        let least = 2.0 * SMALLEST_VELOCITY_NOISE.ln();
         let mut at = start.clone();
+        if !held.velocity {
+            at.velocity = at.velocity.max(least);
+        }
         let mut here = self.local(&at)?;
         for _ in 0..STEPS {
             let shown: Vec<usize> = (0..at.of_cells.len()).filter(|q| at.of_cells[*q].is_some()).collect();
             let free: Vec<usize> = (0..=shown.len())
                 .filter(|k| match k {
-                    0 => !held.velocity,
+                    // Data without errors would have none.
+                    0 => !held.velocity && (at.velocity > least || here.gradient[0] < 0.0),
                     k => held.parameter != Some(shown[k - 1]),
                 })
                 .collect();
@@ -154,7 +160,7 @@ impl Likelihood<'_> {
                 for (i, k) in free.iter().enumerate() {
                     let change = (-scale * step[i]).clamp(-LARGEST_STEP, LARGEST_STEP);
                     match k {
-                        0 => next.velocity += change,
+                        0 => next.velocity = (next.velocity + change).max(least),
                         k => next.of_cells[shown[k - 1]] = next.of_cells[shown[k - 1]].map(|v| v + change),
                     }
                 }

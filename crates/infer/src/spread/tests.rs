@@ -79,3 +79,23 @@ fn the_criterion_is_that_of_the_dense_form() {
         assert!(dense(&aside) > least - 0.01, "{which} {change}: {} {least}", dense(&aside));
     }
 }
+
+#[test]
+fn data_without_errors_have_variances_too() {
+    let frames = [crate::sample::observation(0.0, 0.0, 1)];
+    let space = CoefficientSpace::new(&Constraints::default()).unwrap();
+    let structure = Structure::base(1.0);
+    let levels = NoiseLevels { position: 0.001, velocity: 0.001 };
+    let objective = Objective::new(&frames, &structure, &space, levels);
+    let layout = Layout::new(&frames, &[CellParameter::PreferredPerimeter]).unwrap();
+    let nothing = DVector::zeros(36);
+    let mut at = crate::sample::COEFFICIENTS.to_vec();
+    at.extend([0.0; 72]);
+    let equations = objective.linearise(&at).unwrap();
+    let of_cells = columns(&objective, &at, &layout).unwrap();
+    let gram = Gram::new(&equations, &of_cells, 0.0, &nothing).unwrap();
+    let likelihood = Likelihood { layout: &layout, products: &gram.reduced, left: 68.0 };
+    let start = Variances { velocity: -50.0, of_cells: vec![Some(-6.0)] };
+    let (found, _) = likelihood.most_likely(&start, Held::default()).unwrap();
+    assert!((found.velocity - 2.0 * SMALLEST_VELOCITY_NOISE.ln()).abs() < 1e-12, "{found:?}");
+}
