@@ -17,71 +17,71 @@ pub struct EquationOfStateReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Parameters of the model, by the names of the interface, in the units above.
+    /// Parameters of the model, in the units above.
     pub parameters: ModelParameters,
-    /// The cell size ℓ₀ that `relative_density` refers to.
+    /// Cell size ℓ₀ to which `relative_density` refers, in units of length.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub cell_size: f64,
-    /// Cells of each run.
+    /// Number of cells in each run.
     #[schemars(range(min = 1))]
     pub cells: usize,
-    /// Runs at each density.
+    /// Number of runs at each density.
     #[schemars(range(min = 2))]
     pub replicas: usize,
-    /// Time before the averages.
+    /// Time before the averages, in units of time.
     #[schemars(range(min = 0.0))]
     pub relaxation: f64,
-    /// Time of the averages.
+    /// Averaging time, in units of time.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub time: f64,
-    /// Each density, ascending.
+    /// Results at each density, in ascending order of the density.
     #[schemars(length(min = 3))]
     pub points: Vec<UniformRecord>,
 }
 
-/// A uniform tissue of some density.
+/// A uniform tissue at one density.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct UniformRecord {
-    /// Cells per area ρ.
+    /// Density ρ, in cells per area.
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub density: f64,
-    /// ρ ℓ₀².
+    /// Dimensionless density ρ ℓ₀².
     #[schemars(extend("exclusiveMinimum" = 0))]
     pub relative_density: f64,
-    /// p = −(σ_xx + σ_yy)/2, in 1/time: friction is absorbed, here and below.
+    /// Pressure p = −(σ_xx + σ_yy)/2, in 1/time; friction is absorbed here and below.
     pub pressure: Measured,
-    /// τ = σ_xy − σ_yx, in 1/time.
+    /// Torque density τ = σ_xy − σ_yx, in 1/time.
     pub torque: Measured,
-    /// ⟨P/√A⟩.
+    /// Mean shape index ⟨P/√A⟩.
     pub shape_index: Measured,
-    /// ⟨v²⟩, (length/time)².
+    /// Mean square velocity ⟨v²⟩, in (length/time)².
     pub mean_square_velocity: Measured,
-    /// B = ρ dp/dρ, in 1/time, from the parabola through neighbouring densities.
+    /// Bulk modulus B = ρ dp/dρ, in 1/time, from the parabola through neighbouring densities.
     pub bulk_modulus: Measured,
-    /// A = ½ ρ dτ/dρ, likewise.
+    /// Odd bulk modulus A = ½ ρ dτ/dρ, in 1/time, from the parabola through neighbouring densities.
     pub odd_bulk_modulus: Measured,
-    /// The honeycomb of this density in mean-field theory; `null` where it has none.
+    /// The honeycomb of this density in mean-field theory; `null` where the theory has none.
     pub honeycomb: Option<Honeycomb>,
 }
 
-/// A mean over runs and its standard error.
+/// A mean over runs with its standard error.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Measured {
     /// The mean.
     pub value: f64,
-    /// Its standard error.
+    /// Standard error of the mean.
     pub error: f64,
 }
 
 /// Stress and moduli of a honeycomb.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Honeycomb {
-    /// p, in 1/time.
+    /// Pressure p, in 1/time.
     pub pressure: f64,
-    /// τ, in 1/time.
+    /// Torque density τ, in 1/time.
     pub torque: f64,
-    /// B, in 1/time.
+    /// Bulk modulus B, in 1/time.
     pub bulk_modulus: f64,
-    /// A, in 1/time.
+    /// Odd bulk modulus A, in 1/time.
     pub odd_bulk_modulus: f64,
 }

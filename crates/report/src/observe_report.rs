@@ -15,50 +15,50 @@ pub struct ObserveReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Frames measured, zero-based.
+    /// Indices of the frames measured, zero-based.
     pub frames: Vec<usize>,
-    /// Cells seen in each.
+    /// Number of cells seen in each of these frames.
     pub seen: Vec<usize>,
-    /// Those of them that count: whose polygon and those of whose neighbours are certain.
+    /// Number of cells that count in each of these frames: their polygon and those of their neighbours are certain.
     pub counted: Vec<usize>,
-    /// The cell size: root of the mean area of the cells that count.
+    /// Cell size: the square root of the mean area of the cells that count.
     pub length_scale: Quantity,
-    /// Whether velocities were given, or are displacements.
+    /// Where the velocities come from: the data (`given`), displacements between frames (`from_positions`), or nowhere (`none`).
     #[schemars(extend("enum" = ["given", "from_positions", "none"]))]
     pub velocities: &'static str,
-    /// Whether the median motion of the cells is taken for one of the stage.
+    /// Whether the median motion of the cells was attributed to the stage and removed.
     pub common_motion_removed: bool,
-    /// Shapes as a nematic.
+    /// Cell shapes as a nematic: the director and its defects.
     pub nematic: ObservedNematic,
     /// Avalanches of T1 transitions; `null` if there are no transitions.
     pub avalanches: Option<ObservedAvalanches>,
-    /// Single numbers, by name.
+    /// Measured numbers, by name.
     pub numbers: BTreeMap<&'static str, ObservedNumber>,
-    /// Functions, by name.
+    /// Measured functions, by name.
     pub curves: BTreeMap<&'static str, ObservedCurve>,
 }
 
-/// The director and its defects.
+/// The director of the cell shapes and its defects.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedNematic {
-    /// Standard deviation of the Gaussian over which shapes are smoothed.
+    /// Standard deviation of the Gaussian that smooths cell shapes to a director.
     pub smoothing_width: Quantity,
-    /// Defects of +½ in the frames that are measured.
+    /// Number of +½ defects in the frames measured.
     pub plus: usize,
-    /// Those of −½.
+    /// Number of −½ defects in the frames measured.
     pub minus: usize,
-    /// Parameters of the model whose stresses are averaged around defects; `null` if none are.
+    /// Parameters of the model whose stresses are averaged around defects; `null` if no stresses are averaged.
     pub stress_of: Option<ModelParameters>,
 }
 
-/// T1 transitions that come together.
+/// T1 transitions that belong together.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedAvalanches {
-    /// Longest time between two that do.
+    /// Longest time between two transitions that belong together.
     pub threshold: Quantity,
-    /// How many avalanches there are, of transitions that touch.
+    /// Number of avalanches: groups of transitions whose cells touch.
     pub avalanches: usize,
-    /// How many bursts, of transitions anywhere.
+    /// Number of bursts: groups of transitions anywhere in the field.
     pub bursts: usize,
 }
 
@@ -67,29 +67,29 @@ pub struct ObservedAvalanches {
 pub struct ObservedNumber {
     /// Value.
     pub value: f64,
-    /// Standard error; `null` where it cannot be told.
+    /// Standard error; `null` where it cannot be determined.
     pub standard_error: f64,
     /// Unit.
     pub unit: String,
-    /// What it rests on: cells, pairs of cells, transitions or frames.
+    /// Number of cells, pairs of cells, transitions or frames on which the value is based.
     pub count: usize,
 }
 
 /// A measured function.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ObservedCurve {
-    /// What it is a function of.
+    /// The variable that it is a function of.
     pub axis: &'static str,
-    /// Unit of that.
+    /// Unit of this variable.
     pub axis_unit: String,
     /// Unit of the values.
     pub unit: String,
-    /// Lags, distances, wave numbers or values.
+    /// Values of the variable: lags, distances, wave numbers or values of a quantity.
     pub at: Vec<f64>,
-    /// Values.
+    /// Value of the function at each of these.
     pub value: Vec<f64>,
-    /// Standard errors; `null` where they cannot be told.
+    /// Standard error of each value; `null` where it cannot be determined.
     pub standard_error: Vec<f64>,
-    /// Cells, pairs, displacements or wave vectors that each rests on.
+    /// Number of cells, pairs, displacements or wave vectors on which each value is based.
     pub count: Vec<usize>,
 }

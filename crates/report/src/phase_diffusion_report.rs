@@ -16,34 +16,34 @@ pub struct PhaseDiffusionReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Frames used, zero-based.
+    /// Indices of the frames used, zero-based.
     pub frames: Vec<usize>,
-    /// Cells present in all frames used.
+    /// Number of cells that are present in all frames used.
     pub cells: usize,
-    /// The cell size ℓ₀, ℓ₀² = area of the box per cell.
+    /// Cell size ℓ₀; ℓ₀² is the area of the box per cell.
     pub length_scale: Quantity,
-    /// Whether the places without displacement were given, or a constant displacement was fitted (`free`).
+    /// Whether the positions without displacement were given (`given`) or a constant displacement was fitted (`free`).
     #[schemars(extend("enum" = ["given", "free"]))]
     pub reference: &'static str,
-    /// What the residuals are taken for.
+    /// What the residuals are attributed to: errors of measurement (`measurement`) or random driving forces (`driving`).
     #[schemars(extend("enum" = ["measurement", "driving"]))]
     pub fluctuations: &'static str,
-    /// The highest power of the wave vector in the rates.
+    /// Highest power of the wave vector in the relaxation rates.
     #[schemars(extend("enum" = ["second", "fourth"]))]
     pub order: &'static str,
-    /// Phase diffusivities of the paper's equation, ε_xy = +1.
+    /// Phase diffusivities of the paper's equation, with ε_xy = +1.
     pub diffusivities: Diffusivities,
-    /// Moduli over the friction of a cell that they imply: rates.
+    /// Moduli over the friction of a cell that the diffusivities imply, in 1/time.
     pub moduli: ImpliedModuli,
-    /// √χ² of both cross diffusivities together, two degrees of freedom: their distance from none in standard errors.
+    /// √χ² of both cross diffusivities together against zero, with two degrees of freedom: their distance from zero in standard errors.
     pub chirality_significance: f64,
-    /// Root mean square of the residuals of the displacement amplitudes, in units of length.
+    /// Root mean square residual of the displacement amplitudes, in units of length.
     pub residual: f64,
-    /// Share of the changes of the amplitudes that the equation explains.
+    /// Share of the squared changes of the amplitudes that the equation explains.
     pub explained: f64,
-    /// Correlation of residuals from frame to frame.
+    /// Correlation between the residuals of consecutive frames.
     pub residual_correlation: f64,
-    /// The wave vectors used.
+    /// Results for each wave vector used.
     pub wave_vectors: Vec<WaveVectorRecord>,
 }
 
@@ -51,17 +51,17 @@ pub struct PhaseDiffusionReport {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct Diffusivities {
-    /// D_∥.
+    /// D_∥ = B/ζ.
     pub D_parallel: Diffusivity,
-    /// D_⊥.
+    /// D_⊥ = μ/ζ.
     pub D_perp: Diffusivity,
-    /// D_∥^×.
+    /// D_∥^× = −A/ζ.
     pub D_parallel_cross: Diffusivity,
-    /// D_⊥^×.
+    /// D_⊥^× = Kᵒ/ζ.
     pub D_perp_cross: Diffusivity,
 }
 
-/// An estimate of a diffusivity.
+/// An estimated diffusivity.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Diffusivity {
     /// Value.
@@ -74,29 +74,29 @@ pub struct Diffusivity {
     pub unit: String,
 }
 
-/// Moduli, per friction where they come from diffusivities.
+/// Moduli over the friction of a cell.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct ImpliedModuli {
-    /// Bulk modulus.
+    /// Bulk modulus B.
     pub B: Quantity,
-    /// Odd bulk modulus.
+    /// Odd bulk modulus A.
     pub A: Quantity,
-    /// Shear modulus.
+    /// Shear modulus μ.
     pub mu: Quantity,
-    /// Odd shear modulus.
+    /// Odd shear modulus Kᵒ.
     pub K_o: Quantity,
 }
 
-/// One wave vector.
+/// Results for one wave vector.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WaveVectorRecord {
-    /// Its components, in 1/length.
+    /// Components of the wave vector, in 1/length.
     pub q: [f64; 2],
-    /// Root mean square amplitude of the displacement over the frames, in units of length.
+    /// Root mean square displacement amplitude over the frames, in units of length.
     pub amplitude: f64,
-    /// D(q) of this wave vector alone, in components along q and a quarter turn ahead; `null` where it is not determined.
+    /// D(q) from this wave vector alone, in 1/time, rows first, in components along q and a quarter turn ahead; `null` where it is not determined.
     pub matrix: Option<[[f64; 2]; 2]>,
-    /// Standard errors of its entries, likewise.
+    /// Standard errors of the entries of `matrix`; `null` where `matrix` is `null`.
     pub standard_errors: Option<[[f64; 2]; 2]>,
 }

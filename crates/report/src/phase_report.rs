@@ -10,12 +10,12 @@ use serde::Serialize;
 
 use crate::infer_report::RunRecord;
 
-/// By how much cells differ in their parameters, and how.
+/// How much the cells differ in their parameters, and how the values are distributed.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CellSpread {
-    /// Standard deviation of each parameter over cells as a share of its mean.
+    /// Standard deviation over the cells as a share of the mean, by name of the parameter.
     pub shares: BTreeMap<String, f64>,
-    /// Name of the distribution.
+    /// Distribution of the values: `normal`, `log-normal` or `two-types`.
     pub distribution: &'static str,
 }
 
@@ -25,70 +25,70 @@ pub struct PhaseReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     pub run: RunRecord,
-    /// Cells of each run.
+    /// Number of cells in each run.
     #[schemars(range(min = 1))]
     pub cells: usize,
     /// Duration of each run, in 1/K_P.
     pub time: f64,
-    /// The time step asked for, in 1/K_P; `null` if each point has the one advised for it.
+    /// Time step requested for all points, in 1/K_P; `null` if each point uses the step advised for it.
     pub dt: Option<f64>,
     /// Smallest and largest time step used, in 1/K_P.
     pub steps: [f64; 2],
-    /// Least distance between starting positions, in ℓ₀.
+    /// Least distance between the random starting positions, in ℓ₀.
     pub least_distance: f64,
-    /// Runs at each point.
+    /// Number of runs at each point.
     #[schemars(range(min = 1))]
     pub replicas: usize,
     /// Area elasticity, in K_P/ℓ₀².
     #[serde(rename = "K_A")]
     pub area_elasticity: f64,
-    /// By how much cells differ, if they do.
+    /// How much the cells differ in their parameters; missing if they do not differ.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schemars(with = "CellSpread")]
     pub cell_spread: Option<CellSpread>,
-    /// Preferred perimeters of the columns, in ℓ₀.
+    /// Preferred perimeters of the columns of the diagram, in ℓ₀.
     #[serde(rename = "P_0")]
     pub preferred_perimeters: Vec<f64>,
-    /// Chiralities of the rows.
+    /// Chiralities of the rows of the diagram.
     #[serde(rename = "alpha")]
     pub chiralities: Vec<f64>,
-    /// Which part of the points this is, from one, and of how many.
+    /// Number of this part of the diagram, counted from one, and the number of parts; both are 1 for a whole diagram.
     #[schemars(inner(range(min = 1)))]
     pub shard: [usize; 2],
-    /// Runs made.
+    /// Number of runs made, including those that failed.
     pub runs: usize,
-    /// What the quantities range over, in ℓ₀ and 1/K_P.
+    /// Range of each quantity over the diagram, by name of the quantity, in units of ℓ₀ and 1/K_P.
     pub quantities: BTreeMap<&'static str, QuantityRecord>,
-    /// Runs that ended with an error, and why.
+    /// Runs that ended with an error, and the reason.
     pub failed: Vec<FailedRun>,
-    /// Lines to compare with.
+    /// Reference lines to compare the diagram with.
     pub lines: PhaseLines,
-    /// The scaling of ⟨v²⟩ about the transition; `null` where there are no points for it.
+    /// Test of the scaling of ⟨v²⟩ about the transition; `null` where the diagram does not have the points for it.
     pub collapse: Option<CollapseRecord>,
-    /// Why there is none; `null` if there is one.
+    /// Why `collapse` is `null`; `null` if it is not.
     pub no_collapse: Option<String>,
 }
 
-/// The values of a quantity over the diagram.
+/// Range of a quantity over the diagram.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct QuantityRecord {
-    /// The least; `null` if no point has a value.
+    /// Smallest value and where it occurs; `null` if no point has a value.
     pub least: Option<Extreme>,
-    /// The largest, likewise.
+    /// Largest value and where it occurs; `null` if no point has a value.
     pub largest: Option<Extreme>,
-    /// Points without a value.
+    /// Number of points without a value.
     pub unknown: usize,
 }
 
-/// An extreme value and where it is.
+/// An extreme value and the point at which it occurs.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Extreme {
-    /// The value.
+    /// The value, in units of ℓ₀ and 1/K_P.
     pub value: f64,
-    /// Its preferred perimeter.
+    /// Preferred perimeter of the point, in ℓ₀.
     #[serde(rename = "P_0")]
     pub preferred_perimeter: f64,
-    /// Its chirality.
+    /// Chirality of the point.
     #[serde(rename = "alpha")]
     pub chirality: f64,
 }
@@ -96,67 +96,67 @@ pub struct Extreme {
 /// A run that ended with an error.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct FailedRun {
-    /// Its preferred perimeter.
+    /// Preferred perimeter of the run, in ℓ₀.
     #[serde(rename = "P_0")]
     pub preferred_perimeter: f64,
-    /// Its chirality.
+    /// Chirality of the run.
     #[serde(rename = "alpha")]
     pub chirality: f64,
-    /// Which run at the point.
+    /// Index of the run at its point, zero-based.
     pub replica: usize,
-    /// What went wrong.
+    /// What went wrong, in words.
     pub error: String,
 }
 
-/// Lines to compare with.
+/// Reference lines to compare a phase diagram with.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct PhaseLines {
-    /// P_0* at α = 0 of the paper's P_0* − |α|, measured for |α| ≤ 0.2.
+    /// P_0* at α = 0, in ℓ₀: the paper's transition line is P_0* − |α|, measured for |α| ≤ 0.2.
     pub disordered_transition: f64,
-    /// P_MF: where the honeycomb becomes unstable, whatever α.
+    /// P_MF, in ℓ₀: the preferred perimeter at which the honeycomb becomes unstable, for any α.
     pub honeycomb_limit: f64,
 }
 
-/// The scaling of ⟨v²⟩ about the transition.
+/// Test of the scaling of ⟨v²⟩ about the transition.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CollapseRecord {
-    /// Range of |α|.
+    /// Range of |α| in which the scaling is tested.
     pub alpha: [f64; 2],
-    /// ⟨v²⟩ from which a point counts as moving.
+    /// Least ⟨v²⟩ for a point to count as moving, in (ℓ₀ K_P)².
     pub least_velocity: f64,
-    /// Points that count.
+    /// Number of moving points in the range of |α|, which are used.
     pub points: usize,
-    /// Points in the range of |α| that do not move.
+    /// Number of points in the range of |α| that do not move.
     pub at_rest: usize,
-    /// The power of |α| by which ⟨v²⟩ is divided.
+    /// Power of |α| by which ⟨v²⟩ is divided.
     pub amplitude_exponent: f64,
-    /// The exponents given, or the paper's.
+    /// Result with the exponents given, by default those of the paper.
     pub given: GivenExponents,
-    /// Those that fit best.
+    /// Result with the exponents that fit best.
     pub fitted: FittedExponents,
 }
 
 /// Exponents as given.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct GivenExponents {
-    /// The power of |ΔP|.
+    /// β, the power of |ΔP| by which ⟨v²⟩ is scaled.
     pub beta: f64,
-    /// The power of |ΔP| in the argument.
+    /// φ, the power of |ΔP| in the argument |α|/|ΔP|^φ.
     pub phi: f64,
-    /// Root mean square distance from one curve in ln ⟨v²⟩; `null` if the curves do not overlap.
+    /// Root mean square distance of the points from one curve, in ln ⟨v²⟩; `null` if the curves do not overlap.
     pub scatter: Option<f64>,
 }
 
 /// Exponents as fitted.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct FittedExponents {
-    /// The power of |ΔP|.
+    /// β, the power of |ΔP| by which ⟨v²⟩ is scaled.
     pub beta: ExponentRecord,
-    /// The power of |ΔP| in the argument.
+    /// φ, the power of |ΔP| in the argument |α|/|ΔP|^φ.
     pub phi: ExponentRecord,
-    /// Root mean square distance from one curve in ln ⟨v²⟩.
+    /// Root mean square distance of the points from one curve, in ln ⟨v²⟩.
     pub scatter: f64,
-    /// Bootstrap samples behind the intervals.
+    /// Number of bootstrap samples from which the intervals are taken.
     pub samples: usize,
 }
 
@@ -165,6 +165,6 @@ pub struct FittedExponents {
 pub struct ExponentRecord {
     /// The estimate.
     pub value: f64,
-    /// Its 95 % interval.
+    /// 95 % interval of the estimate.
     pub interval: [f64; 2],
 }

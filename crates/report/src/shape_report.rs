@@ -17,51 +17,51 @@ pub struct ShapeReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Each frame.
+    /// Agreement in each frame.
     pub frames: Vec<FrameAgreement>,
-    /// All frames: contacts summed up, correlations and ratios averaged with the number of cells as weight.
+    /// Agreement over all frames: contacts are summed; correlations and ratios are averaged with the number of cells as weight.
     pub all: AgreementRecord,
-    /// Length of the axis of cells.
+    /// Number of tracks, which is the length of the axis of cells.
     pub tracks: usize,
-    /// Outlines over all frames.
+    /// Number of outlines, over all frames.
     pub outlines: usize,
-    /// Cells at the border of the image, over all frames.
+    /// Number of cells at the border of the image, over all frames.
     pub at_border: usize,
-    /// Cells in more than one piece, over all frames.
+    /// Number of cells in more than one piece, over all frames.
     pub in_pieces: usize,
-    /// Pixels of background across which cells touch; `null` for outlines.
+    /// Largest number of background pixels between two cells that still count as touching; `null` for outlines.
     pub gap: Option<usize>,
-    /// As `all`, of Voronoi polygons of the centroids of the outlines.
+    /// The same as `all`, but for the Voronoi polygons of the centroids of the outlines.
     pub of_centroids: AgreementRecord,
-    /// How the sites were found.
+    /// How well the Voronoi sites could be fitted to the outlines.
     pub sites: SiteRecord,
-    /// What was read, guessed and doubted of the files.
+    /// What was read from the files, what was guessed, and what is doubtful.
     pub notes: Vec<NoteRecord>,
 }
 
-/// Something that was understood of a file that does not say everything about itself.
+/// Something that was read from, or assumed about, a file that does not describe itself completely.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct NoteRecord {
-    /// How it is known.
+    /// Whether it was read from the file, was guessed, or is doubtful.
     #[schemars(extend("enum" = ["read", "guessed", "doubtful"]))]
     pub kind: String,
-    /// What it is, for people.
+    /// The note in words.
     pub text: String,
 }
 
-/// Sites whose Voronoi polygons follow outlines best.
+/// The sites whose Voronoi polygons follow the outlines best.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct SiteRecord {
-    /// Root mean square distance of the lines along which cells touch from the bisectors of their centroids, in units of length; so below.
+    /// Root mean square distance of the lines along which cells touch from the perpendicular bisectors between their centroids, in units of length.
     #[schemars(range(min = 0.0))]
     pub misfit_of_centroids: f64,
-    /// The same with the sites.
+    /// The same for the bisectors between the sites, in units of length.
     #[schemars(range(min = 0.0))]
     pub misfit: f64,
-    /// Root mean square distance of the sites from the centroids, over cells that do not touch the border of the image.
+    /// Root mean square distance of the sites from the centroids, over cells that do not touch the border of the image, in units of length.
     #[schemars(range(min = 0.0))]
     pub offset: f64,
-    /// Median of the standard deviations of coordinates.
+    /// Median over the positions of the standard deviation of a coordinate, in units of length.
     #[schemars(range(min = 0.0))]
     pub median_error: f64,
 }
@@ -71,35 +71,35 @@ pub struct SiteRecord {
 pub struct FrameAgreement {
     /// Index of the frame, zero-based.
     pub frame: usize,
-    /// Cells in it.
+    /// Number of cells in the frame.
     pub present: usize,
-    /// How well Voronoi polygons stand for outlines.
+    /// How well the Voronoi polygons agree with the outlines.
     #[serde(flatten)]
     pub agreement: AgreementRecord,
 }
 
-/// How well the Voronoi polygons of positions stand for the true outlines.
+/// How well the Voronoi polygons of the positions agree with the true outlines.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Serialize, JsonSchema)]
 pub struct AgreementRecord {
-    /// Cells whose shapes are compared.
+    /// Number of cells whose shapes are compared.
     pub cells: usize,
-    /// Contacts of outlines with a compared cell.
+    /// Number of contacts between outlines that involve a compared cell.
     pub true_contacts: usize,
-    /// Contacts of Voronoi polygons with a compared cell.
+    /// Number of contacts between Voronoi polygons that involve a compared cell.
     pub voronoi_contacts: usize,
-    /// Contacts in both.
+    /// Number of contacts that occur in both.
     pub shared_contacts: usize,
     /// Share of the Voronoi contacts that are true.
     pub precision: f64,
-    /// Share of the true contacts that Voronoi polygons have.
+    /// Share of the true contacts that the Voronoi polygons have, too.
     pub recall: f64,
-    /// Pearson's correlation of the areas.
+    /// Pearson correlation between Voronoi areas and true areas.
     pub area_correlation: f64,
-    /// Pearson's correlation of the perimeters.
+    /// Pearson correlation between Voronoi perimeters and true perimeters.
     pub perimeter_correlation: f64,
-    /// Sum of Voronoi areas over the sum of true areas.
+    /// Sum of the Voronoi areas divided by the sum of the true areas.
     pub area_ratio: f64,
-    /// Sum of Voronoi perimeters over the sum of true perimeters.
+    /// Sum of the Voronoi perimeters divided by the sum of the true perimeters.
     pub perimeter_ratio: f64,
 }
 
@@ -140,19 +140,19 @@ pub struct FieldReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// Extrema in each frame.
+    /// Number of extrema in each frame.
     pub frames: Vec<usize>,
-    /// Length of the axis of cells.
+    /// Number of tracks, which is the length of the axis of cells.
     pub tracks: usize,
-    /// Cells linked to one of the frame before, over all frames.
+    /// Number of cells that were linked to a cell of the frame before, over all frames.
     pub linked: usize,
-    /// Columns and rows of pixels.
+    /// Number of columns and number of rows of pixels.
     #[schemars(inner(range(min = 1)))]
     pub size: [usize; 2],
-    /// Length of a pixel, in units of length.
+    /// Side of a pixel, in units of length.
     pub pixel_size: f64,
-    /// The least prominence of an extremum taken.
+    /// Smallest prominence of the extrema that were accepted, in units of the field.
     pub smallest_prominence: f64,
-    /// What was read, guessed and doubted of the files.
+    /// What was read from the files, what was guessed, and what is doubtful.
     pub notes: Vec<NoteRecord>,
 }

@@ -20,63 +20,63 @@ pub struct SpectrumReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless; rates and angular frequencies are in 1/time.
     pub units: Units,
-    /// Which modes were asked for.
+    /// Which modes were requested.
     pub selection: SelectionRecord,
-    /// Parameters as used, by the names of the interface, in units of the data.
+    /// Parameters of the model as used, in units of the data.
     pub parameters: ModelParameters,
-    /// Values of parameters in which cells differ, by name, one for each cell of the data; of types by the labels in the first frame.
+    /// Values of the parameters in which cells differ, by name, one for each cell of the data; where they depend on labels, by the labels in the first frame.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub cell_parameters: BTreeMap<&'static str, Vec<f64>>,
-    /// Effects beyond the base model with their coefficients.
+    /// Coefficients of the effects beyond the base model, by name of the effect.
     #[serde(skip_serializing_if = "BTreeMap::is_empty")]
     pub effects: BTreeMap<String, Vec<f64>>,
-    /// The mean-field theory at these parameters; `null` with effects or where K_P is not positive.
+    /// Mean-field theory at these parameters; `null` with effects, where cells differ, or where K_P is not positive.
     pub mean_field: Option<MeanFieldRecord>,
-    /// The spectrum of each frame.
+    /// Spectrum of each frame.
     #[schemars(length(min = 1))]
     pub frames: Vec<FrameSpectrum>,
-    /// The comparison on a lattice; `null` where it was not asked for.
+    /// Comparison with the theory on a lattice; `null` where it was not requested.
     pub lattice: Option<LatticeRecord>,
-    /// The modes of a strip of the lattice, with `--ends`; `null` otherwise.
+    /// Modes of a strip of the lattice, with `--ends`; `null` otherwise.
     pub strip: Option<StripRecord>,
 }
 
-/// Which modes were asked for.
+/// Which modes were requested.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(tag = "modes", rename_all = "snake_case")]
 pub enum SelectionRecord {
-    /// All.
+    /// All modes.
     All,
-    /// Those that grow fastest.
+    /// The modes that grow fastest.
     Largest {
-        /// How many modes.
+        /// Number of modes requested.
         count: usize,
     },
-    /// Those nearest to a point.
+    /// The modes nearest to a point of the complex plane.
     Near {
-        /// Real and imaginary part of the point.
+        /// Real and imaginary part of this point, in 1/time.
         shift: [f64; 2],
-        /// How many modes.
+        /// Number of modes requested.
         count: usize,
     },
-    /// Those of a band of frequencies.
+    /// The modes with an angular frequency in a band.
     Band {
-        /// Ends of the band of angular frequencies.
+        /// Ends of the band of angular frequencies, in 1/time.
         frequencies: [f64; 2],
-        /// How many modes were looked at.
+        /// Number of modes examined.
         count: usize,
     },
 }
 
-/// What the theory of the honeycomb says.
+/// Results of the mean-field theory of the honeycomb.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeanFieldRecord {
-    /// Its phase.
+    /// Phase of the honeycomb.
     #[schemars(extend("enum" = ["solid", "odd_elastic_solid", "unstable"]))]
     pub phase: &'static str,
-    /// The P_0 at which the honeycomb becomes unstable, in units of length.
+    /// Preferred perimeter P_0 at which the honeycomb becomes unstable, in units of length.
     pub stability_limit: f64,
-    /// The |α| beyond which the mode at q* oscillates.
+    /// Value of |α| beyond which the mode at q* oscillates.
     pub exceptional_chirality: f64,
     /// ⟨ω²⟩ over the modes of the honeycomb, in 1/time².
     pub mean_square_frequency: f64,
@@ -87,149 +87,151 @@ pub struct MeanFieldRecord {
 pub struct FrameSpectrum {
     /// Index of the frame, zero-based.
     pub frame: usize,
-    /// Cells present.
+    /// Number of cells present.
     pub present: usize,
-    /// Cells that may move in the modes.
+    /// Number of cells that may move in the modes.
     pub counted: usize,
-    /// The cell size ℓ₀, ℓ₀² = mean area.
+    /// Cell size ℓ₀, in units of length; ℓ₀² is the mean area.
     pub length_scale: f64,
-    /// Modes found.
+    /// Number of modes found.
     pub modes: usize,
-    /// Those that decay.
+    /// Number of modes that decay.
     pub decaying: usize,
-    /// Those that grow.
+    /// Number of modes that grow.
     pub growing: usize,
-    /// Those that neither grow nor decay, but oscillate.
+    /// Number of modes that oscillate but neither grow nor decay.
     pub neutral: usize,
-    /// Those whose rate and frequency are zero.
+    /// Number of modes whose rate and frequency are both zero.
     pub zero: usize,
-    /// Those that oscillate, whatever else they do.
+    /// Number of modes that oscillate, whether or not they grow or decay.
     pub oscillating: usize,
-    /// Rates up to this count as zero: 1e-10 of the largest row sum of J.
+    /// Rates up to this value count as zero, in 1/time: 1e-10 of the largest row sum of J.
     #[schemars(range(min = 0.0))]
     pub tolerance: f64,
     /// ⟨ω²⟩ = (1/2n) Σ (Im λ)² over all modes, in 1/time²; `null` if only some were computed.
     #[schemars(range(min = 0.0))]
     pub mean_square_frequency: Option<f64>,
-    /// The same in units of K_P².
+    /// `mean_square_frequency` in units of K_P²; `null` also where K_P is zero.
     #[schemars(range(min = 0.0))]
     pub mean_square_frequency_over_k_p: Option<f64>,
-    /// The mode that grows fastest or decays slowest, other than translations.
+    /// The mode that grows fastest or decays most slowly, other than translations.
     pub largest_growth: Option<ModeRecord>,
     /// The mode with the highest frequency.
     pub fastest_oscillation: Option<ModeRecord>,
     /// The mode with the largest condition number.
     pub exceptional: Option<ModeRecord>,
-    /// Real and imaginary part at which the matrix was factorised; `null` if all modes were computed.
+    /// Real and imaginary part of the point at which the matrix was factorised, in 1/time; `null` if all modes were computed.
     pub shift: Option<[f64; 2]>,
-    /// Distance from there up to which nothing should be missing; `null` where that is not told.
+    /// Distance from `shift` up to which no mode should be missing, in 1/time; `null` where it is not known.
     pub reach: Option<f64>,
-    /// Largest ‖J u − λ u‖/‖J‖ of the modes that were searched for; `null` if all were computed.
+    /// Largest residual ‖J u − λ u‖/‖J‖ of the modes that were searched for; `null` if all modes were computed.
     pub largest_residual: Option<f64>,
-    /// How near the snapshot is to a T1 transition; `null` where that cannot be told.
+    /// How near the snapshot is to a T1 transition; `null` where that cannot be determined.
     pub transition: Option<TransitionRecord>,
-    /// Where between walls the modes are; `null` without walls or vectors.
+    /// Where the modes are between the walls; `null` without walls or without eigenvectors.
     pub walls: Option<WallsRecord>,
 }
 
 /// One mode.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ModeRecord {
-    /// Row in `eigenvalues.npy`.
+    /// Row of the mode in `eigenvalues.npy`.
     pub index: usize,
-    /// Rate of growth, in 1/time.
+    /// Growth rate, in 1/time.
     pub rate: f64,
     /// Angular frequency, in 1/time.
     pub frequency: f64,
-    /// Share of the cells that take part; `null` without vectors, and so below.
+    /// Share of the cells that take part; `null` without eigenvectors, as are the fields below.
     #[schemars(range(min = 0.0))]
     pub participation: Option<f64>,
-    /// Share of the divergence in the gradients.
+    /// Share of the divergence in the squared gradients of the mode: 1 for a longitudinal, 0 for a transverse mode.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub longitudinal: Option<f64>,
-    /// Condition number.
+    /// Condition number of the eigenvalue.
     pub condition: Option<f64>,
-    /// Overlap with the mode whose value is nearest.
+    /// Overlap with the mode whose eigenvalue is nearest, among those with another eigenvalue.
     pub overlap: Option<f64>,
 }
 
 /// How near a snapshot is to a T1 transition.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TransitionRecord {
-    /// Length of the shortest side.
+    /// Length of the shortest side of a polygon, in units of length.
     pub shortest_side: f64,
-    /// The cells that share it, as the file numbers them.
+    /// The two cells that share this side, numbered as in the file.
     pub cells: [usize; 2],
-    /// Least distance of a fourth cell from the circle through three.
+    /// Smallest distance of a fourth cell from the circle through three cells, in units of length.
     pub smallest_gap: f64,
-    /// Sides shorter than a hundredth of ℓ₀.
+    /// Number of sides shorter than a hundredth of ℓ₀.
     pub short_sides: usize,
-    /// All sides.
+    /// Number of all sides.
     pub sides: usize,
 }
 
-/// The exact Jacobian of a honeycomb against the theory.
+/// Exact Jacobian of a honeycomb compared with the theory.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct LatticeRecord {
-    /// Cells in a row and rows.
+    /// Number of cells in a row, and number of rows.
     pub size: [usize; 2],
-    /// Points on the path Γ–K–M–Γ.
+    /// Number of points on the path Γ–K–M–Γ.
     pub points: usize,
-    /// Largest difference of the dynamical matrices, relative to the largest entry on the path; `null` with effects.
+    /// Largest difference between the dynamical matrices of model and theory, relative to the largest entry on the path; `null` with effects.
     pub largest_difference: Option<f64>,
 }
 
-/// Where between walls the modes are.
+/// Where the modes are between the walls.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct WallsRecord {
-    /// Which sides of the box are walls.
+    /// Which sides of the box are walls: left and right (`x`), or all four (`both`).
     #[schemars(extend("enum" = ["x", "both"]))]
     pub sides: &'static str,
-    /// Share of the cells within two rows of a wall.
+    /// Share of the cells that are within two rows of a wall.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub cells: f64,
-    /// Mean over the modes of their share of |u|² there.
+    /// Share of |u|² within two rows of a wall, averaged over the modes.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub mean_share: f64,
-    /// Modes that have more than half of their |u|² there.
+    /// Number of modes that have more than half of their |u|² within two rows of a wall.
     pub mostly: usize,
 }
 
-/// The modes of a strip of the honeycomb at one wave number along it.
+/// The modes of a strip of the honeycomb at one wave number along its rows.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct StripRecord {
-    /// What is at the ends.
+    /// What terminates the strip.
     #[schemars(extend("enum" = ["periodic", "held", "walls"]))]
     pub ends: &'static str,
-    /// Rows.
+    /// Number of rows.
     pub rows: usize,
-    /// Rows that move.
+    /// Number of rows that move.
     pub moving_rows: usize,
-    /// Mean distance of the rows that move.
+    /// Mean distance between neighbouring rows that move, in units of length.
     pub spacing: f64,
-    /// Period along the rows.
+    /// Period along the rows, in units of length.
     pub period: f64,
-    /// Largest speed of a cell after coming to rest between walls.
+    /// Largest speed of a cell after the tissue came to rest between walls, in units of velocity.
     #[schemars(range(min = 0.0))]
     pub speed: f64,
-    /// Wave numbers in the files.
+    /// Number of wave numbers in the files.
     pub wave_numbers: usize,
-    /// The largest rate of growth at any of them, and the wave number (1/length).
+    /// Largest growth rate at any wave number (1/time), and that wave number (1/length).
     pub fastest: [f64; 2],
-    /// The wave number of what follows (1/length).
+    /// Wave number along the rows to which the fields below refer (1/length).
     pub wave_number: f64,
-    /// Modes at it.
+    /// Number of modes at this wave number.
     pub modes: usize,
-    /// Modes that grow by more than a factor e towards the left end.
+    /// Number of modes that grow by more than a factor e towards the left end.
     pub left: usize,
-    /// Modes that do so towards the right end.
+    /// Number of modes that grow by more than a factor e towards the right end.
     pub right: usize,
-    /// Modes of an edge.
+    /// Number of edge modes.
     pub of_edges: usize,
-    /// Modes around whose value the spectrum of the periodic tissue winds.
+    /// Number of modes around whose eigenvalue the spectrum of the periodic tissue winds.
     pub winding: usize,
-    /// Largest rate of growth across the strip of modes that are not of an edge (1/length), if it is more than a factor e; the shortest localisation length is its inverse. `null` otherwise.
+    /// Largest spatial growth rate across the strip of a mode that is not an edge mode (1/length); its inverse is the shortest localisation length. `null` if
+    /// no such mode grows by more than a factor e.
     pub largest_growth: Option<f64>,
-    /// Root mean square difference of the growth from that of the generalised Brillouin zone, over the root mean square of the latter; `null` where there is none.
+    /// Root mean square difference of the spatial growth rates from those of the generalised Brillouin zone, relative to the root mean square of the latter;
+    /// `null` where there is nothing to compare.
     pub difference_from_zone: Option<f64>,
 }

@@ -2,7 +2,7 @@
 
 use crate::numbers::superscript;
 
-/// The units that axis labels, scale bars and tables carry, as the data set states them.
+/// Units of length and time as the data set states them, for axis labels, scale bars and tables.
 #[derive(Debug, Clone, PartialEq, Eq, serde::Serialize, schemars::JsonSchema)]
 pub struct Units {
     /// Unit of length, for example `um`.

@@ -20,12 +20,13 @@ pub(super) const KNOWN: &str = "K_A, P_0, A_0 or alpha";
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Cells that differ")]
 pub(crate) struct CellArguments {
-    /// A parameter of each cell: `P_0=FILE.npy`, an array (N) of values; of K_A, P_0, A_0 and alpha. May be repeated. The
-    /// parameter itself is then the mean of the values.
+    /// Give each cell its own value of a parameter: `P_0=FILE.npy`, with an array (N) of values. NAME is K_A, P_0,
+    /// A_0 or alpha. The parameter of the model is then the mean of the values. May be repeated.
     #[arg(long, value_name = "NAME=FILE")]
     cell_parameter: Vec<String>,
-    /// A parameter of the cells of each label: `alpha=0:0.2,1:1`; other cells have that of the model. May be repeated. The
-    /// parameter itself is then the mean over cells.
+    /// Give the cells of each label their own value of a parameter: `alpha=0:0.2,1:1`. NAME is K_A, P_0, A_0 or
+    /// alpha. Other cells have the value given for the model, whose parameter is then the mean over cells. May be
+    /// repeated.
     #[arg(long, value_name = "NAME=LABEL:VALUE,…", allow_hyphen_values = true)]
     label_parameter: Vec<String>,
 }

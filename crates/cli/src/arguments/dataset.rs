@@ -10,69 +10,80 @@ use voronudge_io::{
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Data")]
 pub(crate) struct DataSetArguments {
-    /// Folder with positions.npy, dataset.toml and, where there are any, velocities.npy or flow.npy.
+    /// Folder with positions.npy, dataset.toml and, optionally, velocities.npy or flow.npy.
     #[arg(value_name = "DATASET")]
     pub dataset: Option<PathBuf>,
-    /// Positions (N, 2) or (frames, N, 2), .npy, instead of the folder's.
+    /// Positions: .npy file of shape (N, 2) or (frames, N, 2) [default: positions.npy of the folder].
     #[arg(long, value_name = "FILE")]
     pub positions: Option<PathBuf>,
-    /// Velocities of the same shape.
+    /// Velocities: .npy file of the same shape as the positions [default: velocities.npy of the folder].
     #[arg(long, value_name = "FILE")]
     pub velocities: Option<PathBuf>,
-    /// Labels of the cells (N,) or (frames, N), integers, .npy; -1 for none.
+    /// Labels of the cells: .npy file of integers of shape (N,) or (frames, N), -1 for a cell without a label
+    /// [default: labels.npy of the folder].
     #[arg(long, value_name = "FILE")]
     pub labels: Option<PathBuf>,
-    /// Standard deviation of each coordinate of a cell (N,) or (frames, N), .npy.
+    /// Position errors: .npy file of shape (N,) or (frames, N) with the standard deviation of each coordinate of a
+    /// cell [default: position_errors.npy of the folder].
     #[arg(long, value_name = "FILE")]
     pub position_errors: Option<PathBuf>,
-    /// Flow field on a grid (ny, nx, 2) or (frames, ny, nx, 2), .npy.
+    /// Flow field, velocities on a grid: .npy file of shape (ny, nx, 2) or (frames, ny, nx, 2) [default: flow.npy of
+    /// the folder].
     #[arg(long, value_name = "FILE")]
     pub flow: Option<PathBuf>,
-    /// x of the columns of the flow field, .npy.
+    /// x of the columns of the flow field: .npy file of shape (nx,) [default: flow_x.npy of the folder].
     #[arg(long, value_name = "FILE")]
     pub flow_x: Option<PathBuf>,
-    /// y of the rows of the flow field, .npy.
+    /// y of the rows of the flow field: .npy file of shape (ny,) [default: flow_y.npy of the folder].
     #[arg(long, value_name = "FILE")]
     pub flow_y: Option<PathBuf>,
-    /// Periodic box.
+    /// Sides of the periodic box, in the unit of length; not with --open [default: as stated in dataset.toml].
     #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], conflicts_with = "open", allow_negative_numbers = true)]
     pub box_lengths: Option<Vec<f64>>,
-    /// Open field of view.
+    /// The cells are in an open field of view, not in a periodic box [default: as stated in dataset.toml].
     #[arg(long)]
     pub open: bool,
-    /// Rectangle in which every cell would have been seen, in an open field [default: that of the data set, or the hull of the
-    /// cells of each frame].
+    /// Two opposite corners of the rectangle in which every cell would have been seen, for an open field of view
+    /// [default: that of the data set, or the hull of the cells of each frame].
     #[arg(long, num_args = 4, value_names = ["X0", "Y0", "X1", "Y1"], allow_negative_numbers = true)]
     pub field_of_view: Option<Vec<f64>>,
-    /// Time between frames.
+    /// Time between frames [default: that of the data set, or 1].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     pub frame_interval: Option<f64>,
-    /// Unit of length, for display.
+    /// Name of the unit of length, for display [default: that of the data set, or `length`].
     #[arg(long, value_name = "UNIT")]
     pub length_unit: Option<String>,
-    /// Unit of time, for display.
+    /// Name of the unit of time, for display [default: that of the data set, or `time`].
     #[arg(long, value_name = "UNIT")]
     pub time_unit: Option<String>,
-    /// Direction of y in the files: `up`, or `down` as in images.
+    /// Direction of the y axis in the files: `up`, or `down` as in images [default: that of the data set, or `up`].
     #[arg(long, value_name = "up|down")]
     pub y_axis: Option<YAxis>,
-    /// Periodic trajectories that leave the box are meant to.
+    /// Positions are unwrapped: trajectories continue across the boundary of the periodic box.
     #[arg(long)]
     pub unwrapped: bool,
-    /// Standard deviation of a coordinate, in data units or as a percentage of the cell size: `0.4`, `2%`.
+    /// Measurement error of the positions: the standard deviation of a coordinate, in data units or as a percentage
+    /// of the cell size, such as `0.4` or `2%` [default: that of the data set; if it has none, fits estimate it].
     #[arg(long, value_name = "NOISE", allow_hyphen_values = true)]
     pub position_noise: Option<Noise>,
-    /// Standard deviation of a velocity component, in data units or as a percentage of the rms velocity.
+    /// Measurement error of the velocities: the standard deviation of a component, in data units or as a percentage
+    /// of the rms velocity [default: that of the data set; if it has none, fits estimate it].
     #[arg(long, value_name = "NOISE", allow_hyphen_values = true)]
     pub velocity_noise: Option<Noise>,
-    /// What of a cell a position is: `sites`, `centroids`, or the share of the way from one to the other.
+    /// Which point of a cell its position is: the Voronoi site (`sites`), the centroid (`centroids`), or a point
+    /// between them, given as the share of the way from site to centroid, 0 to 1 [default: that of the data set; if
+    /// it has none, fits estimate it and other commands assume sites].
     #[arg(long, value_name = "sites|centroids|SHARE", allow_negative_numbers = true)]
     pub positions_are: Option<PositionsAre>,
-    /// What a grid point of the flow field stands for: the average over a `square` in which every point moves with its cell, over
-    /// the centres of cells with `gaussian` weights, or over the plane with such weights, `gaussian-area`.
+    /// What a grid point of the flow field represents: the average over a `square` in which every point moves with
+    /// its cell, over the centres of cells with `gaussian` weights, or over the plane with such weights
+    /// (`gaussian-area`) [default: that of the data set; if it has none, fits estimate it and other commands assume
+    /// squares].
     #[arg(long, value_name = "KIND")]
     pub window: Option<WindowKind>,
-    /// Side of a square window or standard deviation of a Gaussian one, a length.
+    /// Width of the window, a length: the side of a square, or the standard deviation of a Gaussian; with --window
+    /// [default: that of the data set; if it has none, fits estimate it and other commands assume the grid spacing
+    /// for a square and half of it for a Gaussian].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pub window_width: Option<f64>,
 }

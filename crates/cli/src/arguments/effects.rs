@@ -12,8 +12,8 @@ use voronudge_model::{Effect, Environment, Model};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Model")]
 pub(crate) struct EffectArguments {
-    /// An effect beyond the base model with its coefficients, in units of the data: `drift=0.1,0`. May be repeated. The
-    /// ids are listed in docs/effects.md.
+    /// Add an effect beyond the base model, with its coefficients in units of the data: `drift=0.1,0`. The ids are
+    /// listed in docs/effects.md. May be repeated.
     #[arg(long = "effect", value_name = "ID=VALUE[,VALUE…]", allow_hyphen_values = true)]
     effects: Vec<String>,
 }

@@ -7,9 +7,9 @@ use voronudge_io::{CellFrame, CellValues, DataSet, ExportFormat, OutputDirectory
 
 #[derive(Debug, Args)]
 pub(crate) struct ExportArguments {
-    /// Also write the cells, their polygons and what is known of them for other programs: `csv`, `geojson`, `vtk` (ParaView), `napari`;
-    /// several with commas between.
-    #[arg(long = "export", value_name = "FORMATS", value_delimiter = ',')]
+    /// Also write the cells, their polygons and what is known about them for other programs, in one or more of the
+    /// formats `csv`, `geojson`, `vtk` (for ParaView) and `napari`, separated by commas.
+    #[arg(long = "export", value_name = "FORMATS", value_delimiter = ',', help_heading = "Output")]
     formats: Vec<ExportFormat>,
 }
 

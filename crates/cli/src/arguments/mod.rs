@@ -27,9 +27,9 @@ use std::path::PathBuf;
 /// Form of what is written to stdout.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum Format {
-    /// For people.
+    /// A summary to read.
     Text,
-    /// The content of report.json.
+    /// The content of report.json; for an error, an object with `error`, `hint` and `exit_code`.
     Json,
 }
 
@@ -43,25 +43,25 @@ pub(crate) enum Verbosity {
 #[derive(Debug, Args)]
 #[command(next_help_heading = "General")]
 pub(crate) struct CommonArguments {
-    /// Folder for the results; it is made if it does not exist.
+    /// Folder for the results, created if it does not exist. Required, except by check-gradients.
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-    /// Also replace a data set in --out that this program did not write there. Files that are read are never replaced.
+    /// Replace a data set in --out even if this program did not write it there. Input files are never replaced.
     #[arg(long)]
     pub overwrite: bool,
-    /// Options from a file: TOML, whose keys are names of options. One that is typed wins.
+    /// Read options from a TOML file whose keys are option names. Options on the command line take precedence.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,
-    /// Read and check all that would be used, say what would be computed and written, and stop there.
+    /// Check the options and input files, say what would be computed and written, and stop.
     #[arg(long)]
     pub dry_run: bool,
-    /// Seed of random numbers, for commands that draw some; recorded by all.
+    /// Seed of the random numbers. It affects only commands that use random numbers, but every command records it.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     pub seed: u64,
-    /// Number of threads (default: all cores). Results do not depend on it.
+    /// Number of threads, 1 to 1024. Results do not depend on it [default: all cores].
     #[arg(long, allow_negative_numbers = true)]
     pub threads: Option<usize>,
-    /// Print neither progress nor a summary.
+    /// Print no progress, warnings or summary.
     #[arg(long)]
     quiet: bool,
     /// What to print on stdout.

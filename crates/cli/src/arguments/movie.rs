@@ -12,8 +12,8 @@ const FILE: &str = "movie.gif";
 
 #[derive(Debug, Clone, Copy, Args)]
 pub(crate) struct MovieArguments {
-    /// Also write the cells of the frames as movie.gif, coloured by this.
-    #[arg(long, value_name = "QUANTITY", value_parser = colouring())]
+    /// Also write the cells of the frames as movie.gif, coloured by this quantity; `residual` only with a fit.
+    #[arg(long, value_name = "QUANTITY", value_parser = colouring(), help_heading = "Output")]
     movie: Option<Colouring>,
 }
 

@@ -14,22 +14,23 @@ pub(crate) const LARGEST_PARAMETER: f64 = 1e50;
 #[command(next_help_heading = "Model")]
 #[allow(non_snake_case, reason = "the field's symbols are the names of the flags")]
 pub(crate) struct ParameterArguments {
-    /// Parameters as JSON: `{"K_A": …, "K_P": …, "P_0": …, "A_0": …, "alpha": …}`, or a report.json that holds them.
+    /// Read the parameters from JSON: `{"K_A": …, "K_P": …, "P_0": …, "A_0": …, "alpha": …}`, or a report.json that
+    /// holds them. Parameters given as options override the file.
     #[arg(long, value_name = "FILE")]
     parameters: Option<PathBuf>,
-    /// Area elasticity [default: 0.1].
+    /// Area elasticity, in 1/(length² time) [default: 0.1].
     #[arg(long = "K_A", allow_negative_numbers = true)]
     K_A: Option<f64>,
-    /// Perimeter elasticity [default: 1].
+    /// Perimeter elasticity, in 1/time [default: 1].
     #[arg(long = "K_P", allow_negative_numbers = true)]
     K_P: Option<f64>,
-    /// Preferred perimeter [default: 4].
+    /// Preferred perimeter, a length [default: 4].
     #[arg(long = "P_0", allow_negative_numbers = true)]
     P_0: Option<f64>,
-    /// Preferred area, which changes no velocity [default: 1].
+    /// Preferred area, in length². Velocities do not depend on it if all cells have the same [default: 1].
     #[arg(long = "A_0", allow_negative_numbers = true)]
     A_0: Option<f64>,
-    /// Cortical chirality [default: 0].
+    /// Cortical chirality, dimensionless [default: 0].
     #[arg(long = "alpha", allow_negative_numbers = true)]
     alpha: Option<f64>,
 }

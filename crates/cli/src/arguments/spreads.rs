@@ -19,10 +19,12 @@ const OF_CELLS: u64 = u64::MAX;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Cells that differ")]
 pub(crate) struct SpreadArguments {
-    /// Let cells differ in a parameter: `alpha=0.3`, the standard deviation over cells as a share of the mean. May be repeated.
+    /// Let cells differ at random in a parameter: `alpha=0.3` gives a standard deviation over cells of 0.3 times the
+    /// mean. NAME is K_A, P_0, A_0 or alpha. May be repeated.
     #[arg(long, value_name = "NAME=SHARE", allow_hyphen_values = true)]
     cell_spread: Vec<String>,
-    /// How they differ: normal, log-normal or two-types.
+    /// Distribution of the values for --cell-spread: normal, log-normal or two-types (as many cells below the mean as
+    /// above it).
     #[arg(long, value_name = "DISTRIBUTION", default_value = "normal", value_parser = distribution)]
     cell_distribution: Distribution,
 }

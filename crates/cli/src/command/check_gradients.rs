@@ -16,14 +16,15 @@ use voronudge_model::gradient_check::{GradientReport, Place, check, check_model,
 use voronudge_report::infer_report::RunRecord;
 use voronudge_simulate::{RandomPlacement, check_run, generator};
 
-/// Checks derivatives and symmetries of every force term and effect on given or built-in positions.
+/// Checks the derivatives and symmetries of every force term and effect at given or built-in positions.
 ///
-/// Prints a table: term, quantity, worst error relative to the largest magnitude, where, tolerance. Exits 1 if one fails.
+/// Prints a table with the term, the quantity, the worst error relative to the largest magnitude, where it occurs,
+/// and the tolerance. Exits with 1 if a check fails.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
-    /// Frames to check: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: the first].
+    /// Frames to check, counted from zero: `6`, `4..16` (end excluded) or `4,7,9` [default: the first].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
     #[command(flatten)]
@@ -44,25 +45,25 @@ pub(crate) struct Report {
     run: RunRecord,
     /// Whether all checks passed.
     passed: bool,
-    /// Each check.
+    /// Result of each check.
     checks: Vec<Check>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Check {
-    /// The cells: file and frame, or those that are made.
+    /// The cells: file and frame, or a built-in configuration.
     configuration: String,
     /// The force term, the effect, the whole model, or `geometry`.
     term: String,
-    /// What is compared with what.
+    /// Which quantities are compared.
     quantity: String,
-    /// The largest error, relative to the largest magnitude compared.
+    /// Largest error, relative to the largest magnitude compared.
     worst: f64,
-    /// Where that is.
+    /// Where the largest error occurs.
     place: String,
-    /// The largest that passes: 1e-10, or 1e-6 for central differences in positions.
+    /// Largest error that passes: 1e-10, or 1e-6 for central differences in positions.
     tolerance: f64,
-    /// Whether it passes.
+    /// Whether the check passed.
     passed: bool,
 }
 

@@ -6,10 +6,10 @@ use crate::reporting::{Answer, Command};
 use clap::Args;
 use clap_complete::{Shell, generate};
 
-/// Prints what a shell needs to complete commands, options and their values.
+/// Prints a script with which a shell completes commands, options and their values.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The shell.
+    /// Shell to print the script for.
     #[arg(value_enum)]
     shell: Shell,
 }

@@ -24,16 +24,16 @@ use voronudge_report::ModelParameters;
 use voronudge_report::infer_report::RunRecord;
 use voronudge_report::numbers::significant;
 
-/// The model's velocities, areas, perimeters, stress and Jacobian at the positions of a data set.
+/// Evaluates the model's velocities, areas, perimeters, stress and Jacobian at the positions of a data set.
 ///
-/// Writes velocities.npy, areas.npy, perimeters.npy, stress.npy (force index first) and report.json, and on request the
-/// Jacobian of the first frame chosen: jacobian.npy (2N, 2N; x0, y0, x1, …) up to 4000 coordinates, jacobian.npz (row,
-/// column, value) above.
+/// Writes velocities.npy, areas.npy, perimeters.npy, stress.npy (force index first) and report.json. With --jacobian,
+/// also writes the Jacobian of the first frame chosen: jacobian.npy (2N, 2N; x0, y0, x1, …) for up to 4000
+/// coordinates, jacobian.npz (row, column, value) for more.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
-    /// Frames to evaluate: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all].
+    /// Frames to evaluate, counted from zero: `6`, `4..16` (end excluded) or `4,7,9` [default: all].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
     #[command(flatten)]
@@ -42,8 +42,8 @@ pub(crate) struct Arguments {
     cells: CellArguments,
     #[command(flatten)]
     effects: EffectArguments,
-    /// Also write the Jacobian of velocities with respect to positions.
-    #[arg(long)]
+    /// Also write the Jacobian of the velocities with respect to the positions, for the first frame chosen.
+    #[arg(long, help_heading = "Output")]
     jacobian: bool,
     #[command(flatten)]
     export: ExportArguments,
@@ -59,31 +59,31 @@ pub(crate) struct Report {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
-    /// Numbers of cells, one for each frame.
+    /// Numbers of cells, one entry for each frame.
     cells: Cells,
-    /// Parameters as used, in the units of the data.
+    /// Parameters of the model as used, in units of the data.
     parameters: ModelParameters,
-    /// Values (N) of the parameters in which cells differ, with `--cell-parameter` or `--label-parameter`.
+    /// Values (N) of the parameters in which cells differ, by name, with `--cell-parameter` or `--label-parameter`.
     #[serde(skip_serializing_if = "OfCells::is_empty")]
     cell_parameters: OfCells,
-    /// Effects beyond the base model, by name: their coefficients.
+    /// Coefficients of the effects beyond the base model, by name of the effect.
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     effects: ChosenEffects,
-    /// Mean stress of each frame, 1/time, force index first; in an open field over the cells that count.
+    /// Mean stress of each frame, in 1/time, force index first; in an open field of view over the cells that count.
     stress: Vec<[[f64; 2]; 2]>,
-    /// Mean square velocity of each frame, (length/time)², over the cells with a velocity; in an open field over those that count.
+    /// Mean square velocity of each frame, in (length/time)², over the cells with a velocity; in an open field of view over those that count.
     mean_square_velocity: Vec<f64>,
 }
 
 #[derive(Serialize, JsonSchema)]
 struct Cells {
-    /// Frames evaluated, zero-based.
+    /// Indices of the frames evaluated, zero-based.
     frames: Vec<usize>,
-    /// Cells that are present.
+    /// Number of cells that are present.
     present: Vec<usize>,
-    /// Cells with a velocity.
+    /// Number of cells with a velocity.
     with_velocity: Vec<usize>,
-    /// Cells that count in sums: in an open field those whose polygon and those of their neighbours are certain.
+    /// Number of cells that count in sums: in an open field of view, those whose polygon is certain, as are those of their neighbours.
     counted: Vec<usize>,
 }
 

@@ -14,55 +14,55 @@ use voronudge_report::numbers::significant;
 use voronudge_report::schema_of;
 use voronudge_report::shape_report::NoteRecord;
 
-/// What is in a data set, or in a file of another program: shape, units, frames, cells, and what was guessed.
+/// Reports what is in a data set or in a file of another program: shape, units, frames, cells, and what was guessed.
 ///
 /// Nothing is written.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// A data set, a file of any kind that import reads, or a folder of images.
+    /// A data set, a file of any kind that `import` reads, or a folder of images.
     path: PathBuf,
-    /// Print JSON.
+    /// Print JSON instead of lines of text.
     #[arg(long)]
     json: bool,
 }
 
-/// What `--json` prints.
+/// What `--json` prints; what does not apply is `null` or empty.
 #[derive(Serialize, JsonSchema)]
 pub(crate) struct Record {
     /// Path as given.
     path: String,
-    /// What it is taken for, in words.
+    /// What the path is taken for, in words.
     kind: String,
-    /// Shape of an array or of an image.
+    /// Shape of an array, or frames, rows and columns of images; `null` for other files.
     shape: Option<Vec<usize>>,
-    /// Number of frames.
+    /// Number of frames; `null` where it is not known.
     frames: Option<usize>,
-    /// Number of cells, the axis of cells, or of different labels.
+    /// Number of cells, which is the length of the axis of cells or the number of different labels; `null` where it is not known.
     cells: Option<usize>,
-    /// Cells that are present in each frame.
+    /// Number of cells that are present in each frame.
     present: Vec<usize>,
-    /// Least x and y and greatest x and y of cells, in units of the data.
+    /// Smallest x, smallest y, largest x and largest y of the cells, in units of the data; `null` where they are not known.
     extent: Option<[f64; 4]>,
-    /// Length of a pixel, in units of length.
+    /// Side of a pixel, in units of length; `null` where it is not known.
     pixel_size: Option<f64>,
-    /// Unit of length.
+    /// Unit of length; `null` where it is not known.
     length_unit: Option<String>,
-    /// Time between frames, in units of time.
+    /// Time between frames, in units of time; `null` where it is not known.
     frame_interval: Option<f64>,
-    /// Unit of time.
+    /// Unit of time; `null` where it is not known.
     time_unit: Option<String>,
-    /// Which way y grows: `up` or `down`.
+    /// Direction in which y grows, `up` or `down`; `null` where it is not known.
     y_axis: Option<String>,
-    /// Sides of the box of a periodic data set.
+    /// Sides of the box of a periodic data set; `null` for all others.
     #[serde(rename = "box")]
     cell_box: Option<[f64; 2]>,
-    /// The files that were read.
+    /// Files that were read.
     files: Vec<String>,
-    /// What was read, guessed and doubted.
+    /// What was read from the files, what was guessed, and what is doubtful.
     notes: Vec<NoteRecord>,
-    /// The command that takes it.
+    /// Command line that reads it.
     command: String,
-    /// Words of the command before the path.
+    /// Words of this command before the path.
     arguments: Vec<&'static str>,
 }
 

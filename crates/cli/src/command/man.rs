@@ -11,7 +11,8 @@ use voronudge_io::OutputDirectory;
 /// Writes the manual pages of the program and of its commands.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Folder for the pages, such as ~/.local/share/man/man1; other files in it are left alone.
+    /// Folder for the pages, such as ~/.local/share/man/man1, created if it does not exist. Other files in it are
+    /// left alone.
     #[arg(value_name = "DIR")]
     folder: PathBuf,
 }

@@ -15,13 +15,13 @@ use voronudge_observables::{Error, Images, Recording};
 pub(super) struct RecordingArguments {
     #[command(flatten)]
     pub data: DataSetArguments,
-    /// Frames to measure: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all].
+    /// Frames to measure, counted from zero: `6`, `4..16` (end excluded) or `4,7,9` [default: all].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
-    /// Which motion to remove first: drift of the stage shows as one.
+    /// Mean motion to subtract first, because a drifting stage adds one.
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     remove_mean: MeanToRemove,
-    /// In an open field of view, polygons larger than this multiple of the median area are taken for holes in the data.
+    /// In an open field of view, treat polygons larger than this multiple of the median area as holes in the data.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     largest_area: f64,
 }

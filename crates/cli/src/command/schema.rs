@@ -7,10 +7,11 @@ use clap::Args;
 use schemars::Schema;
 use serde_json::Value;
 
-/// Prints the JSON Schema of what a command writes as report.json (of info, what --json prints); without a name, the names.
+/// Prints the JSON Schema of the report.json of a command (for info, of what --json prints). Without a name, lists
+/// the names of the commands that write one.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// The command: infer, or import tracks.
+    /// The command, such as infer or import tracks.
     #[arg(num_args = 0..=2)]
     command: Vec<String>,
 }

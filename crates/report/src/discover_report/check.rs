@@ -3,28 +3,28 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What models make of the cells of a movie against what was seen, for all that was measured on it.
+/// Simulated movies of the models compared with the measured one, in everything that was measured on it.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CheckReport {
-    /// Frames of the data set that are compared, the first of them the one from which models go on.
+    /// Indices of the frames that are compared, zero-based; the models are run from the first of them.
     pub frames: Vec<usize>,
-    /// Simulated movies of each model.
+    /// Number of simulated movies for each model.
     #[schemars(range(min = 1))]
     pub draws: usize,
-    /// Share of all movies, the measured one included, in which something is as unusual as the most unusual of the measured one.
+    /// Share of all movies, the measured one included, in which some quantity is at least as unusual as the most unusual one of the measured movie.
     pub p: ByModel<f64>,
-    /// What was compared.
+    /// The quantities that were compared.
     pub quantities: Vec<CheckedQuantity>,
-    /// What it comes to, in a sentence.
+    /// The result in a sentence.
     pub words: String,
 }
 
-/// One of each model.
+/// One value for each model.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ByModel<T> {
-    /// The base model.
+    /// For the base model.
     pub base: T,
-    /// The model with the effects that were added; `null` if there are none.
+    /// For the model with the effects that were added; `null` if there are none.
     pub extended: Option<T>,
 }
 
@@ -36,36 +36,36 @@ impl<T> ByModel<T> {
     }
 }
 
-/// One of the functions that were measured, or a number: a function of nothing with a single value.
+/// A function that was measured, or a number, which has a single value and no axis.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CheckedQuantity {
-    /// Name, as in `observe`.
+    /// Name of the quantity, as in `observe`.
     pub name: &'static str,
-    /// The same in words.
+    /// The quantity in words.
     pub words: &'static str,
-    /// What it is a function of; empty for a number.
+    /// The variable that it is a function of; empty for a number.
     pub axis: &'static str,
-    /// Unit of that.
+    /// Unit of this variable.
     pub axis_unit: String,
     /// Unit of the values.
     pub unit: String,
-    /// Lags, distances, wave numbers or values.
+    /// Values of the variable: lags, distances, wave numbers or values of a quantity.
     pub at: Vec<f64>,
-    /// Measured.
+    /// Measured value at each of these.
     pub measured: Vec<f64>,
-    /// Simulated.
+    /// Results of the simulated movies.
     pub simulated: ByModel<Simulated>,
 }
 
-/// What the movies of a model have.
+/// Results of the simulated movies of one model.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Simulated {
-    /// Share of all movies that are as far from the mean as the measured one.
+    /// Share of all movies that are at least as far from the mean as the measured one.
     pub p: f64,
-    /// The 5 % quantile of the simulated movies at each point.
+    /// 5 % quantile of the simulated movies at each point.
     pub low: Vec<f64>,
-    /// The median.
+    /// Median of the simulated movies at each point.
     pub median: Vec<f64>,
-    /// The 95 % quantile.
+    /// 95 % quantile of the simulated movies at each point.
     pub high: Vec<f64>,
 }

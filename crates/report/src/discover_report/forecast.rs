@@ -6,47 +6,47 @@ use serde::Serialize;
 use super::Gain;
 use crate::infer_report::Quantity;
 
-/// Forecasts from frames that no fit has seen, against what was seen then. Lists have one entry for each horizon.
+/// Forecasts from frames that no fit has seen, compared with what was then observed. Lists have one entry for each horizon.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ForecastReport {
-    /// Frames of the data set from which forecasts start.
+    /// Indices of the frames from which forecasts start, zero-based.
     pub starts: Vec<usize>,
-    /// Frames ahead.
+    /// Horizons: numbers of frames ahead.
     pub horizons: Vec<usize>,
-    /// Time of a frame.
+    /// Time between frames.
     pub interval: Quantity,
-    /// Displacements scored.
+    /// Number of displacements scored at each horizon.
     pub scored: Vec<usize>,
-    /// `1 − Σ‖error‖²/Σ‖displacement‖²` of displacements since the start.
+    /// Skill `1 − Σ‖error‖²/Σ‖displacement‖²`, for displacements since the start.
     pub skill: Forecasters<Gain>,
-    /// The same of the mean velocity over the last interval.
+    /// The same for the mean velocity over the last interval.
     pub velocity_skill: Forecasters<Gain>,
-    /// Skill of the extended model less that of the base model, from the same displacements; `null` if nothing was added.
+    /// Skill of the extended model minus that of the base model, for the same displacements; `null` if no effect was added.
     pub gain: Option<Vec<Gain>>,
-    /// Skill of who knows where cells go but not by how much their places are seen wrong.
+    /// Skill of a perfect forecast, which is limited only by the errors of the measured positions.
     pub best_possible: Vec<f64>,
-    /// Root mean square error of a displacement.
+    /// Root mean square error of a displacement, in `unit`.
     pub error: Forecasters<f64>,
-    /// What it should be by the models themselves: by the scatter of runs with noise, and the errors of positions. Nothing of baselines.
+    /// Error that a model itself predicts from the scatter of runs with noise and from position errors, in `unit`; `null` for the baselines.
     pub expected_error: Forecasters<f64>,
     /// Unit of the errors.
     pub unit: String,
-    /// What it comes to, in a sentence.
+    /// The result in a sentence.
     pub words: String,
 }
 
-/// One list for each who says what comes next.
+/// One list for each forecast: of the models and of three baselines.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Forecasters<T> {
     /// The base model.
     pub base: Vec<T>,
     /// The model with the effects that were added; `null` if there are none.
     pub extended: Option<Vec<T>>,
-    /// Each cell stays where it is.
+    /// Baseline: each cell stays where it is.
     pub no_motion: Vec<T>,
-    /// Each cell keeps the velocity that it had.
+    /// Baseline: each cell keeps its preceding velocity.
     pub constant_velocity: Vec<T>,
-    /// Linear regression on the velocities that a cell and its neighbours had.
+    /// Baseline: linear regression on the preceding velocities of a cell and of its neighbours.
     pub regression: Vec<T>,
 }
 

@@ -37,17 +37,17 @@ pub struct DiscoverReport {
     pub run: RunRecord,
     /// Units of all numbers that are not dimensionless.
     pub units: Units,
-    /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
+    /// Cell size ℓ₀; ℓ₀² is the mean area of the cells used.
     pub length_scale: Quantity,
-    /// Which cells were used.
+    /// Which frames and cells were used.
     pub cells: CellCounts,
-    /// How they were measured.
+    /// How the cells were measured.
     pub measurement: Measurement,
-    /// The grid of a flow field; `null` for velocities of cells.
+    /// Grid of the flow field; `null` for velocities of cells.
     pub flow: Option<FlowGrid>,
-    /// What was said of the parameters before the fits.
+    /// Constraints on the parameters that were given before the fits.
     pub constraints: GivenConstraints,
-    /// The answer.
+    /// The answer as one word.
     pub verdict: Verdict,
     /// The answer in a sentence.
     pub sentence: String,
@@ -55,34 +55,34 @@ pub struct DiscoverReport {
     pub caveat: String,
     /// What to measure next, in a sentence; empty if there is nothing to advise.
     pub measure_next: String,
-    /// What would be known of the last model if more, or better, had been measured; `null` where that is not computed.
+    /// What would be known of the last model from more, or better, measurements; `null` where it is not computed.
     pub prospects: Option<ProspectsReport>,
     /// The base model and the model with the selected effects, at the top level of the file.
     #[serde(flatten)]
     pub models: BeforeAfter<ModelFit>,
-    /// The base model with a generic description of what it leaves unexplained, no mechanism; `null` where it was not fitted.
+    /// The base model with a generic description of what it leaves unexplained, which is not a mechanism; `null` where it was not fitted.
     pub description: Option<DescriptionFit>,
     /// The effects that were added, in the order of their selection.
     pub selected: Vec<SelectedEffect>,
-    /// Every candidate, the smallest p first.
+    /// All candidates, the smallest p first, after what was found about the measurement.
     pub ranking: Vec<RankedEffect>,
-    /// What remains after the last fit.
+    /// What remains unexplained after the last fit.
     pub unexplained: Unexplained,
-    /// What the squared velocities are made of.
+    /// Composition of the squared velocities.
     pub noise_budget: BeforeAfter<NoiseBudget>,
-    /// What effects with a memory were predicted from; `null` if none was tried.
+    /// The earlier velocities from which effects with a memory were predicted; `null` if no such effect was tried.
     pub predictors: Option<Predictors>,
-    /// Data sets of `--predict`; empty without.
+    /// Predictions for the data sets of `--predict`; empty without it.
     pub predictions: Vec<Prediction>,
-    /// What the cells do next, said before, with `--forecast`; `null` otherwise.
+    /// Forecasts compared with what the cells did, with `--forecast`; `null` otherwise.
     pub forecast: Option<ForecastReport>,
-    /// Whether simulated movies of the models are like the measured one, with `--check`; `null` otherwise.
+    /// Simulated movies of the models compared with the measured one, with `--check`; `null` otherwise.
     pub check: Option<CheckReport>,
-    /// By how much the added effects lower −2 log p of velocities held out, given all others, over all folds; `null` where that is not known.
+    /// Fall of −2 log p of held-out velocities, given all others, due to the added effects, summed over all folds; `null` where it is not known.
     pub likelihood_gain: Option<Gain>,
-    /// The synthetic data without an effect that were fitted in the same way.
+    /// Synthetic data sets without an effect that were fitted in the same way.
     pub null_sets: NullSets,
-    /// How the search behaved on them; `null` if there are none.
+    /// How the search behaved on the null sets.
     pub calibration: Option<Calibration>,
 }
 

@@ -3,44 +3,44 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What became of one candidate.
+/// Result for one candidate.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct RankedEffect {
-    /// Id of the effect.
+    /// ID of the effect.
     pub effect: String,
-    /// The family it belongs to.
+    /// Family of the effect.
     pub kind: EffectKind,
     /// Number of coefficients that the data determine.
     pub dimension: usize,
-    /// Score statistic against the base model, χ² with `dimension` degrees of freedom if nothing is
-    /// missing; `null`, as all numbers are, of what is not testable. Of cells that were put in or taken away: by how much −2 log likelihood falls, beyond what they cost.
+    /// Score statistic against the base model, χ² with `dimension` degrees of freedom if nothing is missing; for cells that were added or removed, the fall of
+    /// −2 log likelihood beyond their cost. `null`, like the numbers below, if the candidate cannot be tested.
     pub statistic: f64,
-    /// Probability of so large a statistic if nothing is missing.
+    /// Probability of a statistic at least as large if nothing is missing.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub p: f64,
-    /// The same for the largest over all candidates, from refitted null data.
+    /// The same for the largest statistic of all candidates, from refitted null data.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub p_adjusted: f64,
-    /// Smallest size that would be found in 9 of 10 cases, in percent of the velocity (rms).
+    /// Smallest size that would be found in 9 of 10 cases, in percent of the root mean square velocity.
     pub detection_limit: f64,
-    /// Estimated size when added alone, in percent of the velocity (rms).
+    /// Estimated size when the effect is added alone, in percent of the root mean square velocity.
     pub size: f64,
-    /// 95 % interval of the size; `null` where it is not known.
+    /// 95 % interval of `size`; `null` where it is not known.
     pub size_ci95: Option<[f64; 2]>,
-    /// By how much the held-out error falls when it is added alone; `null` unless it is the one effect that was selected.
+    /// Reduction of the held-out error when the effect is added alone; `null` unless it is the only effect that was selected.
     pub gain: Option<Gain>,
-    /// What became of it.
+    /// Outcome for the candidate.
     pub status: CandidateStatus,
-    /// Why it was taken or not, in a sentence.
+    /// Why it was selected or not, in a sentence.
     pub reason: String,
 }
 
-/// By how much an error falls, or velocities held out become more probable.
+/// Reduction of an error, gain in the log probability of held-out velocities, or skill of a forecast.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct Gain {
-    /// The fall.
+    /// The reduction, gain or skill.
     pub value: f64,
-    /// Its standard error over the folds.
+    /// Standard error of `value`, over the folds.
     pub standard_error: f64,
 }
 
@@ -50,17 +50,17 @@ impl From<[f64; 2]> for Gain {
     }
 }
 
-/// What became of a candidate.
+/// Outcome for a candidate.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum CandidateStatus {
-    /// Something that the measurement does, found before the search and taken into account by all fits.
+    /// A property of the measurement, found before the search and taken into account by all fits.
     Measurement,
     /// Added to the model.
     Selected,
-    /// Cannot be told from a selected effect.
+    /// Cannot be distinguished from a selected effect.
     Alias,
-    /// Tested and not taken.
+    /// Tested and not selected.
     BelowThreshold,
     /// Cannot be tested with these data.
     NotTestable,
@@ -83,7 +83,7 @@ impl CandidateStatus {
     }
 }
 
-/// The family an effect belongs to.
+/// Family of an effect.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum EffectKind {
@@ -97,7 +97,7 @@ pub enum EffectKind {
     History,
     /// How the velocities and positions were measured.
     Observation,
-    /// Something measured beside the motion: labels, supplied fields.
+    /// Something measured in addition to the motion: labels, supplied fields.
     Measured,
     /// Forces on a free edge.
     Boundary,

@@ -11,24 +11,24 @@ use crate::infer_report::Parameter;
 /// One effect that was added to the base model.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct SelectedEffect {
-    /// Id of the effect, for example `density_gradient`.
+    /// ID of the effect, for example `density_gradient`.
     pub effect: String,
-    /// Its contribution as a formula in plain text.
+    /// Contribution of the effect as a formula in plain text.
     pub formula: String,
-    /// What it means, for a reader who does not know the model.
+    /// What the effect means, for a reader who does not know the model.
     pub meaning: String,
-    /// The family it belongs to.
+    /// Family of the effect.
     pub kind: EffectKind,
-    /// Its fitted coefficients, in the units of the data.
+    /// Fitted coefficients, in units of the data.
     pub coefficients: Vec<EffectCoefficient>,
     /// 95 % interval of each coefficient; an end that is `null` is not bounded by the data.
     pub ci95: Vec<[f64; 2]>,
-    /// Probability of so large a statistic of any candidate if nothing is missing.
+    /// Probability that any candidate has a statistic at least as large if nothing is missing.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub p_adjusted: f64,
-    /// Share of what the base model leaves beyond noise that the effect explains.
+    /// Share of the excess, which is what the base model leaves beyond noise, that the effect explains.
     pub share_of_excess: f64,
-    /// Effects that these data cannot tell from it, without itself.
+    /// Other effects that these data cannot tell apart from it.
     pub class: Vec<String>,
     /// For each effect of `class`, a sentence on the measurement that would tell the two apart.
     pub told_apart_by: BTreeMap<String, String>,
@@ -37,7 +37,7 @@ pub struct SelectedEffect {
 /// One coefficient of an effect.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct EffectCoefficient {
-    /// Name or axis; empty for the only coefficient of an effect.
+    /// Name or axis of the coefficient; empty if it is the only one of an effect.
     pub name: String,
     /// Fitted value.
     pub value: f64,

@@ -11,13 +11,13 @@ pub enum Verdict {
     NothingMissing,
     /// One class of effects explains what the base model lacks.
     Attributed,
-    /// An effect explains part of it.
+    /// An effect explains part of what the base model lacks.
     Partial,
-    /// Something structured is missing and no candidate explains it.
+    /// Something with a structure is missing, and no candidate explains it.
     UnexplainedStructured,
-    /// Something is missing that has no structure.
+    /// Something without structure is missing.
     UnexplainedWhite,
-    /// The data cannot tell.
+    /// The data cannot decide.
     NotTestable,
 }
 

@@ -5,12 +5,12 @@ use std::collections::BTreeMap;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// Parameters held, bounded or known to some precision, by name and as given.
+/// Constraints on the parameters as given, by name of the parameter.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, JsonSchema)]
 pub struct GivenConstraints {
-    /// Values of parameters held, in the units of the data, and so below.
+    /// Values of the parameters that are held fixed, in units of the data, as are all values below.
     pub fixed: BTreeMap<String, f64>,
-    /// Lower and upper bounds; an end that is `null` is no bound.
+    /// Lower and upper bounds; at an end that is `null` there is no bound.
     pub bounds: BTreeMap<String, [f64; 2]>,
     /// Gaussian priors.
     pub priors: BTreeMap<String, GivenPrior>,
@@ -19,8 +19,8 @@ pub struct GivenConstraints {
 /// A Gaussian prior.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct GivenPrior {
-    /// Mean.
+    /// Mean of the prior.
     pub mean: f64,
-    /// Standard deviation.
+    /// Standard deviation of the prior.
     pub standard_deviation: f64,
 }

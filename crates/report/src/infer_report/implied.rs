@@ -9,13 +9,13 @@ use super::Parameter;
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct ImpliedByMeanField {
-    /// Bulk modulus over γ.
+    /// Bulk modulus B over γ.
     pub B: Parameter,
-    /// Odd bulk modulus over γ, zero in the theory.
+    /// Odd bulk modulus A over γ, which is zero in the theory.
     pub A: Parameter,
-    /// Shear modulus over γ.
+    /// Shear modulus μ over γ.
     pub mu: Parameter,
-    /// Odd shear modulus over γ.
+    /// Odd shear modulus Kᵒ over γ.
     pub K_o: Parameter,
     /// D_∥ = B/ζ.
     pub D_parallel: Parameter,

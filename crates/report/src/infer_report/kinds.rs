@@ -5,34 +5,34 @@ use schemars::JsonSchema;
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// What a fit says of the cells of one label.
+/// Results of a fit for the cells of one label.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct KindReport {
     /// The label.
     pub label: i64,
-    /// Cells that have it, in all frames.
+    /// Number of cells with this label, over all frames.
     pub cells: usize,
-    /// Whether it is the label that others are compared with, whose parameters are those of the model.
+    /// Whether this is the reference label, with which the others are compared and whose parameters are those of the model.
     pub is_reference: bool,
-    /// Parameters of its cells.
+    /// Parameters of the cells with this label.
     pub parameters: Parameters,
-    /// By how much these exceed those of the reference, by name, to first order.
+    /// Differences of these parameters from those of the reference label, by name, to first order.
     pub differences: BTreeMap<String, KindDifference>,
-    /// Probability of so large differences if there are none (χ² of all coefficients of the label).
+    /// Probability of differences at least as large if there are none (χ² of all coefficients of the label).
     pub p: f64,
-    /// The same for the largest of as many labels as are compared.
+    /// `p` adjusted for the number of labels that are compared with the reference.
     pub p_adjusted: f64,
-    /// Whether the data show a difference: `p_adjusted` below 0.05.
+    /// Whether the data show a difference: `p_adjusted` is below 0.05.
     pub differs: bool,
-    /// What it says, in words.
+    /// The result in words.
     pub words: String,
 }
 
-/// A difference, in the unit of the parameter.
+/// Difference of a parameter from that of the reference label, in the unit of the parameter.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, JsonSchema)]
 pub struct KindDifference {
-    /// Its value.
+    /// The difference.
     pub value: f64,
-    /// Ends of its 95 % interval.
+    /// 95 % interval of the difference.
     pub ci95: [f64; 2],
 }

@@ -4,35 +4,35 @@ use super::FlowWindow;
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// What of a cell its position is: its Voronoi site, its centroid, or a point between.
+/// Which point of a cell its position is: its Voronoi site, its centroid, or a point between the two.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredPositions {
-    /// What the positions were taken for.
+    /// Which points the positions were taken to be.
     pub are: PositionKind,
-    /// The share of the way from the site to the centroid.
+    /// Share of the way from the site (0) to the centroid (1) at which the positions lie.
     #[schemars(range(min = 0.0, max = 1.0))]
     pub share: f64,
-    /// 95 % interval of the share; `null` where it was declared.
+    /// 95 % interval of `share`; `null` unless it was estimated.
     pub ci95: Option<[f64; 2]>,
-    /// Where this comes from.
+    /// Where this information comes from.
     pub source: MeasurementSource,
-    /// Whether cells have errors of their own.
+    /// Whether each cell has a position error of its own.
     pub own_errors: bool,
 }
 
-/// What positions are.
+/// Which points of the cells the positions are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum PositionKind {
     /// Voronoi sites.
     Sites,
-    /// Centroids of Voronoi polygons.
+    /// Centroids of the Voronoi polygons.
     Centroids,
-    /// Points between the two.
+    /// Points between site and centroid.
     Between,
 }
 
-/// Where what is said of the measurement comes from.
+/// Where the information about the measurement comes from.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeasurementSource {
@@ -40,35 +40,35 @@ pub enum MeasurementSource {
     Declared,
     /// It was estimated.
     Estimated,
-    /// It is what is usual: nothing was declared or estimated.
+    /// It was neither declared nor estimated, and the usual case is assumed.
     Assumed,
 }
 
-/// What a grid point of a flow field stands for.
+/// What a grid point of a flow field represents.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct MeasuredWindow {
-    /// The kind of average.
+    /// The kind of average over cells.
     pub kind: FlowWindow,
-    /// Side of a square, standard deviation of a Gaussian, in units of length.
+    /// Side of the square, or standard deviation of the Gaussian, in units of length.
     pub width: f64,
     /// 95 % interval of the width; `null` where it was declared.
     pub ci95: Option<[f64; 2]>,
-    /// Whether kind and width were declared.
+    /// Whether both kind and width were declared.
     pub declared: bool,
-    /// The kinds that were tried, the likeliest first.
+    /// The kinds of window that were tried, the likeliest first.
     pub tried: Vec<TriedWindow>,
 }
 
 /// A kind of window that was tried.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct TriedWindow {
-    /// The kind of average.
+    /// The kind of average over cells.
     pub kind: FlowWindow,
-    /// Its best width.
+    /// Best width of a window of this kind, in units of length.
     pub width: f64,
-    /// By how much −2 log restricted likelihood is higher than for the likeliest kind.
+    /// Rise of −2 log restricted likelihood above that of the likeliest kind.
     pub rise: f64,
-    /// K_P alpha with it, by the quick fit that decides.
+    /// K_P alpha with this window, in 1/time, from the quick fit by which the kind is chosen.
     #[serde(rename = "K_P_alpha")]
     pub chiral_coefficient: f64,
 }

@@ -50,21 +50,21 @@ pub struct RunRecord {
     /// Number of threads.
     #[schemars(range(min = 1))]
     pub threads: usize,
-    /// Files read.
+    /// Files that were read.
     pub inputs: Vec<InputFile>,
     /// Wall time in seconds.
     #[schemars(range(min = 0.0))]
     pub wall_seconds: f64,
-    /// What the reader should know before using the numbers.
+    /// Warnings that the reader should know before using the numbers.
     pub warnings: Vec<String>,
 }
 
-/// One file read.
+/// A file that was read.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct InputFile {
     /// Path as given.
     pub path: String,
-    /// SHA-256 of the content, hexadecimal.
+    /// SHA-256 checksum of the content, hexadecimal.
     #[schemars(regex(pattern = "^[0-9a-f]{64}$"))]
     pub sha256: String,
 }
@@ -75,51 +75,52 @@ pub struct InferReport {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     pub run: RunRecord,
-    /// What the fit says, in a word and in a sentence.
+    /// Verdict of the fit, as one word and as a sentence.
     pub verdict: Verdict,
     /// Units of the data. The `unit` of a number is a product of powers of these, such as `µm⁻² min⁻¹`.
     pub units: Units,
-    /// The cell size ℓ₀, ℓ₀² = mean area of the cells used.
+    /// Cell size ℓ₀; ℓ₀² is the mean area of the cells used.
     pub length_scale: Quantity,
-    /// The time that coefficients of `identifiability` are counted in, with ℓ₀ as the length.
+    /// Unit of time of the coefficients in `identifiability`, whose unit of length is ℓ₀.
     pub time_scale: Quantity,
-    /// Which cells were used.
+    /// Which frames and cells were used.
     pub cells: CellCounts,
     /// How the cells were measured.
     pub measurement: Measurement,
-    /// The grid of a flow field; `null` for velocities of cells.
+    /// Grid of the flow field; `null` for velocities of cells.
     pub flow: Option<FlowGrid>,
-    /// What was said of the parameters before the fit.
+    /// Constraints on the parameters that were given before the fit.
     pub constraints: GivenConstraints,
-    /// The nudged estimate, in the units of the data.
+    /// Nudged estimate of the parameters, in units of the data.
     pub parameters: Parameters,
     /// Polarity of the cells, with `--active`; `null` otherwise.
     pub activity: Option<ActivityReport>,
-    /// How much cells differ, one for each parameter of `--vary`; empty without.
+    /// How much cells differ, one entry for each parameter of `--vary`; empty without it.
     pub spreads: Vec<SpreadReport>,
-    /// The cells of each label, with `--by-label`, first those that others are compared with; empty without.
+    /// Results for the cells of each label, with `--by-label`, the reference label first; empty without it.
     pub by_label: Vec<KindReport>,
-    /// Moduli over the friction γ of a cell, and phase diffusivities, that the parameters imply by the mean-field theory; `null` where it has none: if K_P is not positive.
+    /// Moduli over the friction γ of a cell, and phase diffusivities, that the parameters imply in mean-field theory; `null` if K_P is not positive, where the
+    /// theory does not apply.
     pub implied_moduli: Option<ImpliedByMeanField>,
-    /// The same parameters by least squares at the measured positions.
+    /// The same parameters from least squares at the measured positions, without nudges.
     pub naive: NaiveParameters,
-    /// Normalised errors Σ‖v − v̂‖²/Σ‖v‖² of velocities, or of mean velocities between frames where tracks were fitted.
+    /// Normalised mean square errors Σ‖v − v̂‖²/Σ‖v‖² of the velocities or, if tracks were fitted, of the mean velocities between frames.
     pub nmse: Nmse,
-    /// Measurement noise per component.
+    /// Measurement noise: standard deviations of one component.
     pub noise: Noise,
-    /// The nudges.
+    /// The nudges: fitted displacements of the measured positions.
     pub nudge: Nudge,
     /// Principal axes of the covariance of (K_A, K_P P₀/3.722, K_P, K_P α), in units of ℓ₀ and the time scale, best determined first.
     pub identifiability: Vec<EigenDirection>,
-    /// What would be known if more, or better, had been measured; `null` where that is not computed.
+    /// What would be known from more, or better, measurements; `null` where it is not computed.
     pub prospects: Option<ProspectsReport>,
-    /// Profile likelihoods, with `--profile`; empty without.
+    /// Profile likelihoods, with `--profile`; empty without it.
     pub profiles: Vec<ProfileResult>,
-    /// Slices of the landscape, with `--landscape`; empty without.
+    /// Slices of the likelihood over two parameters, with `--landscape`; empty without it.
     pub landscapes: Vec<LandscapeResult>,
     /// The parametric bootstrap, with `--bootstrap`; `null` otherwise.
     pub bootstrap: Option<BootstrapResult>,
-    /// Course of the fit.
+    /// How the fit proceeded and ended.
     pub fit: Fit,
 }
 
@@ -132,14 +133,15 @@ pub struct Quantity {
     pub unit: String,
 }
 
-/// Which cells took part.
+/// Which frames and cells were used.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct CellCounts {
     /// Indices of the frames used, zero-based.
     pub frames: Vec<usize>,
-    /// Cells (or grid points) used, over all frames.
+    /// Number of cells (or grid points) used, over all frames.
     pub used: usize,
-    /// Cells (or grid points) left out, over all frames, by reason: `outside_field_of_view`, `polygon_not_closed`, `polygon_uncertain` (a cell that was not seen could change it), `polygon_too_large` (a hole), `next_to_uncertain`, `no_velocity`; of grid points `missing`, `window_not_filled`.
+    /// Number of cells (or grid points) left out, over all frames, by reason: `outside_field_of_view`, `polygon_not_closed`, `polygon_uncertain` (a cell that
+    /// was not seen could change it), `polygon_too_large` (a hole), `next_to_uncertain`, `no_velocity`; for grid points `missing` and `window_not_filled`.
     pub left_out: BTreeMap<String, usize>,
 }
 
@@ -151,17 +153,17 @@ pub struct FlowGrid {
     pub grid_points: [usize; 2],
     /// Distance between grid points along x and y, in units of length.
     pub spacing: [f64; 2],
-    /// The average over cells that a grid point stands for.
+    /// The kind of average over cells that a grid point represents.
     pub window: FlowWindow,
-    /// Side of a square window, standard deviation of a Gaussian one, in units of length.
+    /// Side of a square window, or standard deviation of a Gaussian one, in units of length.
     pub width: f64,
 }
 
-/// The average over cells that a grid point stands for.
+/// The kind of average over cells that a grid point represents.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum FlowWindow {
-    /// Over the square around it.
+    /// Over the square around the grid point.
     Square,
     /// Over the centres of the cells, with Gaussian weights.
     Gaussian,
@@ -169,18 +171,18 @@ pub enum FlowWindow {
     GaussianArea,
 }
 
-/// One parameter.
+/// A parameter with its interval.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Parameter {
     /// Value.
     pub value: f64,
     /// 95 % interval; `null` for a parameter held fixed. An end that is `null` is not bounded by the data.
     pub ci95: Option<[f64; 2]>,
-    /// Whether it was held fixed.
+    /// Whether the parameter was held fixed.
     pub fixed: bool,
     /// Unit; empty if dimensionless.
     pub unit: String,
-    /// How well it is known, in a sentence.
+    /// How well the parameter is known, in a sentence.
     pub words: String,
 }
 
@@ -199,63 +201,64 @@ impl Parameter {
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct Parameters {
-    /// Area elasticity.
+    /// Area elasticity K_A.
     pub K_A: Parameter,
-    /// Perimeter elasticity.
+    /// Perimeter elasticity K_P.
     pub K_P: Parameter,
-    /// Preferred perimeter.
+    /// Preferred perimeter P_0.
     pub P_0: Parameter,
-    /// Preferred area: ℓ₀², and never fitted, since no velocity depends on it.
+    /// Preferred area, set to ℓ₀². It is never fitted, since no velocity depends on it.
     pub A_0: Parameter,
-    /// Chirality.
+    /// Chirality α.
     pub alpha: Parameter,
-    /// Chirality in units of a rate.
+    /// Chirality as a rate, K_P α.
     pub K_P_alpha: Parameter,
-    /// P_0/ℓ₀.
+    /// Preferred shape index P_0/ℓ₀.
     pub shape_index: Parameter,
 }
 
-/// The estimate without nudges; not finite (`null`) where it was not determined.
+/// Estimate without nudges, in units of the data; a value that was not determined is not finite (`null`).
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[allow(non_snake_case, reason = "the names of the file")]
 pub struct NaiveParameters {
-    /// Area elasticity.
+    /// Area elasticity K_A, in 1/(length² time).
     pub K_A: f64,
-    /// Perimeter elasticity.
+    /// Perimeter elasticity K_P, in 1/time.
     pub K_P: f64,
-    /// Preferred perimeter.
+    /// Preferred perimeter P_0, in units of length.
     pub P_0: f64,
-    /// Chirality.
+    /// Chirality α.
     pub alpha: f64,
-    /// Chirality in units of a rate.
+    /// Chirality as a rate, K_P α, in 1/time.
     pub K_P_alpha: f64,
-    /// P_0/ℓ₀.
+    /// Preferred shape index P_0/ℓ₀.
     pub shape_index: f64,
 }
 
 /// Normalised mean square errors Σ‖v − v̂‖²/Σ‖v‖² over the cells used.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Nmse {
-    /// Naive parameters at the measured positions.
+    /// Error of the naive parameters at the measured positions.
     pub naive: f64,
-    /// Nudged parameters at the nudged positions (the fit's own data).
+    /// Error of the nudged parameters at the nudged positions (the fit's own data).
     pub nudged: f64,
-    /// Nudged parameters at the measured positions.
+    /// Error of the nudged parameters at the measured positions.
     pub un_nudged: f64,
-    /// What measurement noise alone makes of `un_nudged` and of the held-out error if the model and the noise levels are right; of tracks, what errors of positions make of the mean velocities; `null` if a noise level was estimated from the same fit.
+    /// What `un_nudged` and the held-out error would be from measurement noise alone, if the model and the noise levels are right; for tracks, the error of the
+    /// mean velocities that is due to position errors. `null` if a noise level was estimated from the same fit.
     pub noise_floor: f64,
-    /// Cells predicted from a fit that did not see their velocities; `null` with too few cells.
+    /// Error on cells predicted from a fit that did not see their velocities; `null` with too few cells.
     pub cross_validated: Option<f64>,
-    /// Standard error of `cross_validated` over its folds; `null` likewise.
+    /// Standard error of `cross_validated` over its folds; `null` with too few cells.
     pub cross_validated_standard_error: Option<f64>,
-    /// Which mean velocity was removed from the data.
+    /// Which mean velocity was subtracted from the data.
     pub mean_removed: MeanRemoved,
-    /// Degree of the polynomials of the position that are no concern of the model; `null` if no background is allowed. Velocities
-    /// and residuals are then those without it.
+    /// Degree of the background, polynomials of the position that the model need not explain; `null` without a background. Velocities and residuals are then
+    /// those without it.
     pub background: Option<u32>,
 }
 
-/// Which mean velocity was removed before the fit.
+/// Which mean velocity was subtracted before the fit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum MeanRemoved {
@@ -267,14 +270,14 @@ pub enum MeanRemoved {
     Overall,
 }
 
-/// Measurement noise per component.
+/// Measurement noise: standard deviations of one component.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Noise {
-    /// Standard deviation of the positions, in units of length.
+    /// Standard deviation of a component of the positions, in units of length.
     pub sigma_r: f64,
-    /// Standard deviation of the velocities, in units of length per time.
+    /// Standard deviation of a component of the velocities, in units of length per time.
     pub sigma_v: f64,
-    /// Where the levels come from.
+    /// Where the noise levels come from.
     pub source: NoiseSource,
 }
 
@@ -286,75 +289,75 @@ pub enum NoiseSource {
     Given,
     /// Stated by the data set.
     DataSet,
-    /// Estimated from these data, at least one of the two.
+    /// At least one of the two was estimated from these data.
     Estimated,
-    /// Assumed for want of anything better.
+    /// Assumed, because nothing better was known.
     Assumed,
 }
 
 /// The nudges as a whole.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Nudge {
-    /// Spring constant σ_v²/σ_r², in units of a rate squared.
+    /// Spring constant σ_v²/σ_r², in 1/time².
     pub k: f64,
-    /// Root mean square of the length of a nudge, in units of length.
+    /// Root mean square length of a nudge, in units of length.
     pub rms: f64,
-    /// Effective number of parameters that the nudges use up, df.
+    /// Effective number of parameters that the nudges use, df.
     pub degrees_of_freedom: f64,
-    /// What nudges contribute to the objective per contribution of velocities.
+    /// Contribution of the nudges to the objective divided by that of the velocities.
     pub contribution_ratio: f64,
-    /// What that ratio is expected to be if the noise levels are right: df/(2·used − df − p) with p free coefficients.
+    /// Expected value of that ratio if the noise levels are right: df/(2·used − df − p) with p free coefficients.
     pub expected_contribution_ratio: f64,
-    /// Contacts between neighbours that the nudges changed (lost plus gained).
+    /// Number of contacts between neighbours that the nudges changed (lost plus gained).
     pub edges_changed: usize,
 }
 
-/// Course of the fit.
+/// How a fit proceeded and ended.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct Fit {
-    /// How the objective was made small.
+    /// How the objective was minimised.
     pub method: FitMethod,
-    /// How it ended.
+    /// How the fit ended.
     pub status: FitStatus,
-    /// Whether there is no reason not to trust it.
+    /// Whether there is no reason to doubt the fit (`doubts` is empty).
     pub trustworthy: bool,
-    /// What is in doubt, one name for each of `doubts`.
+    /// What is in doubt: one name for each entry of `doubts`.
     #[schemars(extend("items" = {"type": "string", "enum": ["objective", "position_noise", "optimiser", "profile", "cells", "outliers", "pattern", "tracks", "positions", "window"]}))]
     pub doubtful: Vec<String>,
-    /// Reasons not to trust it, and what to do.
+    /// Reasons not to trust the fit, and what to do.
     pub doubts: Vec<String>,
     /// Number of iterations.
     pub iterations: usize,
-    /// Velocities, or in tracks motions, that count less than half, because nothing explains them.
+    /// Number of velocities (for tracks: motions) that count less than half, because nothing explains them.
     pub downweighted: usize,
-    /// Penalised objective at the end, in units of the noise variance.
+    /// Penalised objective at the end of the fit, in units of the noise variance.
     pub objective: f64,
-    /// The objective that a good fit is expected to reach (data minus parameters).
+    /// Objective that a good fit is expected to reach: number of data minus number of parameters.
     pub expected_objective: f64,
-    /// Objective after each iteration of the last fit, with the springs in force at that iteration.
+    /// Objective after each iteration of the last fit, with the spring constant in force at that iteration.
     pub trace: Vec<f64>,
-    /// Objective at the end of each start.
+    /// Objective at the end of each start of the search.
     pub starts: Vec<f64>,
-    /// Flips of contacts between neighbours.
+    /// Flips of contacts between neighbours during the search.
     pub transitions: Transitions,
 }
 
-/// How the objective was made small.
+/// How the objective was minimised.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FitMethod {
-    /// Levenberg–Marquardt by continuation, flips of contacts, further starts.
+    /// Levenberg–Marquardt by continuation, with flips of contacts and further starts.
     Search,
     /// First-order descent.
     Descent,
 }
 
-/// Flips of contacts between neighbours.
+/// Flips of contacts between neighbours during the search.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Transitions {
-    /// Those tried.
+    /// Number of flips tried.
     pub tried: usize,
-    /// Those kept.
+    /// Number of flips kept.
     pub made: usize,
 }
 
@@ -362,10 +365,10 @@ pub struct Transitions {
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FitStatus {
-    /// At a minimum.
+    /// It reached a minimum.
     Converged,
-    /// At the limit of iterations, still descending.
+    /// It reached the limit of iterations while still descending.
     IterationLimit,
-    /// Without a further descent although not at a minimum.
+    /// It found no further descent although it is not at a minimum.
     Stalled,
 }

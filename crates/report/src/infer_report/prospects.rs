@@ -13,38 +13,38 @@ pub const DESIGNS: [(&str, &str); 4] = [
     ("twice_the_field", "twice the field of view"),
 ];
 
-/// What would be known of the parameters, and of effects, with other measurements.
+/// What would be known of the parameters, and of effects, from other measurements.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, JsonSchema)]
 pub struct ProspectsReport {
     /// What to measure next, in a sentence; empty if there is nothing to advise.
     pub words: String,
-    /// What is least certain: the name of a quantity, or of two effects that the data cannot tell apart; `null` if nothing is.
+    /// What is least certain: the name of a quantity, or of two effects that the data cannot tell apart; `null` if there is nothing.
     pub least_certain: Option<String>,
-    /// The measurement that makes that most certain; `null` if none does.
+    /// The measurement that would make `least_certain` most certain; `null` if none does.
     #[schemars(extend("enum" = ["twice_the_frames", "half_the_interval", "half_the_position_noise", "twice_the_field", null]))]
     pub recommended: Option<String>,
-    /// Its standard error then, as a share of the present one; `null` likewise.
+    /// Standard error of `least_certain` with that measurement, as a share of the present one; `null` where `recommended` is `null`.
     #[schemars(range(min = 0.0))]
     pub share: Option<f64>,
-    /// Parameters that were fitted and coefficients of effects, by their names, such as `drift along x`.
+    /// The parameters that were fitted, and the coefficients of effects, by names such as `drift along x`.
     pub quantities: Vec<ProspectOf>,
-    /// Effects that the data cannot tell apart, of `discover`.
+    /// Pairs of effects that the data cannot tell apart; only with `discover`.
     pub ambiguities: Vec<AmbiguityReport>,
 }
 
-/// A quantity and how well it would be known.
+/// A quantity, and how well it would be known from other measurements.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 pub struct ProspectOf {
-    /// The name of the parameter, or of the effect and its coefficient.
+    /// Name of the parameter, or of the effect and its coefficient.
     pub name: String,
-    /// Its value.
+    /// Value of the quantity.
     pub value: f64,
-    /// Its present standard error.
+    /// Present standard error of the quantity.
     #[schemars(range(min = 0.0))]
     pub standard_error: f64,
-    /// Unit of both.
+    /// Unit of the value and of all standard errors.
     pub unit: String,
-    /// Standard errors with other measurements, by name of the measurement.
+    /// Expected standard error with each other measurement, by name of the measurement.
     #[schemars(extend("propertyNames" = {"enum": DESIGNS.map(|(name, _)| name)}))]
     pub expected: BTreeMap<String, f64>,
 }
@@ -54,12 +54,12 @@ pub struct ProspectOf {
 pub struct AmbiguityReport {
     /// The effect that was added.
     pub effect: String,
-    /// The one that could stand in its place.
+    /// The effect that could take its place.
     pub other: String,
-    /// By how many standard errors the first stands out with the other in the model.
+    /// By how many standard errors `effect` differs from zero when `other` is in the model, too.
     #[schemars(range(min = 0.0))]
     pub separation: f64,
-    /// The same with other measurements, by name of the measurement.
+    /// The same with each other measurement, by name of the measurement.
     #[schemars(extend("propertyNames" = {"enum": DESIGNS.map(|(name, _)| name)}))]
     pub expected: BTreeMap<String, f64>,
 }

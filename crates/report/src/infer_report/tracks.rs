@@ -8,28 +8,28 @@ use serde::Serialize;
 pub struct TracksReport {
     /// Number of tracks after joining.
     pub tracks: usize,
-    /// How often a track jumped to another cell, where it was cut.
+    /// Number of times that a track jumped to another cell; it was cut there.
     pub cut: usize,
-    /// Tracks that broke and went on under another name, and were joined.
+    /// Number of times that a track broke and continued under another name; the two were joined.
     pub joined: usize,
-    /// Cells times frames within tracks in which the cell was not seen.
+    /// Number of gaps within tracks: frames in which the cell was not seen, summed over tracks.
     pub gaps: usize,
-    /// Tracks that begin after the first frame.
+    /// Number of tracks that begin after the first frame.
     pub begun: usize,
-    /// Tracks that end before the last frame.
+    /// Number of tracks that end before the last frame.
     pub ended: usize,
-    /// Steps of integration from one frame to the next.
+    /// Number of integration steps from one frame to the next.
     #[schemars(range(min = 1))]
     pub substeps: usize,
-    /// Order of the rule of integration in the length of a step.
+    /// Order of the integration rule in the step length.
     #[schemars(extend("enum" = [2, 4]))]
     pub order: usize,
-    /// By how much a finer rule would change the coefficients: the largest change, in standard errors.
+    /// Largest change of a coefficient that a finer integration rule would make, in standard errors.
     pub integration_error: f64,
-    /// Position noise that the tracks imply, in units of ℓ₀.
+    /// Position noise implied by the tracks, in units of ℓ₀.
     pub sigma_r: f64,
-    /// What the model misses of a displacement from frame to frame, in units of ℓ₀.
+    /// Standard deviation of what the model misses of a displacement from frame to frame, in units of ℓ₀.
     pub sigma_d: f64,
-    /// Translation of all cells over each interval, drift of the stage among it, in units of length, y up; empty if none was allowed.
+    /// Translation of all cells in each interval, which includes drift of the stage, in units of length, y up; empty if none was allowed.
     pub drifts: Vec<[f64; 2]>,
 }

@@ -3,30 +3,30 @@
 use schemars::JsonSchema;
 use serde::Serialize;
 
-/// The answer of a fit.
+/// The verdict of a fit.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
 pub struct Verdict {
-    /// In a word.
+    /// The verdict as one word.
     pub kind: VerdictKind,
-    /// In a sentence, the headline of the page and the first line on the terminal.
+    /// The verdict as a sentence, which is the headline of the page and the first line on the terminal.
     pub sentence: String,
 }
 
-/// The answer of a fit in a word.
+/// The verdict of a fit as one word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum VerdictKind {
-    /// What the model misses of velocities that it has not seen is what the noise of the measurement alone leaves.
+    /// The model misses no more of velocities that it has not seen than measurement noise alone would leave.
     Explained,
-    /// The model explains a part; what of the rest is noise cannot be told, because the noise was estimated from the same fit.
+    /// The model explains a part; how much of the rest is noise cannot be told, because the noise was estimated from the same fit.
     ExplainedInPart,
     /// The model misses more than noise alone would leave.
     LacksSomething,
-    /// The model predicts velocities that it has not seen no better than no motion at all.
+    /// The model predicts velocities that it has not seen no better than assuming no motion at all.
     ExplainsNothing,
-    /// The data are not what the fit takes them for: cells not seen, tracks too coarse, positions that are no sites.
+    /// The data are not what the fit assumes, for example because cells were not seen, tracks are too coarse, or positions are not sites.
     MeasurementMisfit,
-    /// The objective is above any that an acceptable fit has.
+    /// The objective is higher than in any acceptable fit.
     NoFit,
 }
 

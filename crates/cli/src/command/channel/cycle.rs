@@ -7,13 +7,14 @@ use voronudge_simulate::{CellCycle, DivisionAxis, LivingTissue};
 
 #[derive(Debug, Args)]
 pub(super) struct CycleArguments {
-    /// With --injection cycle: coefficient of variation of the lengths of cycles, 0 to 1 [default: 0.3].
+    /// With --injection cycle: coefficient of variation of the cycle lengths, 0 to 1 [default: 0.3].
     #[arg(long, value_name = "C", allow_negative_numbers = true)]
     cycle_variation: Option<f64>,
-    /// With --injection cycle: preferred area of a cell that divides, over that of the model; a new one has half of it [default: 1.386].
+    /// With --injection cycle: preferred area of a dividing cell, as a multiple of that of the model; a newborn cell
+    /// has half of it [default: 1.386].
     #[arg(long, value_name = "S", allow_negative_numbers = true)]
     division_size: Option<f64>,
-    /// With --injection cycle: the line on which daughters lie [default: long].
+    /// With --injection cycle: axis on which the daughters lie [default: long].
     #[arg(long, value_enum)]
     division_axis: Option<AxisName>,
 }
@@ -22,7 +23,7 @@ pub(super) struct CycleArguments {
 enum AxisName {
     /// The long axis of the mother.
     Long,
-    /// Any.
+    /// A random direction.
     Random,
 }
 

@@ -28,15 +28,15 @@ use voronudge_simulate::{
     Injection, LivingTissue, RandomPlacement, Simulation, generator, run_channel, sort_in_space,
 };
 
-/// Flow across and along a channel whose cells are extruded and born near its edges.
+/// Simulates the flow across and along a channel whose cells are extruded and born near its edges.
 ///
-/// Writes profiles as .npy (places, 2: value, standard error) and as folded_profile.csv, lineage.csv, report.json and report.html; with
-/// --frames also a data set.
+/// Writes profiles as .npy files of shape (places, 2) with value and standard error, and as folded_profile.csv. Also
+/// writes lineage.csv, report.json and report.html, and with --frames a data set.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     channel: ChannelArguments,
-    /// Frames to keep as a data set, evenly spaced over the averages.
+    /// Number of frames to keep as a data set, evenly spaced over the averaging time; 0 for none.
     #[arg(long, default_value_t = 0, allow_negative_numbers = true)]
     frames: usize,
     #[command(flatten)]

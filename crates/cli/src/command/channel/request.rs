@@ -19,66 +19,70 @@ use voronudge_simulate::{
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Channel")]
 pub(super) struct ChannelArguments {
-    /// Values of the paper as defaults: `ht1080` (µm, hours).
+    /// Use values of the paper as defaults; `ht1080` is in µm and hours.
     #[arg(long, value_enum)]
     preset: Option<Preset>,
-    /// Width of the channel, across x [default: 20 cell sizes].
+    /// Width of the channel, along x [default: 20 cell sizes].
     #[arg(long, value_name = "W", allow_negative_numbers = true)]
     width: Option<f64>,
     /// Length of the channel, along y [default: 20 cell sizes].
     #[arg(long, value_name = "L", allow_negative_numbers = true)]
     length: Option<f64>,
-    /// Torque-free walls at both edges [default: none, the box is periodic].
+    /// Put torque-free walls at both edges [default: none, the box is periodic].
     #[arg(long, value_enum)]
     walls: Option<WallsName>,
-    /// Cell size ℓ₀, the square root of the mean area at the beginning [default: 1].
+    /// Cell size ℓ₀, the square root of the initial mean area [default: 1].
     #[arg(long, value_name = "SIZE", allow_negative_numbers = true)]
     cell_size: Option<f64>,
-    /// Unit of length, for display.
+    /// Name of the unit of length, for display [default: `length`].
     #[arg(long, value_name = "UNIT")]
     length_unit: Option<String>,
-    /// Unit of time, for display.
+    /// Name of the unit of time, for display [default: `time`].
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
-    /// Rate of extrusion at the edge, per cell and time [default: 0.77 K_P].
+    /// Extrusion rate at the edge, per cell and time [default: 0.77 K_P].
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     extrusion_rate: Option<f64>,
-    /// Decay length of extrusion; `inf` for the same rate everywhere [default: 1.4 cell sizes].
+    /// Decay length of the extrusion rate away from the edge; `inf` for the same rate everywhere [default: 1.4 cell
+    /// sizes].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     extrusion_length: Option<f64>,
-    /// Decay length of proliferation [default: 0.25 cell sizes].
+    /// Decay length of proliferation away from the edge [default: 0.25 cell sizes].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     proliferation_length: Option<f64>,
-    /// Rate of proliferation at the edge, per cell and time; the number of cells changes [default: one birth for each extrusion].
+    /// Proliferation rate at the edge, per cell and time, independent of extrusion; the number of cells then changes
+    /// [default: one birth for each extrusion].
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     proliferation_rate: Option<f64>,
     /// Where new cells appear.
     #[arg(long, value_enum, default_value_t = InjectionName::Vertex)]
     injection: InjectionName,
-    /// Distance between the two cells after a division [default: 0.2 cell sizes beside a mother; of cycles that of the centroids of her halves].
+    /// Distance between the two cells after a division [default: with --injection division 0.2 cell sizes, with
+    /// --injection cycle the distance between the centroids of the mother's halves].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     division_distance: Option<f64>,
     #[command(flatten)]
     cycle: CycleArguments,
-    /// End before there are more cells than this [default: four times those of the beginning].
+    /// Stop the run before there are more cells than this [default: four times the initial number].
     #[arg(long, value_name = "CELLS", allow_negative_numbers = true)]
     most_cells: Option<usize>,
-    /// Time before averages begin [default: 20/K_P].
+    /// Time before averaging begins [default: 20/K_P].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     relaxation: Option<f64>,
-    /// Time of the averages [default: 150/K_P].
+    /// Averaging time [default: 150/K_P].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     time: Option<f64>,
-    /// Largest time step [default: the one advised for the parameters].
+    /// Largest time step [default: the one recommended for the parameters].
     #[arg(long, allow_negative_numbers = true)]
     dt: Option<f64>,
-    /// Pieces of time whose scatter tells the errors.
+    /// Number of equal intervals of the averaging time whose scatter gives the errors; fewer than 16 give none.
     #[arg(long, default_value_t = 32, allow_negative_numbers = true)]
     samples: usize,
-    /// Also the flow that an equation of state predicts: a folder written by `equation-of-state` for a tissue of these parameters.
+    /// Also predict the flow from an equation of state: a folder written by `equation-of-state` for a tissue with
+    /// these parameters.
     #[arg(long, value_name = "DIR")]
     equation_of_state: Option<PathBuf>,
-    /// Bins across the channel, an even number [default: four for each cell size].
+    /// Number of bins across the channel, an even number [default: four per cell size].
     #[arg(long, allow_negative_numbers = true)]
     bins: Option<usize>,
 }
@@ -91,7 +95,7 @@ enum Preset {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum WallsName {
-    /// Left and right, as of `simulate`; a channel has open ends.
+    /// At the left and right edges, as in `simulate`; a channel has open ends.
     X,
 }
 
@@ -99,9 +103,9 @@ enum WallsName {
 enum InjectionName {
     /// On a vertex of the tessellation.
     Vertex,
-    /// Beside a mother.
+    /// Beside a mother cell.
     Division,
-    /// Cells grow over a cycle and divide in two at its end.
+    /// Where a mother divides: cells grow over a cycle and divide in two at its end.
     Cycle,
 }
 

@@ -9,20 +9,22 @@ use voronudge_model::Effect;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Search")]
 pub(super) struct SearchOptions {
-    /// Only these effects are candidates: `--effects persistence,drift`. The ids are listed in docs/effects.md.
+    /// Consider only these effects: `--effects persistence,drift`. The ids are listed in docs/effects.md [default:
+    /// all].
     #[arg(long, value_name = "ID,…", value_delimiter = ',')]
     effects: Vec<String>,
-    /// These effects are no candidates.
+    /// Do not consider these effects.
     #[arg(long, value_name = "ID,…", value_delimiter = ',')]
     without: Vec<String>,
-    /// Probability that data in which nothing is missing lead to an effect.
+    /// Significance level, between 0 and 1: the probability that an effect is found in data in which nothing is
+    /// missing.
     #[arg(long, value_name = "P", default_value_t = 0.05, value_parser = level, allow_negative_numbers = true)]
     level: f64,
-    /// Made-up data without an effect that are fitted before one is believed, 0 to 10000 [default: 20 where an effect
-    /// is in doubt and the velocities are at most 1000].
+    /// Number of synthetic data sets without an effect that are fitted before an effect is accepted, 0 to 10000
+    /// [default: 20 if an effect is in doubt and there are at most 1000 velocities, else 0].
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u64).range(0..=10_000), allow_negative_numbers = true)]
     pub null_sets: Option<u64>,
-    /// Effects added at most, 1 to 16.
+    /// Largest number of effects to add, 1 to 16.
     #[arg(long, value_name = "N", default_value_t = 4, value_parser = clap::value_parser!(u64).range(1..=16), allow_negative_numbers = true)]
     most_effects: u64,
 }

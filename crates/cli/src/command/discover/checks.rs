@@ -34,7 +34,8 @@ const NAMED: usize = 3;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Search")]
 pub(super) struct CheckArguments {
-    /// Let each model go on by itself for as long as the movie, so many times [without a number: 199], and compare how cells move, shapes, order and flow with those measured.
+    /// Run each model on its own for as long as the movie, and compare how cells move, shapes, order and flow with
+    /// those measured. DRAWS is the number of runs, 19 to 9999 [without a number: 199].
     #[arg(long, value_name = "DRAWS", num_args = 0..=1, default_missing_value = "199", value_parser = clap::value_parser!(u64).range(19..=9999), allow_negative_numbers = true)]
     check: Option<u64>,
 }

@@ -28,7 +28,9 @@ const MOST_FITTED: usize = 6;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Search")]
 pub(super) struct ForecastArguments {
-    /// Say up to so many frames ahead what the cells do, from frames that no fit has seen, and compare [then --frames: the first half, of tracks at most 6].
+    /// Forecast the cells up to H frames ahead (1 to 100), from frames that no fit has seen, and compare with what
+    /// they did. Unless --frames says otherwise, only the first half of the frames is then fitted, of tracks at most
+    /// 6 frames.
     #[arg(long, value_name = "H", value_parser = clap::value_parser!(u64).range(1..=100), allow_negative_numbers = true)]
     forecast: Option<u64>,
 }

@@ -19,13 +19,13 @@ const WITH_A_MEMORY: [&str; 2] = ["persistence", "alignment"];
 /// What given velocities are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum GivenDifference {
-    /// Those at the time of the frame.
+    /// Velocities at the time of the frame.
     Instantaneous,
-    /// Differences of the positions after and before.
+    /// Differences between the positions in the next and in the previous frame.
     Central,
-    /// From the frame to the next.
+    /// Differences from this frame to the next.
     Forward,
-    /// From the frame before to the frame.
+    /// Differences from the previous frame to this one.
     Backward,
 }
 

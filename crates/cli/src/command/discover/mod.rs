@@ -45,27 +45,29 @@ use voronudge_report::DiscoverReport;
 /// Finds what the base model leaves unexplained, adds the effects that explain it, and compares the errors before and
 /// after on data that the fit has not seen.
 ///
-/// Writes report.json, report.html and, each beginning with before_ and after_, nudged_positions.npy,
-/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy). Where there are tracks and no
-/// velocities, the tracks themselves are searched, which also writes trajectories.npy and, if cells crawl, polarities.npy. Where cells differ,
-/// after_deviation_*.npy is what each has of its own.
+/// Writes report.json, report.html and, with names that begin with before_ and after_, nudged_positions.npy,
+/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy).
+/// If there are tracks and no velocities, the tracks themselves are searched; this also writes trajectories.npy and,
+/// if cells crawl, polarities.npy. If cells differ, after_deviation_*.npy holds the deviation of each cell.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     snapshots: SnapshotArguments,
     #[command(flatten)]
     field: FieldArguments,
-    /// Derive velocities from tracked positions by differences, where none are given [default: fit the tracks themselves].
+    /// Derive velocities from tracked positions by differences, if no velocities are given [default: fit the tracks
+    /// themselves].
     #[arg(long, value_name = "central|forward|backward")]
     difference: Option<Difference>,
-    /// What given velocities are, which decides which earlier ones may predict them [default: instantaneous].
+    /// What the given velocities are, which decides from which earlier velocities they may be predicted [default:
+    /// instantaneous].
     #[arg(long, value_enum)]
     given_difference: Option<GivenDifference>,
     #[command(flatten)]
     export: ExportArguments,
     #[command(flatten)]
     movie: MovieArguments,
-    /// Open report.html when done.
+    /// Open report.html in the browser when done.
     #[arg(long)]
     open_report: bool,
     #[command(flatten)]

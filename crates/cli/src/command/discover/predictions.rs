@@ -15,7 +15,7 @@ use voronudge_report::discover_report::Prediction;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Search")]
 pub(super) struct PredictionArguments {
-    /// Predict the velocities of another data set with what is found on this one, nothing fitted (repeatable).
+    /// Predict the velocities of another data set with the model found on this one, without fitting. May be repeated.
     #[arg(long, value_name = "DATASET")]
     predict: Vec<PathBuf>,
 }

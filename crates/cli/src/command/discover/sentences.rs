@@ -54,7 +54,9 @@ fn name(selected: &Selected) -> String {
     let others: Vec<&str> = others(selected).map(|other| other.id).collect();
     match others.as_slice() {
         [] => selected.effect.id.into(),
-        others => format!("{} or, not to be told from it, {}", selected.effect.id, listed(others, "or")),
+        others => {
+            format!("{} or, indistinguishable from it here, {}", selected.effect.id, listed(others, "or"))
+        }
     }
 }
 
@@ -109,32 +111,34 @@ fn errors(discovery: &Discovery) -> String {
 /// Why effects that were found are not all that is missing.
 fn reservation(discovery: &Discovery) -> String {
     if discovery.cells_differ() && discovery.shared().all(|_| discovery.predicts_better()) {
-        return "but what single cells have of their own predicts no cell that was not seen, so data held out cannot show it".into();
+        return "but deviations of single cells cannot predict cells that were not seen, so held-out data cannot confirm it".into();
     }
     if discovery.selected.iter().all(|own| own.effect.is_random_motion()) {
-        return "but what moves cells at random predicts nothing, so data held out cannot show it".into();
+        return "but random motion predicts nothing, so held-out data cannot confirm it".into();
     }
     if !discovery.predicts_better() {
-        let why = discovery.gain.map_or("this could not be put to the test".into(), |[value, error]| {
+        let why = discovery.gain.map_or("this could not be tested".into(), |[value, error]| {
             format!(
-                "data held out are not predicted better by more than the standard error (by {} ± {})",
+                "held-out data are not predicted better by more than the standard error (by {} ± {})",
                 significant(value, 2),
                 significant(error, 1)
             )
         });
-        return format!("but {why}, so it is not shown yet");
+        return format!("but {why}, so it is not established");
     }
     if let Some(doubt) = discovery.doubt_of_measurement() {
         let part = doubt.part().name().replace('_', " ");
-        return format!("but the measurement is in doubt ({part}: see the warnings), so it is not shown yet");
+        return format!(
+            "but the measurement is in doubt ({part}: see the warnings), so it is not established"
+        );
     }
     let rest = discovery.after.budget.unexplained;
     let left = match rest > LEAST_REST {
-        true => format!("{} of the squared velocities are unidentified", percent(rest)),
+        true => format!("{} of the squared velocities remain unexplained", percent(rest)),
         false => "little is left".into(),
     };
     match discovery.rest_is_structured {
-        true => format!("{left}, but what is left is no noise: it has a structure"),
+        true => format!("{left}, but the remainder is not noise: it is structured"),
         false => left,
     }
 }
@@ -145,7 +149,7 @@ fn explained(discovery: &Discovery) -> String {
     match discovery.after.tracked {
         Some(_) if discovery.selected.iter().all(|own| own.effect.is_random_motion()) => {
             let share: f64 = discovery.selected.iter().map(|own| own.size.powi(2)).sum();
-            format!("{} of the squared velocities, as scatter that nothing predicts", percent(share))
+            format!("{} of the squared velocities, as unpredictable scatter", percent(share))
         }
         Some(_) if discovery.after.budget.effects <= 0.0 => {
             "nothing of the squared velocities, held out".into()
@@ -168,15 +172,15 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
     let names: Vec<&str> = names.iter().map(String::as_str).collect();
     let meanings: Vec<String> = discovery.selected.iter().map(meaning).collect();
     let by_measurement = match discovery.selected.iter().all(|own| own.effect.kind == Kind::Observation) {
-        true => " That is, or may be, how the cells were measured, and nothing that they do.",
+        true => " This is, or may be, an artefact of how the cells were measured, not something they do.",
         false => "",
     };
     match (discovery.verdict, meanings.as_slice()) {
         (Verdict::NothingMissing, _) => match findings.statement() {
-            None => format!("Nothing is missing: the base model leaves no more than noise; {errors}."),
+            None => format!("Nothing is missing: the base model leaves only noise; {errors}."),
             Some(found) => format!(
                 "Nothing is missing beyond how the cells were measured: there are {found}. With that taken into account the base \
-                 model leaves no more than noise; {errors}."
+                 model leaves only noise; {errors}."
             ),
         },
         (Verdict::Attributed, [meaning]) => {
@@ -204,27 +208,26 @@ pub(super) fn sentence(discovery: &Discovery, prepared: &Problem, findings: &Fin
                     format!(", correlated over {} cell sizes", significant(length, 2))
                 });
             format!(
-                "Something with a structure{length} is missing, {} of the squared velocities, and no candidate explains it; \
-                 {errors}.",
+                "Something structured{length} is missing, {} of the squared velocities, and no candidate explains it; {errors}.",
                 percent(discovery.after.budget.unexplained)
             )
         }
         (Verdict::UnexplainedWhite, _) => format!(
-            "The base model leaves more than noise explains, {} of the squared velocities, but without structure; {errors}.",
+            "The base model leaves more than noise, {} of the squared velocities, but without structure; {errors}.",
             percent(discovery.after.budget.unexplained)
         ),
         (Verdict::NotTestable, _) => {
             if discovery.before.inference.cells_turn() {
                 return format!(
-                    "These data cannot tell whether something is missing: cells turn around between frames, and the paths that the \
-                     base model finds for them need not be theirs; {errors}."
+                    "These data cannot tell whether something is missing: cells turn around between frames, so the paths that \
+                     the base model finds may be wrong; {errors}."
                 );
             }
             let used = discovery.before.inference.used;
             let frames = prepared.frames.len();
             format!(
                 "These data cannot tell whether something is missing: {used} velocities in {frames} frame{} are too few, or \
-                 the parameters of the base model do what the candidates do; {errors}.",
+                 the parameters of the base model absorb what the candidates would explain; {errors}.",
                 if frames == 1 { "" } else { "s" }
             )
         }
@@ -252,27 +255,28 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
     let is_tested = |own: &Ranked| own.effect.id == "polarity_alignment" && own.dimension > 0;
     if crawls && !discovery.ranking.iter().any(is_tested) {
         sentences.push(
-            "Polarities of neighbours were taken for independent: whether they align was not tested, and where they do, intervals \
-             are too narrow."
+            "Polarities of neighbours were assumed independent. Whether they align was not tested; if they do, the intervals are too \
+             narrow."
                 .into(),
         );
     }
     let rest = discovery.after.budget.unexplained;
     // Otherwise the sentence says so.
     if discovery.verdict == Verdict::Partial && !discovery.predicts_better() && rest > LEAST_REST {
-        sentences.push(format!("A rest of {} of the squared velocities has no name.", percent(rest)));
+        sentences
+            .push(format!("A remainder of {} of the squared velocities is not identified.", percent(rest)));
     }
     if discovery.cells_differ() {
         sentences.push(
-            "What single cells have of their own explains whatever varies from cell to cell in the same way: what a cell does beside \
-             the model may pose as it."
+            "Deviations of single cells explain anything that varies from cell to cell in the same way, so other behaviour of a cell \
+             can be mistaken for them."
                 .into(),
         );
     }
     if !discovery.selected.is_empty() {
         sentences.push(format!(
-            "This is an association, not a mechanism shown: {} candidates were compared, and something that is not among them may \
-             do the same.",
+            "This is an association, not proof of a mechanism: {} candidates were compared, and something not among them may explain \
+             the data as well.",
             search.candidates.len()
         ));
     }
@@ -281,8 +285,8 @@ pub(super) fn caveat(discovery: &Discovery, search: &Search) -> String {
     }
     if discovery.before.inference.noise_source == NoiseSource::Estimated {
         sentences.push(
-            "Noise was estimated, not given: whatever is missing counts as noise in the estimate, which is an upper bound, \
-             so small effects are missed."
+            "Noise was estimated, not given. The estimate counts anything missing as noise, so it is an upper bound and small effects \
+             are missed."
                 .into(),
         );
     }
@@ -315,7 +319,7 @@ pub(super) fn measure_next(
 ) -> String {
     let mut advice: Vec<String> = findings.advice().collect();
     if discovery.before.inference.cells_turn() {
-        advice.push("Frames that are closer in time: cells turn around between those that there are.".into());
+        advice.push("Frames that are closer in time: cells turn around between the present ones.".into());
         return advice.join(" ");
     }
     for selected in &discovery.selected {
@@ -339,17 +343,17 @@ pub(super) fn measure_next(
     }
     match discovery.verdict {
         Verdict::UnexplainedStructured => advice.push(
-            "Whatever else varies across the tissue as the residual does: a marker as labels of cells, or a field to compare \
-             with (--field)."
+            "Something that varies across the tissue as the residual does: a marker as labels of cells, or a field to compare with \
+             (--field)."
                 .into(),
         ),
         Verdict::Partial if discovery.cells_differ() => advice.push(
-            "The same cells in further frames, tracked by name: what a cell has of its own must stay with it. Or a marker as labels, \
-             if cells are of several kinds."
+            "The same cells tracked through further frames: their deviations must persist. Or a marker as labels, if there are several \
+             kinds of cells."
                 .into(),
         ),
         Verdict::Partial => {
-            advice.push("More frames of the same tissue, to find what the rest is.".into());
+            advice.push("More frames of the same tissue, to identify the remainder.".into());
         }
         Verdict::NothingMissing | Verdict::NotTestable => advice.push(
             "More cells or frames, if smaller effects matter: detection limits fall with the root of the number of velocities."
@@ -361,7 +365,7 @@ pub(super) fn measure_next(
         || discovery.verdict == Verdict::UnexplainedWhite
     {
         advice.push(
-            "The noise by itself, for example cells tracked twice or fixed tissue, to be stated as position_noise and \
+            "The noise by itself, for example from cells tracked twice or from fixed tissue, to be given as position_noise and \
              velocity_noise."
                 .into(),
         );

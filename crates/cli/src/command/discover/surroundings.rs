@@ -14,13 +14,14 @@ use voronudge_model::{EnvironmentError, VectorMap};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Data")]
 pub(super) struct FieldArguments {
-    /// External field that cells may follow, (ny, nx, 2) or (frames, ny, nx, 2), .npy: vectors, in any unit.
+    /// External field that cells may follow, vectors in any unit: .npy file of shape (ny, nx, 2) or (frames, ny, nx,
+    /// 2). Needs --field-x and --field-y.
     #[arg(long, value_name = "FILE", requires = "field_x", requires = "field_y")]
     field: Option<PathBuf>,
-    /// x of the columns of the external field, .npy.
+    /// x of the columns of the external field: .npy file of shape (nx,).
     #[arg(long, value_name = "FILE", requires = "field")]
     field_x: Option<PathBuf>,
-    /// y of the rows of the external field, .npy.
+    /// y of the rows of the external field: .npy file of shape (ny,).
     #[arg(long, value_name = "FILE", requires = "field")]
     field_y: Option<PathBuf>,
 }

@@ -17,31 +17,33 @@ use ndarray::Array2;
 use voronudge_report::EquationOfStateReport;
 use voronudge_report::equation_of_state_report::{Measured, UniformRecord};
 
-/// Pressure, torques and moduli of uniform tissues against their density.
+/// Measures the pressure, torques and moduli of uniform tissues as functions of their density.
 ///
-/// Runs the model in periodic boxes of several densities. Writes each quantity as .npy (densities, 2: value, standard error), report.json and
-/// report.html; `channel --equation-of-state` predicts flows from them.
+/// Runs the model in periodic boxes at several densities. Writes each quantity as a .npy file of shape (densities, 2)
+/// with value and standard error, report.json and report.html; `channel --equation-of-state` predicts flows from
+/// them.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Densities, in units of 1/ℓ₀² with the --cell-size ℓ₀: first, last, how many.
+    /// Densities, three or more, in units of 1/ℓ₀² with the cell size ℓ₀ of --cell-size: first, last, number of
+    /// values.
     #[arg(long, num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [0.8, 1.6, 17.0], allow_negative_numbers = true)]
     density: Vec<f64>,
-    /// The cell size ℓ₀ that densities are relative to, in the unit of length of the parameters.
+    /// Cell size ℓ₀ that densities are relative to, in the unit of length of the parameters.
     #[arg(long, value_name = "SIZE", default_value_t = 1.0, allow_negative_numbers = true)]
     cell_size: f64,
-    /// Cells of each run, in a square box.
+    /// Number of cells in each run, in a square box.
     #[arg(long, default_value_t = 400, allow_negative_numbers = true)]
     cells: usize,
-    /// Runs at each density, each from other random positions, at least two.
+    /// Number of runs at each density, at least two, each from different random positions.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true)]
     replicas: usize,
-    /// Time before averages begin [default: 20/K_P].
+    /// Time before averaging begins [default: 20/K_P].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     relaxation: Option<f64>,
-    /// Time of the averages [default: 20/K_P].
+    /// Averaging time [default: 20/K_P].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     time: Option<f64>,
-    /// Largest time step [default: at each density the one advised there].
+    /// Largest time step [default: at each density the one recommended there].
     #[arg(long, allow_negative_numbers = true)]
     dt: Option<f64>,
     #[command(flatten)]

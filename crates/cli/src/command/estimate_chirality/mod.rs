@@ -18,27 +18,28 @@ use voronudge_report::Units;
 use voronudge_report::channel_report::ChiralityReport;
 use voronudge_simulate::measure::Estimate;
 
-/// The chirality that the flow in a channel implies, from the slope of v_y against v_x.
+/// Estimates the chirality from the flow in a channel, by the slope of v_y against v_x.
 ///
 /// Writes report.json and report.html.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Folder written by `channel`, or a table with columns x (distance from the edge), v_x, v_y and perhaps v_x_error, v_y_error.
+    /// Folder written by `channel`, or a table with the columns x (distance from the edge), v_x, v_y and, if known,
+    /// the standard errors v_x_error and v_y_error.
     #[arg(value_name = "PROFILES")]
     profiles: PathBuf,
     /// Preferred perimeter in cell sizes, P_0/l_0 [default: that of the folder; otherwise unknown].
     #[arg(long, value_name = "P_0/l_0", allow_negative_numbers = true)]
     shape_index: Option<f64>,
-    /// Area elasticity K_A l_0^2/K_P [default: that of the folder; otherwise 0].
+    /// Area elasticity K_A l_0^2/K_P, dimensionless [default: that of the folder; otherwise 0].
     #[arg(long, value_name = "RATIO", allow_negative_numbers = true)]
     area_elasticity: Option<f64>,
-    /// Leave out what is nearer to the edge [default: where cells are born in the folder; otherwise 0].
+    /// Leave out positions nearer to the edge than this [default: in a folder, where cells are born; otherwise 0].
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     from: Option<f64>,
-    /// Leave out what is farther from the edge.
+    /// Leave out positions farther from the edge than this [default: none].
     #[arg(long, value_name = "X", allow_negative_numbers = true)]
     to: Option<f64>,
-    /// Where the line meets v_x = 0: zero by symmetry, or free for velocities with an offset.
+    /// Intercept of the line at v_x = 0: zero by symmetry, or free for velocities with an offset.
     #[arg(long, value_enum, default_value_t = InterceptName::Zero)]
     intercept: InterceptName,
     #[command(flatten)]
@@ -47,9 +48,9 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum InterceptName {
-    /// At the origin.
+    /// The line passes through the origin.
     Zero,
-    /// Fitted.
+    /// The intercept is fitted.
     Free,
 }
 

@@ -13,16 +13,18 @@ use voronudge_report::infer_report::{NoiseSource, RegionSource};
 pub(crate) struct SnapshotArguments {
     #[command(flatten)]
     pub data: DataSetArguments,
-    /// Frames to fit together: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: all that have velocities].
+    /// Frames to fit together, counted from zero: `6`, `4..16` (end excluded) or `4,7,9` [default: all that have
+    /// velocities].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     pub frames: Option<FrameSelection>,
-    /// Which mean velocity to remove first: drift of the stage shows as one.
+    /// Mean velocity to subtract before the fit, because a drifting stage adds one.
     #[arg(long, value_enum, default_value_t = MeanToRemove::Auto)]
     pub remove_mean: MeanToRemove,
-    /// Let a smooth flow be no concern of the model: polynomials of the position up to this degree, in each frame.
+    /// Fit a smooth flow on top of the model, which need not explain it: in each frame, polynomials of the position
+    /// up to this degree, 0 to 6 [default: none].
     #[arg(long, value_name = "DEGREE", value_parser = clap::value_parser!(u32).range(0..=6), allow_negative_numbers = true)]
     pub background: Option<u32>,
-    /// In an open field of view, polygons larger than this multiple of the median area are taken for holes in the data.
+    /// In an open field of view, treat polygons larger than this multiple of the median area as holes in the data.
     #[arg(long, value_name = "FACTOR", default_value_t = 3.0, allow_negative_numbers = true)]
     pub largest_area: f64,
     #[command(flatten)]
@@ -31,9 +33,9 @@ pub(crate) struct SnapshotArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum MeanToRemove {
-    /// The median of each frame in an open field, unless velocities of cells are given; none otherwise.
+    /// The median of each frame in an open field of view, unless velocities of cells are given; otherwise none.
     Auto,
-    /// None.
+    /// No mean velocity.
     None,
     /// The median of the velocities used in each frame.
     PerFrame,

@@ -8,16 +8,19 @@ use voronudge_infer::{CoefficientSpace, Constraints, FitParameter, Prior};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Fit")]
 pub(crate) struct ConstraintArguments {
-    /// Hold a parameter: `--fix K_A=0.1` (repeatable), in the units of the data.
+    /// Hold a parameter at a value, in the units of the data: `--fix K_A=0.1`. NAME is K_A, K_P, P_0, alpha or
+    /// K_P_alpha. May be repeated.
     #[arg(long, value_name = "NAME=VALUE", value_parser = fixed, allow_hyphen_values = true)]
     fix: Vec<(FitParameter, f64)>,
-    /// Keep a parameter between two values: `--bounds K_A=0..0.5`, `K_A=0..`, `P_0=..4.2` (repeatable).
+    /// Keep a parameter between two values, either of which may be left out: `--bounds K_A=0..0.5`, `K_A=0..`,
+    /// `P_0=..4.2`. NAME as for --fix. May be repeated.
     #[arg(long, value_name = "NAME=LOW..HIGH", value_parser = bounds, allow_hyphen_values = true)]
     bounds: Vec<(FitParameter, [f64; 2])>,
-    /// Weigh in what is known beforehand: `--prior P_0=3.9±0.2` or `P_0=3.9,0.2` (repeatable).
+    /// Use prior knowledge of a parameter, a Gaussian with this mean and standard deviation: `--prior P_0=3.9±0.2` or
+    /// `P_0=3.9,0.2`. NAME as for --fix. May be repeated.
     #[arg(long, value_name = "NAME=MEAN±SD", value_parser = prior, allow_hyphen_values = true)]
     prior: Vec<(FitParameter, Prior)>,
-    /// Stiffnesses are not negative: short for `--bounds K_A=0.. --bounds K_P=0..`.
+    /// Do not allow negative stiffnesses: short for `--bounds K_A=0.. --bounds K_P=0..`.
     #[arg(long)]
     stable: bool,
 }

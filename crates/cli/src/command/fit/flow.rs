@@ -11,17 +11,17 @@ use voronudge_report::infer_report::{FlowGrid, FlowWindow};
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Velocities")]
 pub(crate) struct FlowArguments {
-    /// Velocities to explain: those of cells, or a flow field on a grid [default: flow if there is a flow field and no
-    /// velocities of cells].
+    /// Velocities to explain: those of cells, or a flow field on a grid [default: flow if there is a flow field and
+    /// no velocities of cells, else cells].
     #[arg(long, value_enum)]
     data: Option<Kind>,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Kind {
-    /// Given velocities of cells, or those derived from tracks.
+    /// Velocities of cells, given or derived from tracks.
     Cells,
-    /// A flow field.
+    /// A flow field on a grid.
     Flow,
 }
 

@@ -11,10 +11,10 @@ use voronudge_report::infer_report::LatentCells;
 #[derive(Debug, Clone, Args)]
 #[command(next_help_heading = "Detections")]
 pub(crate) struct LatentArguments {
-    /// Look for cells that were not detected, and for detections that are no cells, before the fit.
+    /// Before the fit, look for cells that were not detected and for detections that are not cells.
     #[arg(long, value_name = "true|false", action = ArgAction::Set, default_value_t = true)]
     complete: bool,
-    /// Share of the cells that is not detected [default: estimated].
+    /// Share of the cells that is not detected, between 0 and 1 [default: estimated].
     #[arg(long, value_name = "RATE", allow_negative_numbers = true)]
     missed_rate: Option<f64>,
 }

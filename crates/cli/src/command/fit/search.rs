@@ -6,10 +6,10 @@ use voronudge_infer::Method;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Fit")]
 pub(crate) struct SearchArguments {
-    /// Starts of the search, 1 to 64: more find a lower minimum if there is one [default: 1].
+    /// Number of starts of the search, 1 to 64. More starts find a lower minimum if there is one [default: 1].
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=64))]
     pub starts: Option<u64>,
-    /// Steps of the optimiser at each stage [default: 60; 2000 for a descent].
+    /// Largest number of steps of the optimiser at each stage [default: 60; 2000 for a descent].
     #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub max_steps: Option<u64>,
 }

@@ -47,19 +47,19 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
              --position-noise from an independent measurement"
                 .into()
         }
-        Doubt::Steps => "the fit used up its steps before it reached a minimum; raise --max-steps".into(),
+        Doubt::Steps => "the fit ran out of steps before it reached a minimum; raise --max-steps".into(),
         Doubt::Voids(Voids { found, expected }) => format!(
-            "cells were missed: {found} empty places are as large as cells leave that are not seen, {} would be chance; their \
-             neighbours' forces are wrong; look at the images there",
+            "cells were missed: {found} gaps are as large as an undetected cell leaves, where chance makes {}; forces on their \
+             neighbours are wrong; look at the images there",
             significant(expected, 1)
         ),
         Doubt::Tails(ratio) => format!(
-            "a few velocities are out of line with the rest (residuals scatter {} times as much as the smaller half of them \
+            "a few velocities are outliers (residuals scatter {} times as much as the smaller half of them \
              implies): missed, merged or split cells, or tracks that jump; look at the largest residuals",
             significant(ratio, 2)
         ),
         Doubt::Pattern => {
-            "what the fit leaves has a structure in space: the model lacks something, or the measurement does; ask discover"
+            "the residuals are correlated in space: the model or the description of the measurement lacks something; run discover"
                 .into()
         }
         Doubt::LongSteps(step) => format!(
@@ -68,16 +68,16 @@ fn doubt(doubt: Doubt, result: &Inference, method: Method) -> String {
             significant(step, 2)
         ),
         Doubt::Turning(ratio) => format!(
-            "cells turn around between frames: along the fitted paths they move {} times as fast as they get on from one frame to the \
-             next, and a fit can end at a wrong path; give frames that are closer in time",
+            "cells turn around between frames: along the fitted paths they move {} times as fast as their net displacement per frame, \
+             so the fit may have found wrong paths; give frames that are closer in time",
             significant(ratio, 2)
         ),
         Doubt::Effect("time_lag", _) => {
-            "velocities lag behind the positions, as differences over too long a time do; give frames that are closer in time"
+            "velocities lag behind the positions, as differences over long intervals do; give frames that are closer in time"
                 .into()
         }
         Doubt::Effect("flow_blur", _) => {
-            "the flow is averaged over another window than the fit takes; give --window and --window-width".into()
+            "the flow is averaged over a window other than the one assumed; give --window and --window-width".into()
         }
         Doubt::Effect(_, share) => format!(
             "positions look like centroids of cells rather than the sites of their polygons ({} of the way)",

@@ -32,31 +32,33 @@ const GUIDE: &[[&str; 2]] = &[
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The field (ny, nx) or (frames, ny, nx), .npy, a grey .tif of one page or several, or a grey .png; several files, or those of a
-    /// folder, are frames in the order of the numbers in their names.
+    /// The field, of shape (ny, nx) or (frames, ny, nx): a .npy array, a grey .tif of one or several pages, or a grey
+    /// .png. Several files, or the files of a folder, are frames in the order of the numbers in their names.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
     image: ImageArguments,
-    /// Which extrema are cells.
+    /// Which extrema of the field are cells.
     #[arg(long, value_enum, default_value_t = Kind::Maxima)]
     extrema: Kind,
-    /// Standard deviation of a Gaussian average taken first, in units after scaling; 0 for none.
+    /// Standard deviation of a Gaussian filter applied first, in units of length after scaling; 0 for none.
     #[arg(long, value_name = "LENGTH", default_value_t = 0.0, allow_negative_numbers = true)]
     smoothing: f64,
-    /// Least prominence, in units of the field [default: a tenth of the range of the smoothed field].
+    /// Smallest prominence of an extremum, in units of the field [default: a tenth of the range of the smoothed
+    /// field].
     #[arg(long, value_name = "HEIGHT", allow_negative_numbers = true)]
     prominence: Option<f64>,
-    /// Least distance of two extrema of a kind, in units after scaling; 0 for none.
+    /// Smallest distance between two extrema of the same kind, in units of length after scaling; 0 for none.
     #[arg(long, value_name = "LENGTH", default_value_t = 0.0, allow_negative_numbers = true)]
     distance: f64,
-    /// The field repeats; the periodic box is the image.
+    /// The field is periodic, and the image is the periodic box.
     #[arg(long)]
     periodic: bool,
-    /// Which cells of different frames are one.
+    /// Which cells of different frames are the same cell.
     #[arg(long, value_enum, default_value_t = Link::Nearest)]
     link: Link,
-    /// The farthest that a cell moves between frames, in units after scaling [default: half the mean distance of cells].
+    /// Largest displacement of a cell between frames, in units of length after scaling [default: half the mean
+    /// distance between cells].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     link_limit: Option<f64>,
     #[command(flatten)]

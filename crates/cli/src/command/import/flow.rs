@@ -19,33 +19,35 @@ const MANY_POINTS: usize = 100_000;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Arrays (ny, nx, 2) or (frames, ny, nx, 2), .npy, or tables of x, y, u, v; of several files, each is a frame.
+    /// Arrays of shape (ny, nx, 2) or (frames, ny, nx, 2), .npy, or tables with the columns x, y, u, v. If there are
+    /// several files, each is one frame.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
     scale: ScaleArguments,
-    /// Side of the squares that an array is averaged over, after scaling (default: one pixel).
+    /// Side of the squares over which an array is averaged, in units of length after scaling; not for tables
+    /// [default: one pixel].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     grid_spacing: Option<f64>,
-    /// Positions of the cells, .npy, in the unit of length after scaling; they complete the data set.
+    /// Positions of the cells, .npy, in units of length after scaling, which complete the data set.
     #[arg(long, value_name = "FILE")]
     positions: Option<PathBuf>,
-    /// Name of the column with the frame's number, of a table.
+    /// Name of the column with the frame number, for tables [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     frame_column: Option<String>,
-    /// Name of the column with x.
+    /// Name of the column with x [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     x_column: Option<String>,
-    /// Name of the column with y.
+    /// Name of the column with y [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     y_column: Option<String>,
-    /// Name of the column with the displacement along x.
+    /// Name of the column with the displacement along x [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     u_column: Option<String>,
-    /// Name of the column with the displacement along y.
+    /// Name of the column with the displacement along y [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     v_column: Option<String>,
-    /// Name of the column that is not 0 where a vector is to be left out.
+    /// Name of the mask column: vectors whose mask is not 0 are left out [default: `mask`, if there is one].
     #[arg(long, value_name = "NAME")]
     mask_column: Option<String>,
     #[command(flatten)]
@@ -59,19 +61,19 @@ pub(crate) struct Report {
     run: RunRecord,
     /// Number of frames.
     frames: usize,
-    /// Number of the first frame in a table with a column of frames, else 0.
+    /// Number of the first frame if a table has a column of frames, otherwise 0.
     first_frame: i64,
-    /// Grid points along y.
+    /// Number of grid points along y.
     rows: usize,
-    /// Grid points along x.
+    /// Number of grid points along x.
     columns: usize,
-    /// Distances of grid points along x and y, in units of length.
+    /// Distance between grid points along x and y, in units of length.
     spacing: [f64; 2],
-    /// Grid points without a vector, summed over frames.
+    /// Number of grid points without a vector, summed over frames.
     missing_points: usize,
-    /// Number of cells; `null` without their positions.
+    /// Number of cells; `null` if their positions were not given.
     cells: Option<usize>,
-    /// What was read, guessed and doubted.
+    /// What was read from the files, what was guessed, and what is doubtful.
     notes: Vec<NoteRecord>,
 }
 

@@ -14,22 +14,23 @@ use voronudge_report::ShapeReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// Label images (ny, nx) or (frames, ny, nx): an integer array .npy, a _seg.npy of Cellpose, a grey .tif of one page or several, or a .png; several files, or
-    /// those of a folder, are frames in the order of the numbers in their names.
+    /// Label images, of shape (ny, nx) or (frames, ny, nx): an integer .npy array, a _seg.npy of Cellpose, a grey
+    /// .tif of one or several pages, or a .png. Several files, or the files of a folder, are frames in the order of
+    /// the numbers in their names.
     #[arg(required = true, value_name = "FILE")]
     files: Vec<PathBuf>,
     #[command(flatten)]
     image: ImageArguments,
-    /// Cells touch across at most so many pixels of background, counted from side to side.
+    /// Largest number of background pixels between two cells that touch, counted across the sides of pixels.
     #[arg(long, value_name = "PIXELS", default_value_t = 2, allow_negative_numbers = true)]
     gap: usize,
-    /// Which cells of different frames are one.
+    /// Which cells of different frames are the same cell.
     #[arg(long, value_enum, default_value_t = Link::None)]
     link: Link,
-    /// What becomes of cells at the border of the image.
+    /// What to do with cells at the border of the image.
     #[arg(long, value_enum, default_value_t = Border::Keep)]
     border: Border,
-    /// What the positions of the data set are.
+    /// Which point of a cell is written as its position.
     #[arg(long, value_enum, default_value_t = Positions::Centroids)]
     positions: Positions,
     #[command(flatten)]
@@ -38,9 +39,9 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Link {
-    /// None: each frame has cells of its own.
+    /// None: each frame has its own cells.
     None,
-    /// The same label is the same cell.
+    /// Cells with the same label.
     Labels,
     /// Cells that share most pixels with each other from one frame to the next.
     Overlap,
@@ -48,9 +49,9 @@ enum Link {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Border {
-    /// They are cells, but their shapes are not compared.
+    /// Keep them as cells, but do not compare their shapes.
     Keep,
-    /// They are left out.
+    /// Leave them out.
     LeaveOut,
 }
 

@@ -6,9 +6,9 @@ use voronudge_io::PlaceLinking;
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Link {
-    /// None: each frame has cells of its own.
+    /// None: each frame has its own cells.
     None,
-    /// The nearest of the same kind in the next frame.
+    /// The nearest point or extremum of the same kind in the next frame.
     Nearest,
 }
 

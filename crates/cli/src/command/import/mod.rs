@@ -29,19 +29,22 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 enum What {
-    /// What TrackMate saves (.xml), its exported tracks (.xml), or its table of spots (.csv or .csv.gz).
+    /// Imports a file saved by TrackMate (.xml), its exported tracks (.xml), or its table of spots (.csv or .csv.gz).
     Trackmate(tracks::Arguments),
-    /// Any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y; or a tracks layer of napari (.npy).
+    /// Imports any table with a row for each cell and frame (.csv or .csv.gz): track, frame, x, y; or a tracks layer
+    /// of napari (.npy).
     Tracks(tracks::Arguments),
-    /// Points that nobody has followed (.csv, .csv.gz or .npy): x, y and perhaps a frame; cells are followed from frame to frame.
+    /// Imports points without tracks (.csv, .csv.gz or .npy): x, y and optionally a frame; cells are followed from
+    /// frame to frame.
     Points(points::Arguments),
-    /// An optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
+    /// Imports an optical flow (.npy), or tables of image velocimetry (text or .gz): x, y, u, v.
     Flow(flow::Arguments),
-    /// Label images, as segmentations make them (.npy, .tif or .png): every pixel carries the number of its cell, or 0.
+    /// Imports label images of a segmentation (.npy, .tif or .png): each pixel holds the number of its cell, or 0.
     Labels(labels::Arguments),
-    /// Outlines of cells (.csv or .csv.gz), a row for each corner: cell, x, y.
+    /// Imports outlines of cells (.csv or .csv.gz), with a row for each corner: cell, x, y.
     Outlines(outlines::Arguments),
-    /// A field, such as a stream function or an intensity (.npy, .tif or .png): cells are its maxima or minima.
+    /// Imports a field, such as a stream function or an intensity (.npy, .tif or .png): cells are its maxima or
+    /// minima.
     Field(field::Arguments),
 }
 
@@ -50,7 +53,7 @@ enum What {
 struct ScaleArguments {
     #[command(flatten)]
     image: ImageArguments,
-    /// Periodic box (default: an open field of view).
+    /// Sides of the periodic box, in units of length after scaling [default: an open field of view].
     #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
     box_lengths: Option<Vec<f64>>,
 }
@@ -58,19 +61,20 @@ struct ScaleArguments {
 /// What images do not say about themselves.
 #[derive(Debug, Args)]
 struct ImageArguments {
-    /// Length of a pixel: coordinates and displacements are multiplied by it [default: that of a TIFF, else 1].
+    /// Length of a pixel, by which coordinates and displacements are multiplied [default: that of a TIFF, else 1].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     pixel_size: Option<f64>,
     /// Time between frames [default: that of the file, else 1].
     #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
     frame_interval: Option<f64>,
-    /// Unit of length after scaling [default: that of the file].
+    /// Name of the unit of length after scaling [default: that of the file].
     #[arg(long, value_name = "UNIT")]
     length_unit: Option<String>,
-    /// Unit of time [default: that of the file].
+    /// Name of the unit of time [default: that of the file].
     #[arg(long, value_name = "UNIT")]
     time_unit: Option<String>,
-    /// Direction in which rows are counted, or y grows [default: down, as in images].
+    /// Direction of the y axis, or in which the rows of an image are counted: `up` or `down` [default: down, as in
+    /// images].
     #[arg(long, value_name = "up|down")]
     y_axis: Option<YAxis>,
 }
@@ -80,16 +84,17 @@ struct ImageArguments {
 struct SpotArguments {
     #[command(flatten)]
     scale: ScaleArguments,
-    /// Name of the column with the frame's number [default: a usual one; points without one are of one frame].
+    /// Name of the column with the frame number [default: recognised by common names; points without such a column
+    /// are in one frame].
     #[arg(long, value_name = "NAME")]
     frame_column: Option<String>,
-    /// Name of the column with x.
+    /// Name of the column with x [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     x_column: Option<String>,
-    /// Name of the column with y.
+    /// Name of the column with y [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     y_column: Option<String>,
-    /// Width and height of the image in the unit of the table: the field of view.
+    /// Width and height of the image, in the unit of the table; they become the field of view. Not with --box.
     #[arg(long, num_args = 2, value_names = ["W", "H"], conflicts_with = "box_lengths", allow_negative_numbers = true)]
     image_size: Option<Vec<f64>>,
 }

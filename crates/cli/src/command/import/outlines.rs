@@ -14,23 +14,24 @@ use voronudge_report::ShapeReport;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The table: rows of a cell follow each other around its outline.
+    /// The table, in which the rows of a cell follow each other around its outline.
     file: PathBuf,
     #[command(flatten)]
     image: ImageArguments,
-    /// Name of the column with the cell's number.
+    /// Name of the column with the cell number [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     cell_column: Option<String>,
-    /// Name of the column with the frame's number; without one all rows are of one frame.
+    /// Name of the column with the frame number [default: recognised by common names; without such a column all rows
+    /// are in one frame].
     #[arg(long, value_name = "NAME")]
     frame_column: Option<String>,
-    /// Name of the column with x.
+    /// Name of the column with x [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     x_column: Option<String>,
-    /// Name of the column with y.
+    /// Name of the column with y [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     y_column: Option<String>,
-    /// What the positions of the data set are.
+    /// Which point of a cell is written as its position.
     #[arg(long, value_enum, default_value_t = Positions::Centroids)]
     positions: Positions,
     #[command(flatten)]

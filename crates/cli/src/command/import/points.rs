@@ -17,14 +17,16 @@ use voronudge_report::shape_report::NoteRecord;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// A table with a row for each point: x, y and perhaps a frame; or a .npy array of rows (frame, (z,)) y, x, as napari keeps points.
+    /// A table with a row for each point: x, y and optionally a frame; or a .npy array of rows (frame, (z,)) y, x, as
+    /// in a points layer of napari.
     file: PathBuf,
     #[command(flatten)]
     spots: SpotArguments,
-    /// Which points of different frames are one cell.
+    /// Which points of different frames are the same cell.
     #[arg(long, value_enum, default_value_t = Link::Nearest)]
     link: Link,
-    /// The farthest that a cell moves between frames, in units after scaling [default: half the mean distance of cells].
+    /// Largest displacement of a cell between frames, in units of length after scaling [default: half the mean
+    /// distance between cells].
     #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
     link_limit: Option<f64>,
     #[command(flatten)]
@@ -36,15 +38,15 @@ pub(crate) struct Report {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     run: RunRecord,
-    /// Points of each frame.
+    /// Number of points in each frame.
     frames: Vec<usize>,
     /// Number of the first frame in the table.
     first_frame: i64,
     /// Number of tracks.
     tracks: usize,
-    /// Points that continue one of the frame before.
+    /// Number of points that were linked to a point of the frame before.
     linked: usize,
-    /// What was read, guessed and doubted.
+    /// What was read from the files, what was guessed, and what is doubtful.
     notes: Vec<NoteRecord>,
 }
 

@@ -12,9 +12,10 @@ use voronudge_report::shape_report::SiteRecord;
 /// What of a cell its position is to be, with its error.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum Positions {
-    /// Centroids of the outlines, whose errors are small and hardly depend on each other.
+    /// The centroid of its outline, whose errors are small and nearly independent.
     Centroids,
-    /// The sites whose Voronoi polygons follow the outlines best. Errors of neighbours are of opposite sign, which no fit knows.
+    /// The site whose Voronoi polygon follows the outline best. Errors of neighbouring sites have opposite signs,
+    /// which fits do not take into account.
     Sites,
 }
 

@@ -16,11 +16,11 @@ use voronudge_report::shape_report::NoteRecord;
 
 #[derive(Debug, Args)]
 pub(super) struct Arguments {
-    /// The table; a .npy array of tracks for import tracks.
+    /// The file to import; for `import tracks` also a .npy array of tracks.
     file: PathBuf,
     #[command(flatten)]
     spots: SpotArguments,
-    /// Name of the column with the track's number.
+    /// Name of the column with the track number [default: recognised by common names].
     #[arg(long, value_name = "NAME")]
     track_column: Option<String>,
     #[command(flatten)]
@@ -36,19 +36,19 @@ pub(crate) struct Report {
     frames: usize,
     /// Number of the first frame in the table.
     first_frame: i64,
-    /// Frames without a cell.
+    /// Number of frames without a cell.
     empty_frames: usize,
     /// Number of tracks.
     tracks: usize,
-    /// Places of cells that were read.
+    /// Number of cell positions that were read.
     spots: usize,
-    /// Places left out because they belong to no track.
+    /// Number of positions that were left out because they belong to no track.
     left_out_untracked: usize,
-    /// Places left out because a track has another in the same frame.
+    /// Number of positions that were left out because their track has another position in the same frame.
     left_out_duplicate: usize,
-    /// The track in the table of each entry of the axis of cells.
+    /// Number of the track in the table, for each entry of the axis of cells.
     track_ids: Vec<i64>,
-    /// What was read, guessed and doubted.
+    /// What was read from the files, what was guessed, and what is doubtful.
     notes: Vec<NoteRecord>,
 }
 

@@ -11,10 +11,10 @@ const DESCENT_STEPS: u64 = 2000;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Fit")]
 pub(super) struct MethodArguments {
-    /// How the objective is made small: by the program's own search, or by the first-order descent of the paper.
+    /// How the objective is minimised: by the program's own search, or by the first-order descent of the paper.
     #[arg(long, value_enum, default_value_t = Optimiser::Search)]
     method: Optimiser,
-    /// What `--method descent` descends [default: norms].
+    /// Loss that `--method descent` minimises [default: norms].
     #[arg(long, value_enum)]
     loss: Option<DescendedLoss>,
     #[command(flatten)]
@@ -23,7 +23,7 @@ pub(super) struct MethodArguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Optimiser {
-    /// Levenberg–Marquardt by continuation, with flips of contacts.
+    /// Levenberg–Marquardt with continuation and flips of contacts.
     Search,
     /// Gradient descent, for comparison.
     Descent,
@@ -31,7 +31,7 @@ enum Optimiser {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum DescendedLoss {
-    /// Sum of the norms of residual and nudges, as the paper prints it.
+    /// Sum of the norms of residuals and nudges, as printed in the paper.
     Norms,
     /// Sum of their squares, the likelihood.
     Squares,

@@ -34,41 +34,46 @@ use voronudge_report::InferReport;
 
 /// Infers K_A, K_P, P_0 and alpha from cell positions and velocities by nudged inference (NADA).
 ///
-/// Velocities are read from the data set, of cells or on a grid. Where there are none, the tracks of the cells are fitted
-/// themselves, which also writes trajectories.npy. Writes report.json, report.html, nudged_positions.npy,
-/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy), and
-/// latent_cells.npy, the cells that were not detected.
+/// Velocities, of cells or on a grid, are read from the data set. If there are none, the tracks of the cells are
+/// fitted themselves, which also writes trajectories.npy. Writes report.json, report.html, nudged_positions.npy,
+/// predicted_velocities.npy and residual_velocities.npy (for a flow field predicted_flow.npy and residual_flow.npy),
+/// and latent_cells.npy with the cells that were not detected.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     snapshots: SnapshotArguments,
-    /// Derive velocities from tracked positions by differences, where none are given [default: fit the tracks themselves].
+    /// Derive velocities from tracked positions by differences, if no velocities are given [default: fit the tracks
+    /// themselves].
     #[arg(long, value_name = "central|forward|backward")]
     difference: Option<Difference>,
-    /// Let cells crawl: each has a polarity of its own that it forgets at some rate. Fits v_0 and D_r together with the model; for tracks.
-    #[arg(long)]
+    /// Let cells crawl: each has a polarity, a velocity of its own that it forgets at some rate. Fits its speed v_0
+    /// and rotational diffusion D_r together with the model. For tracks of three frames or more.
+    #[arg(long, help_heading = "Cells that crawl")]
     active: bool,
-    /// Let the polarities turn towards those of the neighbours, and fit the rate J of this too; as --active otherwise.
-    #[arg(long)]
+    /// As --active, and also let the polarities turn towards those of the neighbours, at a rate J that is fitted.
+    #[arg(long, help_heading = "Cells that crawl")]
     align: bool,
-    /// Let the polarities turn away from contacts, and fit how fast, b; as --active otherwise.
-    #[arg(long)]
+    /// As --active, and also let the polarities turn away from contacts, and fit how fast, b.
+    #[arg(long, help_heading = "Cells that crawl")]
     contact_inhibition: bool,
-    /// Let the polarities turn towards the velocity that the forces give, and fit the rate kappa of this; as --active otherwise.
-    #[arg(long)]
+    /// As --active, and also let the polarities turn towards the velocity that the forces produce, at a rate kappa
+    /// that is fitted.
+    #[arg(long, help_heading = "Cells that crawl")]
     velocity_alignment: bool,
-    /// Let cells differ in a parameter: alpha. For velocities of cells.
-    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter)]
+    /// Let cells differ in one or more of the parameters K_A, P_0, A_0 and alpha, separated by commas, as in `--vary
+    /// alpha`. For velocities of cells.
+    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = spreads::parameter, help_heading = "Cells that differ")]
     vary: Vec<CellParameter>,
-    /// Let the cells of each label have parameters of their own: P_0,alpha; with these two also K_P.
-    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = kinds::parameter)]
+    /// Fit separate parameters for the cells of each label: P_0, alpha or both, and with both of them also K_P
+    /// (`P_0,alpha` or `K_P,P_0,alpha`).
+    #[arg(long, value_name = "PARAMETERS", value_delimiter = ',', value_parser = kinds::parameter, help_heading = "Cells that differ")]
     by_label: Vec<LabelledParameter>,
     #[command(flatten)]
     export: ExportArguments,
     #[command(flatten)]
     movie: MovieArguments,
-    /// Open report.html when done.
-    #[arg(long)]
+    /// Open report.html in the browser when done.
+    #[arg(long, help_heading = "Output")]
     open_report: bool,
     #[command(flatten)]
     latent: latent::LatentArguments,

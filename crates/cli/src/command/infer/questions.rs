@@ -18,16 +18,17 @@ const REPLICATES: [usize; 2] = [40, 10_000];
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Uncertainty")]
 pub(super) struct UncertaintyArguments {
-    /// Fit so many synthetic data sets with the noise of this fit: 40 to 10000.
+    /// Fit this many synthetic data sets with the noise of this fit: 40 to 10000, or 0 for none.
     #[arg(long, value_name = "N", default_value = "0", value_parser = replicates, allow_negative_numbers = true)]
     bootstrap: usize,
-    /// Hold a parameter at several values and fit all else again (repeatable).
+    /// Profile likelihood: hold this parameter at several values and fit everything else again. NAME as for --fix.
+    /// May be repeated.
     #[arg(long, value_name = "NAME", value_parser = quantity)]
     profile: Vec<FitParameter>,
-    /// The objective over two parameters: `--landscape P_0,alpha` (repeatable).
+    /// Compute the objective over two parameters: `--landscape P_0,alpha`. May be repeated.
     #[arg(long, value_name = "NAME,NAME", value_parser = two_quantities)]
     landscape: Vec<[FitParameter; 2]>,
-    /// Values of each parameter in profiles and landscapes, 5 to 101.
+    /// Number of values of each parameter in profiles and landscapes, 5 to 101.
     #[arg(long, value_name = "N", default_value_t = 15, allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(5..=101))]
     points: u64,
 }

@@ -81,7 +81,7 @@ pub(super) fn summary(report: &InferReport, folder: &Path) -> String {
         let _ = writeln!(text, "{}\n    P_0 / l_0  {shape}\n    alpha      {alpha}", kind.words);
     }
     if !is_finding {
-        let _ = writeln!(text, "in brackets: a model that explains nothing has no parameters to be found");
+        let _ = writeln!(text, "in brackets: a model that explains nothing has no meaningful parameters");
     }
     text.push_str(&answers(report));
     let e = &report.nmse;

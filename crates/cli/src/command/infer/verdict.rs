@@ -8,7 +8,7 @@ use voronudge_report::numbers::significant;
 pub(super) fn verdict(result: &Inference, nmse: &Nmse, parameters: &Parameters) -> Verdict {
     let answer = result.verdict();
     let held_out = nmse.cross_validated.unwrap_or(nmse.un_nudged);
-    let missed = format!("misses {} of the square of velocities it has not seen", percent(held_out));
+    let missed = format!("leaves {} of the squared held-out velocities unexplained", percent(held_out));
     let kind = kind(answer);
     let sentence = match answer {
         Answer::ExplainsNothing => format!(
@@ -31,13 +31,13 @@ pub(super) fn verdict(result: &Inference, nmse: &Nmse, parameters: &Parameters) 
             )
         }
         Answer::Explained => format!(
-            "{}. The model {missed}, which is what the noise of the measurement alone gives ({}).",
+            "{}. The model {missed}, as measurement noise alone would ({}).",
             findings(parameters),
             percent(nmse.noise_floor)
         ),
         Answer::ExplainedInPart => format!("{}. The model {missed}.", findings(parameters)),
         Answer::LacksSomething => format!(
-            "{}. The model {missed}; the noise of the measurement alone would give {}: the model lacks something.",
+            "{}. The model {missed}; measurement noise alone would leave {}: the model lacks something.",
             findings(parameters),
             percent(nmse.noise_floor)
         ),
@@ -83,12 +83,12 @@ fn misfit(doubt: &Doubt) -> &'static str {
             "positions would have to be so uncertain that nudges could explain almost anything"
         }
         Doubt::Voids(_) => "cells were missed",
-        Doubt::Tails(_) => "a few velocities are out of line with the rest",
+        Doubt::Tails(_) => "a few velocities are outliers",
         Doubt::Turning(_) => "cells turn around between frames",
         Doubt::LongSteps(_) | Doubt::Integration(_) | Doubt::Effect("time_lag", _) => {
             "cells move too far between frames"
         }
-        Doubt::Effect("flow_blur", _) => "the flow is averaged over another window than the fit takes",
+        Doubt::Effect("flow_blur", _) => "the flow is averaged over a window other than the one assumed",
         Doubt::Effect(..) => "positions are centroids rather than sites",
         Doubt::Objective(_) | Doubt::Steps | Doubt::Pattern => "the fit is not a good one",
     }

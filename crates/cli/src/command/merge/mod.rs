@@ -12,10 +12,10 @@ use clap::Args;
 use diagram::Diagram;
 use std::path::{Path, PathBuf};
 
-/// Puts together the parts of a run of phase-diagram, discover or infer that were made with --shard.
+/// Combines the parts of a run of phase-diagram, discover or infer that were made with --shard.
 ///
-/// The result is that of the run without --shard, byte for byte, apart from the record of the run in report.json and on the page. For discover
-/// and infer the data must lie where the command line of the parts finds them.
+/// The result is that of the run without --shard, byte for byte, except for the record of the run in report.json and
+/// on the page. For discover and infer, the data must be where the command line of the parts expects them.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     /// Output folders of all parts, in any order.

@@ -17,14 +17,16 @@ use std::path::Path;
 use voronudge_report::ModuliPage;
 use voronudge_report::ModuliReport;
 
-/// Elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, beside the mean-field theory.
+/// Measures the elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, and compares them with
+/// the mean-field theory.
 ///
-/// Cells come to rest first; a tissue that does not is strained while it flows. Writes report.json and report.html.
+/// Cells are first brought to rest; a tissue that does not come to rest is strained while it flows. Writes
+/// report.json and report.html.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     start: StartArguments,
-    /// Random starts: the first has --seed, the others seeds made from it.
+    /// Number of random starts. The first uses --seed, the others use seeds derived from it.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     replicas: u64,
     #[command(flatten)]

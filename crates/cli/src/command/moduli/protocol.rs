@@ -12,37 +12,38 @@ use voronudge_simulate::{Schedule, recommended_time_step};
 
 #[derive(Debug, Clone, Args)]
 pub(crate) struct ProtocolArguments {
-    /// Longest time to come to rest.
+    /// Longest time that the tissue is given to come to rest.
     #[arg(long, default_value_t = 300.0, allow_negative_numbers = true)]
     pub time: f64,
     /// Time step [default: 0.01 / max(K_P, K_P |α|, K_A ℓ₀²)].
     #[arg(long, allow_negative_numbers = true)]
     pub dt: Option<f64>,
-    /// The larger strain of a tissue at rest; the smaller is half of it.
+    /// Larger strain of a tissue at rest; the smaller one is half of it.
     #[arg(long, default_value_t = 1e-5, allow_negative_numbers = true)]
     pub strain: f64,
-    /// The larger strain of a tissue that flows.
+    /// Larger strain of a tissue that flows; the smaller one is half of it.
     #[arg(long, value_name = "STRAIN", default_value_t = 0.1, allow_negative_numbers = true)]
     pub flowing_strain: f64,
-    /// Time after a strain before the stress of a tissue that flows is averaged.
+    /// For a tissue that flows: time after a strain before averaging of the stress begins.
     #[arg(long, value_name = "TIME", default_value_t = 20.0, allow_negative_numbers = true)]
     pub transient: f64,
-    /// Time over which the stress of a tissue that flows is averaged.
+    /// For a tissue that flows: time over which the stress is averaged.
     #[arg(long, value_name = "TIME", default_value_t = 100.0, allow_negative_numbers = true)]
     pub average: f64,
-    /// Also viscosities, by shear back and forth at --rate with --period.
+    /// Also measure viscosities, by shear back and forth; see --rate, --period and --periods.
     #[arg(long)]
     pub viscosity: bool,
-    /// Rate of the shear back and forth.
+    /// With --viscosity: rate of the shear, in 1/time.
     #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     pub rate: f64,
-    /// Its period.
+    /// With --viscosity: period of the shear.
     #[arg(long, default_value_t = 200.0, allow_negative_numbers = true)]
     pub period: f64,
-    /// Periods that are averaged over, after one that is not.
+    /// With --viscosity: number of periods to average over, after a first one that is discarded.
     #[arg(long, default_value_t = 4, allow_negative_numbers = true)]
     pub periods: usize,
-    /// Also storage and loss moduli at these angular frequencies; a tissue that flows is sheared by --flowing-strain for --average.
+    /// Also measure storage and loss moduli at these angular frequencies, in 1/time. A tissue that flows is sheared
+    /// with the amplitude --flowing-strain for at least --average.
     #[arg(long, value_name = "OMEGA", num_args = 1.., allow_negative_numbers = true)]
     pub frequencies: Vec<f64>,
 }

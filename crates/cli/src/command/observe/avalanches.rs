@@ -20,9 +20,9 @@ use voronudge_report::units::label_with_unit;
 
 #[derive(Debug, Args)]
 pub(super) struct AvalancheArguments {
-    /// T1 transitions belong to one avalanche if their cells touch within this time, and to one burst if they follow each other within it [default: the
-    /// time between two frames].
-    #[arg(long, value_name = "TIME", allow_negative_numbers = true)]
+    /// Time within which T1 transitions belong together: to one avalanche if their cells touch, and to one burst
+    /// wherever they are [default: the time between two frames].
+    #[arg(long, value_name = "TIME", allow_negative_numbers = true, help_heading = "Measurements")]
     burst_time: Option<f64>,
 }
 

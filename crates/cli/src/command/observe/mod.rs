@@ -19,9 +19,11 @@ use voronudge_observables::{Exchange, Plan, exchange_statistics, exchanges, obse
 use voronudge_report::Units;
 use voronudge_report::observe_report::ObserveReport;
 
-/// What is measured on the cells of a data set, seen or simulated: how they move, who is next to whom, shapes, order, correlations and structure factors.
+/// Measures the cells of a data set, observed or simulated: how they move, who is next to whom, shapes, order,
+/// correlations and structure factors.
 ///
-/// Fields of view may be open, and tracks may have gaps. Writes report.json, report.html and an array (points, 4) for each function.
+/// Fields of view may be open, and tracks may have gaps. Writes report.json, report.html and an array of shape
+/// (points, 4) for each function.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]

@@ -28,11 +28,12 @@ const SIGNS: [&str; 2] = ["plus", "minus"];
 
 #[derive(Debug, Args)]
 pub(super) struct NematicArguments {
-    /// Standard deviation of the Gaussian over which shapes of cells are smoothed to a director, in mean spacings [default: 1.5, less in small boxes].
-    #[arg(long, value_name = "WIDTH", allow_negative_numbers = true)]
+    /// Standard deviation of the Gaussian that smooths cell shapes to a director, in mean cell spacings [default:
+    /// 1.5, less in small boxes].
+    #[arg(long, value_name = "WIDTH", allow_negative_numbers = true, help_heading = "Measurements")]
     director_width: Option<f64>,
-    /// Average the stresses of a model around defects, too; its parameters are those below.
-    #[arg(long)]
+    /// Also average the stresses of a model around defects. Its parameters are the options under Model.
+    #[arg(long, help_heading = "Measurements")]
     stress: bool,
     #[command(flatten)]
     parameters: ParameterArguments,

@@ -26,21 +26,22 @@ use voronudge_io::{Journal, OutputFolder, Recording};
 use voronudge_report::PhaseReport;
 use work::{Ending, work};
 
-/// Phase diagram: velocities, order, T1 transitions and more over preferred perimeter and chirality.
+/// Computes a phase diagram: velocities, order, T1 transitions and more over preferred perimeter and chirality.
 ///
 /// Runs the model in a periodic box at every point of a grid. Writes each quantity and its standard error as .npy
-/// (n_alpha, n_P0), the axes P_0.npy and alpha.npy, points.jsonl with all runs, report.json and report.html.
+/// files of shape (n_alpha, n_P0), the axes P_0.npy and alpha.npy, points.jsonl with all runs, report.json and
+/// report.html.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     grid: GridArguments,
     #[command(flatten)]
     spreads: SpreadArguments,
-    /// Go on with the diagram that was interrupted in --out; begin if there is none. One that is complete is not made again.
-    #[arg(long)]
+    /// Continue the interrupted diagram in --out, or start one if there is none. A complete diagram is not repeated.
+    #[arg(long, help_heading = "General")]
     resume: bool,
-    /// Make only a part of the runs, such as 1/4; `merge` puts all parts together.
-    #[arg(long, value_name = "PART/OF")]
+    /// Make only one part of the runs, such as 1/4; `merge` combines all parts.
+    #[arg(long, value_name = "PART/OF", help_heading = "General")]
     shard: Option<Shard>,
     #[command(flatten)]
     scaling: ScalingArguments,

@@ -22,27 +22,27 @@ const MOST_CELLS_WITH_MODES: usize = 1000;
 #[clap(rename_all = "snake_case")]
 #[serde(rename_all = "snake_case")]
 pub(crate) enum Quantity {
-    /// ⟨v²⟩.
+    /// Mean square velocity ⟨v²⟩.
     MeanSquareVelocity,
-    /// Ψ₆, the modulus of the average of ψ_i.
+    /// Hexatic order Ψ₆, the modulus of the average of ψ_i.
     HexaticOrder,
-    /// The average of the moduli |ψ_i|.
+    /// Average of the moduli |ψ_i|.
     HexaticModulus,
     /// T1 transitions per cell and time.
     T1Rate,
-    /// The mean of P_i/√A_i.
+    /// Mean shape index P_i/√A_i.
     ShapeIndex,
-    /// The largest Lyapunov exponent λ; about three times the cost of the run itself.
+    /// Largest Lyapunov exponent λ; it costs about four times as much as the run itself.
     Lyapunov,
-    /// ⟨ω²⟩ over all modes of the Jacobian.
+    /// Mean square frequency ⟨ω²⟩ over all modes of the Jacobian, for at most 1000 cells.
     MeanSquareFrequency,
-    /// The shear modulus μ of the state at the end; many times the cost of the run where it flows.
+    /// Shear modulus μ of the state at the end; where the tissue flows, it costs many times as much as the run.
     ShearModulus,
-    /// The odd shear modulus Kᵒ, at the same cost for all moduli.
+    /// Odd shear modulus Kᵒ; all moduli together cost no more than one.
     OddShearModulus,
-    /// The bulk modulus B.
+    /// Bulk modulus B.
     BulkModulus,
-    /// The odd bulk modulus A.
+    /// Odd bulk modulus A.
     OddBulkModulus,
 }
 
@@ -103,31 +103,31 @@ impl Quantity {
 #[derive(Debug, Args)]
 #[allow(non_snake_case, reason = "the field's symbols are the names of the flags")]
 pub(crate) struct GridArguments {
-    /// Preferred perimeters, in ℓ_0: first, last, how many.
+    /// Preferred perimeters, in ℓ_0: first, last, number of values.
     #[arg(long = "P_0", num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [3.0, 4.2, 16.0], allow_negative_numbers = true)]
     P_0: Vec<f64>,
-    /// Chiralities: first, last, how many.
+    /// Chiralities: first, last, number of values.
     #[arg(long = "alpha", num_args = 3, value_names = ["FROM", "TO", "COUNT"], default_values_t = [0.0, 3.0, 16.0], allow_negative_numbers = true)]
     alpha: Vec<f64>,
-    /// What to measure, separated by commas.
+    /// Quantities to measure, separated by commas.
     #[arg(long, value_enum, value_name = "QUANTITY,…", value_delimiter = ',', default_values_t = [Quantity::MeanSquareVelocity, Quantity::HexaticOrder, Quantity::HexaticModulus, Quantity::T1Rate, Quantity::ShapeIndex])]
     quantities: Vec<Quantity>,
-    /// Runs at each point, each from other random positions.
+    /// Number of runs at each point, each from different random positions.
     #[arg(long, default_value_t = 1, allow_negative_numbers = true)]
     replicas: usize,
-    /// Cells of each run, in a square box.
+    /// Number of cells in each run, in a square box.
     #[arg(long, default_value_t = 100, allow_negative_numbers = true)]
     cells: usize,
-    /// Duration of each run, in 1/K_P; the second half is measured.
+    /// Duration of each run, in 1/K_P. The second half is measured.
     #[arg(long, default_value_t = 100.0, allow_negative_numbers = true)]
     time: f64,
-    /// Time step [default: at each point the one advised there, 0.01/max(1, |α|)].
+    /// Time step, in 1/K_P [default: at each point the one recommended there, 0.01/max(1, |α|)].
     #[arg(long, allow_negative_numbers = true)]
     dt: Option<f64>,
     /// Area elasticity, in K_P/ℓ_0².
     #[arg(long = "K_A", default_value_t = 0.1, allow_negative_numbers = true)]
     K_A: f64,
-    /// Least distance between random positions, in ℓ_0.
+    /// Smallest distance between random starting positions, in ℓ_0.
     #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
     least_distance: f64,
 }

@@ -18,13 +18,13 @@ const SAMPLES: usize = 200;
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Scaling of ⟨v²⟩")]
 pub(crate) struct ScalingArguments {
-    /// Exponents to collapse ⟨v²⟩ with, besides the fitted ones.
+    /// Exponents β and φ with which ⟨v²⟩ is collapsed, in addition to the fitted ones.
     #[arg(long, num_args = 2, value_names = ["BETA", "PHI"], default_values_t = [Exponents::PAPER.beta, Exponents::PAPER.phi], allow_negative_numbers = true)]
     exponents: Vec<f64>,
-    /// Range of |α| in which it is tried.
+    /// Range of |α| in which the collapse is tested.
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], default_values_t = [0.04, 0.2], allow_negative_numbers = true)]
     collapse_alpha: Vec<f64>,
-    /// ⟨v²⟩ from which cells count as moving.
+    /// Smallest ⟨v²⟩ for a point to count as moving, in (K_P ℓ_0)².
     #[arg(long, value_name = "V2", default_value_t = 1e-3, allow_negative_numbers = true)]
     least_velocity: f64,
 }

@@ -20,27 +20,28 @@ use voronudge_report::PhaseDiffusionReport;
 /// Residuals of consecutive frames that correlate by more than this are not independent.
 const CORRELATED: f64 = 0.3;
 
-/// Phase diffusivities of a slowly deforming periodic pattern of cells, such as convection cells: compression, shear, and their chiral
-/// counterparts.
+/// Measures the phase diffusivities of a slowly deforming periodic pattern of cells, such as convection cells:
+/// compression, shear, and their chiral counterparts.
 ///
 /// Writes report.json and report.html.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
-    /// Frames: `4..16`, `4,7,9`; zero-based, end excluded [default: all].
+    /// Frames to use, at least three, counted from zero: `4..16` (end excluded) or `4,7,9` [default: all].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
-    /// Places (cells, 2) at which the pattern rests, .npy, y as in the data set [default: a constant displacement is fitted].
+    /// Positions at which the pattern is at rest: .npy file of shape (cells, 2), with y as in the data set [default:
+    /// a constant displacement is fitted].
     #[arg(long, value_name = "FILE")]
     reference: Option<PathBuf>,
-    /// Number of wave vectors, the longest waves first; those of one length are taken all.
+    /// Number of wave vectors, 1 to 1000, the longest waves first. Waves of equal length are all used.
     #[arg(long, value_name = "NUMBER", default_value_t = 12, allow_negative_numbers = true)]
     wave_vectors: usize,
-    /// Highest power of the wave vector in the rates.
+    /// Highest power of the wave vector in the relaxation rates.
     #[arg(long, value_enum, default_value_t = Order::Second)]
     order: Order,
-    /// What makes the residuals.
+    /// What causes the residuals.
     #[arg(long, value_enum, default_value_t = Cause::Measurement)]
     fluctuations: Cause,
     #[command(flatten)]
@@ -51,13 +52,13 @@ pub(crate) struct Arguments {
 enum Order {
     /// q²: the phase diffusion equation.
     Second,
-    /// q² and q⁴, for waves that are not very long against the cells.
+    /// q² and q⁴, for waves that are not very long compared with the cells.
     Fourth,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Cause {
-    /// Errors of measurement about a smooth relaxation.
+    /// Measurement errors about a smooth relaxation.
     Measurement,
     /// Random forces that keep the pattern moving.
     Driving,

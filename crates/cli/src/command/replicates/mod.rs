@@ -21,10 +21,12 @@ use clap::Args;
 #[derive(Debug, Default, Args)]
 #[command(next_help_heading = "General")]
 pub(crate) struct ReplicateArguments {
-    /// Go on with the run that was interrupted in --out; begin if there is none. A part that is complete is not made again.
+    /// Continue the interrupted run in --out, or start one if there is none. A part that is complete is not computed
+    /// again.
     #[arg(long)]
     pub resume: bool,
-    /// Fit only a part of the synthetic data, such as 1/4, and nothing that comes after; `merge` puts all parts together.
+    /// Fit only one part of the synthetic data, such as 1/4, and compute nothing that comes after it; `merge`
+    /// combines all parts.
     #[arg(long, value_name = "PART/OF")]
     pub shard: Option<Shard>,
     /// The parts that `merge` puts together.

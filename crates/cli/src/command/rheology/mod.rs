@@ -21,18 +21,19 @@ use voronudge_report::infer_report::InputFile;
 use voronudge_report::rheology_report::RheologyReport;
 use voronudge_simulate::seed_of_replica;
 
-/// Moduli B, A, μ, Kᵒ, viscosities, storage and loss moduli that fits of `infer` imply, with intervals that carry the errors of the parameters.
+/// Measures the moduli B, A, μ, Kᵒ, viscosities, and storage and loss moduli that fits of `infer` imply, with
+/// intervals that include the errors of the parameters.
 ///
 /// Writes report.json and report.html. Times and rates are in units of 1/K_P, frequencies in those of the data.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
-    /// Reports of infer, or folders that hold them; several in the order of time.
+    /// Reports of `infer`, or folders that hold them; several reports in temporal order.
     #[arg(required = true, value_name = "REPORT")]
     reports: Vec<PathBuf>,
-    /// The time of each report [default: their mean frames].
+    /// Time of each report [default: the mean of its frames].
     #[arg(long, value_name = "TIME", num_args = 1.., allow_negative_numbers = true)]
     times: Vec<f64>,
-    /// Tissues to simulate at each choice of parameters, at least two.
+    /// Number of tissues to simulate at each choice of parameters, 2 to 1000.
     #[arg(long, default_value_t = 8, allow_negative_numbers = true)]
     replicas: u64,
     #[command(flatten)]

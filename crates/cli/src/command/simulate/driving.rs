@@ -8,26 +8,27 @@ use voronudge_simulate::{Driving, Shear};
 
 #[derive(Debug, Args)]
 pub(super) struct DrivingArguments {
-    /// Speed of self-propulsion.
+    /// Speed of self-propulsion, in length/time.
     #[arg(long, value_name = "SPEED", default_value_t = 0.0, allow_negative_numbers = true)]
     self_propulsion: f64,
-    /// Rotational diffusion of the directions of self-propulsion.
+    /// Rotational diffusion of the direction of self-propulsion, in 1/time.
     #[arg(long, value_name = "D_R", default_value_t = 0.0, allow_negative_numbers = true)]
     rotational_diffusion: f64,
-    /// Let the speed of self-propulsion fluctuate as its direction does: the polarity is then an Ornstein–Uhlenbeck process, --self-propulsion
-    /// its root mean square.
+    /// Let the speed of self-propulsion fluctuate as its direction does. The polarity is then an Ornstein–Uhlenbeck
+    /// process, with --self-propulsion as its root mean square.
     #[arg(long)]
     free_speed: bool,
-    /// Alignment: the rate at which a cell with six neighbours turns towards the mean direction of their self-propulsion.
+    /// With --self-propulsion: rate at which a cell with six neighbours turns towards the mean direction of their
+    /// self-propulsion, in 1/time.
     #[arg(long, value_name = "J", default_value_t = 0.0, allow_negative_numbers = true)]
     alignment: f64,
-    /// Contact inhibition: how fast the self-propulsion turns away from contacts.
+    /// With --self-propulsion: how fast it turns away from contacts, in length/time².
     #[arg(long, value_name = "B", default_value_t = 0.0, allow_negative_numbers = true)]
     contact_inhibition: f64,
-    /// The rate at which the self-propulsion turns towards the velocity that the forces give.
+    /// With --self-propulsion: rate at which it turns towards the velocity that the forces produce, in 1/time.
     #[arg(long, value_name = "KAPPA", default_value_t = 0.0, allow_negative_numbers = true)]
     velocity_alignment: f64,
-    /// Translational diffusion: noise of the positions.
+    /// Translational diffusion, the noise of the positions, in length²/time.
     #[arg(long, value_name = "D", default_value_t = 0.0, allow_negative_numbers = true)]
     diffusion: f64,
 }

@@ -46,38 +46,46 @@ use voronudge_simulate::{
 pub(crate) struct Arguments {
     #[command(flatten)]
     start: StartArguments,
-    /// Duration.
+    /// Duration of the run.
     #[arg(long, default_value_t = 50.0, allow_negative_numbers = true)]
     time: f64,
-    /// Time step; the largest one of the adaptive method.
+    /// Time step; for the adaptive method, the largest one.
     #[arg(long, default_value_t = 0.01, allow_negative_numbers = true)]
     dt: f64,
-    /// Number of frames to keep, evenly spaced; the last at the end.
+    /// Number of frames to keep, evenly spaced. The last one is the end of the run.
     #[arg(long, default_value_t = 10, allow_negative_numbers = true)]
     frames: usize,
     /// Method of integration.
     #[arg(long, value_enum, default_value_t = MethodName::Rk4)]
     method: MethodName,
-    /// Error of a displacement that the adaptive method allows in one step, in mean spacings.
+    /// Error of a displacement that the adaptive method allows in one step, in mean cell spacings.
     #[arg(long, value_name = "ERROR", default_value_t = 1e-4, allow_negative_numbers = true)]
     tolerance: f64,
     #[command(flatten)]
     driving: DrivingArguments,
-    /// Also measure the largest Lyapunov exponent, over a further run as long as this one: about four times its cost.
+    /// Also measure the largest Lyapunov exponent, over a further run as long as this one. It costs about four times
+    /// as much as the run.
     #[arg(long)]
     lyapunov: bool,
-    /// Also differentiate the run: some of K_A, K_P, P_0, alpha, and coordinates of cells at the start, as in `alpha,P_0,y17`.
+    /// Also differentiate the run with respect to some of K_A, K_P, P_0, alpha and coordinates of cells at the start,
+    /// as in `alpha,P_0,y17` (the y of cell 17).
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     sensitivity: Vec<String>,
     #[command(flatten)]
     movie: MovieArguments,
     #[command(flatten)]
     surroundings: SurroundingsArguments,
-    /// Go on with the run that was interrupted in --out.
-    #[arg(long)]
+    /// Continue the interrupted run in --out, or start one if there is none.
+    #[arg(long, help_heading = "General")]
     resume: bool,
-    /// Seconds between checkpoints.
-    #[arg(long, value_name = "SECONDS", default_value_t = 30.0, allow_negative_numbers = true)]
+    /// Time between checkpoints, in seconds.
+    #[arg(
+        long,
+        value_name = "SECONDS",
+        default_value_t = 30.0,
+        allow_negative_numbers = true,
+        help_heading = "General"
+    )]
     checkpoint: f64,
     #[command(flatten)]
     parameters: ParameterArguments,
@@ -93,9 +101,9 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// Classical Runge–Kutta, fourth order, steps of one size.
+    /// Classical fourth-order Runge–Kutta method with steps of one size.
     Rk4,
-    /// Bogacki–Shampine, third order, steps by an estimate of the error.
+    /// Third-order Bogacki–Shampine method with step sizes from an error estimate.
     Adaptive,
 }
 

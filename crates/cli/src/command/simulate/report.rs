@@ -19,35 +19,35 @@ pub(super) struct Request {
     /// Sides of the periodic box, in units of length.
     #[serde(rename = "box")]
     pub box_lengths: [f64; 2],
-    /// Where the positions come from.
+    /// Where the starting positions come from.
     pub start: Origin,
     /// Duration, in units of time.
     pub time: f64,
     /// Time step, in units of time.
     pub dt: f64,
-    /// Frames kept.
+    /// Number of frames kept.
     #[schemars(range(min = 1))]
     pub frames: usize,
     /// Method of integration.
     pub method: Method,
     /// Parameters of the model.
     pub parameters: ModelParameters,
-    /// Values (N) of the parameters in which cells differ, in the order of the cells.
+    /// Values (N) of the parameters in which cells differ, by name, in the order of the cells.
     #[serde(rename = "cell_parameters", skip_serializing_if = "OfCells::is_empty")]
     pub of_cells: OfCells,
-    /// By how much parameters differ from cell to cell, as asked.
+    /// How much parameters differ from cell to cell, as requested.
     #[serde(rename = "cell_spread", skip_serializing_if = "Spreads::is_empty")]
     pub spreads: Spreads,
     /// Labels of the cells, which are in a file of their own.
     #[serde(skip)]
     pub labels: Option<Vec<Option<i64>>>,
-    /// Effects beyond the base model, by name: their coefficients.
+    /// Coefficients of the effects beyond the base model, by name of the effect.
     #[serde(skip_serializing_if = "ChosenEffects::is_empty")]
     pub effects: ChosenEffects,
     /// Sides of the box that are walls.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub walls: Option<Walls>,
-    /// What moves cells besides the model.
+    /// What moves the cells in addition to the model.
     pub driving: Driving,
 }
 
@@ -57,36 +57,36 @@ pub(crate) struct Report {
     /// The run, at the top level of the file.
     #[serde(flatten)]
     pub(super) run: RunRecord,
-    /// What it was asked for, likewise.
+    /// What was requested, also at the top level of the file.
     #[serde(flatten)]
     pub(super) request: Request,
     /// ⟨v²⟩ over cells and over the steps in the second half of the run, in (length/time)²; `null` where it was not measured.
     pub(super) mean_square_velocity: Option<f64>,
-    /// Its standard error, which knows of correlations in time; `null` where it cannot be told.
+    /// Standard error of `mean_square_velocity`, which accounts for correlations in time; `null` where it cannot be determined.
     pub(super) mean_square_velocity_error: Option<f64>,
     /// T1 transitions per cell and time in the second half of the run; `null` where they were not counted.
     pub(super) t1_rate: Option<f64>,
     /// Ψ₆ = |(1/N) Σ_i (1/z_i) Σ_j exp(6iθ_ij)| at the end of the run: 1 on a triangular lattice.
     pub(super) hexatic_order: f64,
-    /// Mean over cells of the modulus of the same, blind to the orientation of grains.
+    /// Mean over the cells of |(1/z_i) Σ_j exp(6iθ_ij)|, which does not depend on the orientation of grains.
     pub(super) hexatic_mean_modulus: f64,
-    /// Mean stress at the end of the run, in 1/time, force index first.
+    /// Mean stress at the end of the run, in 1/time; force index first.
     pub(super) stress: [[f64; 2]; 2],
     /// Areas A_i of the cells at the end of the run, in length².
     pub(super) area: Spread,
-    /// P_i/√A_i of the cells at the end of the run.
+    /// Shape indices P_i/√A_i of the cells at the end of the run.
     pub(super) shape_index: Spread,
-    /// Mean square displacement, in short.
+    /// Summary of the mean square displacement.
     pub(super) displacement: Displacement,
-    /// Structure factor of the density, in short.
+    /// Summary of the structure factor of the density.
     pub(super) structure: Structure,
-    /// Largest Lyapunov exponent λ, in 1/time; `null` if it was not asked for.
+    /// Largest Lyapunov exponent λ, in 1/time; `null` if it was not requested.
     pub(super) lyapunov: Option<Exponent>,
-    /// Derivatives of the run at its end, for each name of `--sensitivity`; empty without.
+    /// Derivatives at the end of the run with respect to each name of `--sensitivity`; empty without it.
     pub(super) sensitivity: Vec<Sensitive>,
-    /// Steps made.
+    /// Number of time steps made.
     pub(super) steps: usize,
-    /// Steps per second of wall time, of the part since `--resume`.
+    /// Steps per second of wall time, for the part since `--resume`.
     pub(super) steps_per_second: f64,
 }
 
@@ -98,52 +98,52 @@ impl Report {
     }
 }
 
-/// How far the cells get, in short.
+/// Summary of the mean square displacement.
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Displacement {
-    /// Frames between which displacements were taken.
+    /// Number of frames between which displacements were taken.
     pub frames: usize,
-    /// The longest lag; `null` for a single frame.
+    /// Longest lag, in units of time; `null` for a single frame.
     pub longest_lag: Option<f64>,
-    /// Mean square displacement at that lag, in length²; `null` likewise.
+    /// Mean square displacement at that lag, in length²; `null` for a single frame.
     pub mean_square: Option<f64>,
 }
 
-/// The structure factor of the density, in short.
+/// Summary of the structure factor of the density.
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Structure {
-    /// Frames that were averaged.
+    /// Number of frames that were averaged.
     pub frames: usize,
-    /// Up to which wave number.
+    /// Largest wave number included, in 1/length; `null` if there are no shells of wave numbers.
     pub largest_wave_number: Option<f64>,
-    /// The highest shell.
+    /// The shell with the largest structure factor; `null` if there are no shells.
     pub peak: Option<Peak>,
 }
 
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Peak {
-    /// Its mean wave number.
+    /// Mean wave number of the shell, in 1/length.
     pub wave_number: f64,
-    /// Its structure factor.
+    /// Structure factor of the shell.
     pub value: f64,
 }
 
-/// Derivatives by one parameter or starting coordinate at the end of the run, in short.
+/// Derivatives with respect to one parameter or starting coordinate, at the end of the run.
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Sensitive {
     /// Name of the parameter or starting coordinate.
     pub by: String,
-    /// Root mean square over the cells of the derivatives of positions.
+    /// Root mean square, over the cells, of the derivatives of the positions.
     pub root_mean_square: f64,
     /// Derivative of the mean square velocity.
     pub mean_square_velocity: f64,
-    /// Derivative of the mean stress, force index first.
+    /// Derivative of the mean stress; force index first.
     pub stress: [[f64; 2]; 2],
-    /// By how much the runs differ that derivatives are compared with, to either side.
+    /// Change of the parameter or coordinate, to either side, in the two runs with which the derivatives are compared.
     pub aside: f64,
-    /// Share by which derivatives of positions miss the difference of these, at the end; `null` where there is none.
+    /// Relative deviation of the derivatives of positions from the difference of these two runs, at the end; `null` if one of them could not go on.
     pub missed: Option<f64>,
-    /// Time of the last frame up to which that is at most a tenth; `null` if there is none.
+    /// Time of the last frame up to which this deviation is at most a tenth; `null` if there is none.
     pub agrees_until: Option<f64>,
 }
 
@@ -160,9 +160,9 @@ impl Sensitive {
 
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Exponent {
-    /// The exponent.
+    /// The exponent, in 1/time.
     pub value: f64,
-    /// Its standard error.
+    /// Standard error of the exponent; `null` where it is not known.
     pub standard_error: Option<f64>,
 }
 
@@ -173,18 +173,18 @@ pub(super) struct Spread {
     pub mean: f64,
     /// Standard deviation over cells.
     pub standard_deviation: f64,
-    /// Number of cells in each bin; `null` if no value is finite.
+    /// Histogram of the values; `null` if no value is finite.
     pub histogram: Option<Counts>,
 }
 
-/// Number of cells in each bin.
+/// A histogram with bins of equal width.
 #[derive(Serialize, JsonSchema)]
 pub(super) struct Counts {
     /// Lower edge of the first bin.
     pub from: f64,
     /// Width of a bin.
     pub width: f64,
-    /// Cells in each bin.
+    /// Number of cells in each bin.
     pub counts: Vec<usize>,
 }
 

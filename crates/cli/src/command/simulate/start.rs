@@ -17,13 +17,13 @@ pub(crate) struct StartArguments {
     /// Number of cells [default: 100].
     #[arg(long, allow_negative_numbers = true)]
     cells: Option<usize>,
-    /// Periodic box [default: unit area per cell, a square unless the start is a honeycomb].
+    /// Sides of the periodic box [default: unit area per cell; a square, or the box of a regular honeycomb].
     #[arg(long = "box", num_args = 2, value_names = ["LX", "LY"], allow_negative_numbers = true)]
     box_lengths: Option<Vec<f64>>,
-    /// Starting positions: `random`, `honeycomb`, or the last frame of a data set.
+    /// Starting positions: `random`, `honeycomb`, or a data set, whose last frame is used.
     #[arg(long, value_name = "random|honeycomb|DATASET", default_value = "random")]
     start: PathBuf,
-    /// Least distance between random positions, in mean spacings.
+    /// Smallest distance between random starting positions, in mean cell spacings.
     #[arg(long, value_name = "DISTANCE", default_value_t = 0.7, allow_negative_numbers = true)]
     least_distance: f64,
 }
@@ -56,22 +56,22 @@ pub(crate) struct Start {
     pub labels: Option<Vec<Option<i64>>>,
 }
 
-/// Where the positions come from, as the report tells it.
+/// Where the starting positions come from.
 #[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub(crate) enum Origin {
     /// Random positions.
     Random {
-        /// Least distance, in mean spacings.
+        /// Least distance between the positions, in mean spacings.
         least_distance: f64,
     },
-    /// A lattice.
+    /// A honeycomb lattice.
     Honeycomb,
-    /// The end of a data set.
+    /// The last frame of a data set.
     Data {
-        /// SHA-256 of its files.
+        /// SHA-256 checksums of its files.
         sha256: Vec<String>,
-        /// Its frame.
+        /// Index of this frame, zero-based.
         frame: usize,
     },
 }

@@ -11,19 +11,19 @@ use voronudge_simulate::{Shear, Walls};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Surroundings")]
 pub(super) struct SurroundingsArguments {
-    /// Simple shear of the periodic box by this strain from the start (Lees–Edwards).
+    /// Simple shear of the periodic box by this strain, from the start (Lees–Edwards).
     #[arg(long, value_name = "STRAIN", conflicts_with_all = ["shear_rate", "shear_amplitude"], allow_negative_numbers = true)]
     shear_strain: Option<f64>,
-    /// Steady simple shear at this rate.
+    /// Steady simple shear at this rate, in 1/time.
     #[arg(long, value_name = "RATE", conflicts_with = "shear_amplitude", allow_negative_numbers = true)]
     shear_rate: Option<f64>,
-    /// Oscillating simple shear with this largest strain.
+    /// Oscillating simple shear with this largest strain; needs --shear-frequency.
     #[arg(long, value_name = "STRAIN", requires = "shear_frequency", allow_negative_numbers = true)]
     shear_amplitude: Option<f64>,
-    /// Angular frequency of the oscillating shear.
+    /// Angular frequency of the oscillating shear, in 1/time; needs --shear-amplitude.
     #[arg(long, value_name = "OMEGA", requires = "shear_amplitude", allow_negative_numbers = true)]
     shear_frequency: Option<f64>,
-    /// Torque-free walls at the left and right sides of the box, or on all four.
+    /// Put torque-free walls at the left and right sides of the box, or on all four sides.
     #[arg(long, value_enum, conflicts_with_all = ["shear_strain", "shear_rate", "shear_amplitude"])]
     walls: Option<WallsName>,
 }

@@ -29,27 +29,32 @@ use strip::{Bands, EndedLattice, EndsName};
 use voronudge_io::FrameSelection;
 use voronudge_report::SpectrumReport;
 
-/// Linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional points.
+/// Computes the linear modes of the model at the positions of a data set: growth rates, odd waves, exceptional
+/// points.
 ///
 /// Writes eigenvalues.npy (2N, 2: real, imaginary; the largest real part first), participation.npy, longitudinal.npy,
-/// condition.npy, report.json and report.html; with --modes also the modes themselves, and between walls edge.npy and localisation.npy.
+/// condition.npy, report.json and report.html. With --modes, also writes the modes themselves; between walls, also
+/// edge.npy and localisation.npy.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     data: DataSetArguments,
-    /// A honeycomb of unit cells instead of a data set, with its waves along Γ–K–M–Γ beside the mean-field theory.
+    /// Use a honeycomb of unit cells instead of a data set, and compare its waves along Γ–K–M–Γ with the mean-field
+    /// theory.
     #[arg(long, num_args = 2, value_names = ["COLUMNS", "ROWS"], conflicts_with_all = ["dataset", "positions"], allow_negative_numbers = true)]
     lattice: Option<Vec<usize>>,
-    /// What is at both ends of the rows of --lattice, which are along y; with it also the modes of each wave number along the rows.
+    /// What terminates the strip of --lattice, whose rows are along y. Also computes the modes at each wave number
+    /// along the rows.
     #[arg(long, value_enum, requires = "lattice")]
     ends: Option<EndsName>,
-    /// The wave number along the rows at which the modes of --ends are shown, 1/ℓ₀ [default: where they pile up most].
+    /// Wave number along the rows at which the modes of --ends are shown, in 1/ℓ₀ [default: where modes pile up
+    /// most].
     #[arg(long, value_name = "Q", requires = "ends", allow_negative_numbers = true)]
     wave_number: Option<f64>,
-    /// In how many steps the wave number along the rows goes through the Brillouin zone [default: 64].
+    /// Number of steps of the wave number along the rows across the Brillouin zone, 1 to 10000 [default: 64].
     #[arg(long, value_name = "COUNT", requires = "ends", allow_negative_numbers = true)]
     wave_numbers: Option<usize>,
-    /// Frames: `6`, `4..16`, `4,7,9`; zero-based, end excluded [default: the first].
+    /// Frames to analyse, counted from zero: `6`, `4..16` (end excluded) or `4,7,9` [default: the first].
     #[arg(long, value_name = "FRAMES", allow_negative_numbers = true)]
     frames: Option<FrameSelection>,
     #[command(flatten)]
@@ -60,8 +65,8 @@ pub(crate) struct Arguments {
     cells: CellArguments,
     #[command(flatten)]
     effects: EffectArguments,
-    /// Also write modes.npy (modes, N, 2, 2: component, then real and imaginary part), of the first frame chosen.
-    #[arg(long)]
+    /// Also write modes.npy (modes, N, 2, 2: component, then real and imaginary part) for the first frame chosen.
+    #[arg(long, help_heading = "Modes")]
     modes: bool,
     #[command(flatten)]
     common: CommonArguments,

@@ -8,22 +8,22 @@ use voronudge_spectrum::{Character, Complex64, Request, Selection};
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Modes")]
 pub(super) struct SelectionArguments {
-    /// Only this many modes with the largest rate of growth, for any number of cells.
+    /// Compute only this many modes, those with the largest growth rates; for any number of cells.
     #[arg(long, value_name = "COUNT", conflicts_with_all = ["near", "band"], allow_negative_numbers = true)]
     largest: Option<usize>,
-    /// Only the modes whose eigenvalue is nearest to this point of the complex plane; see --count.
+    /// Compute only the modes whose eigenvalues are nearest to this point of the complex plane; see --count.
     #[arg(long, num_args = 2, value_names = ["RE", "IM"], conflicts_with = "band", allow_negative_numbers = true)]
     near: Option<Vec<f64>>,
-    /// Only modes with an angular frequency in this band, those that decay or grow least; see --count.
+    /// Compute only modes with an angular frequency in this band, those that decay or grow least; see --count.
     #[arg(long, num_args = 2, value_names = ["LOW", "HIGH"], allow_negative_numbers = true)]
     band: Option<Vec<f64>>,
-    /// How many modes --near and --band look at [default: 8].
+    /// Number of modes that --near and --band compute [default: 8].
     #[arg(long, value_name = "COUNT", conflicts_with = "largest", allow_negative_numbers = true)]
     count: Option<usize>,
-    /// Only the eigenvalues: half the time, no maps of modes.
+    /// Compute only the eigenvalues, in half the time and without maps of modes.
     #[arg(long)]
     values_only: bool,
-    /// Cells up to which all modes are computed.
+    /// Largest number of cells for which all modes are computed.
     #[arg(long, value_name = "CELLS", default_value_t = 3000, allow_negative_numbers = true)]
     dense_limit: usize,
 }

@@ -21,7 +21,7 @@ use voronudge_spectrum::{BlochMatrix, Complex64, Ends, Strip, StripMode, rows_of
 pub(super) enum EndsName {
     /// Nothing: the last row meets the first.
     Periodic,
-    /// A row at each end whose cells are held where they are.
+    /// A row at each end whose cells are held in place.
     Held,
     /// Torque-free walls, between which the cells have come to rest.
     Walls,

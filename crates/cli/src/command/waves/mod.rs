@@ -19,23 +19,26 @@ use voronudge_observables::{FluctuationRequest, Fluctuations, Plan, WaveField, f
 use voronudge_report::Units;
 use voronudge_report::WavesReport;
 
-/// Odd waves from fluctuations: the dynamic structure factor of a recording, and the matrix D(q) by which its waves relax, beside that of a model.
+/// Measures odd waves from fluctuations: the dynamic structure factor of a recording, and the matrix D(q) by which
+/// its waves relax, compared with that of a model.
 ///
 /// Writes report.json, report.html, dynamical_matrix.npy and dynamic_structure_*.npy.
 #[derive(Debug, Args)]
 pub(crate) struct Arguments {
     #[command(flatten)]
     recording: RecordingArguments,
-    /// What of the cells is resolved into waves.
+    /// Field that is resolved into waves.
     #[arg(long, value_enum, default_value_t = Field::Auto)]
     field: Field,
-    /// Lag in frames from which covariances are used [default: the first that errors of localisation without memory do not reach].
+    /// First lag, in frames, from which covariances are used [default: the first that localisation errors without
+    /// memory do not affect].
     #[arg(long, value_name = "FRAMES")]
     first_lag: Option<usize>,
-    /// Further lag in frames over which waves relax [default: about half a relaxation time of each shell].
+    /// Further lag, in frames, over which the relaxation of waves is measured [default: about half a relaxation time
+    /// of each shell].
     #[arg(long, value_name = "FRAMES")]
     lag: Option<usize>,
-    /// Largest wave number, in units of the inverse mean spacing of cells.
+    /// Largest wave number, in units of the inverse mean spacing of the cells.
     #[arg(long, value_name = "NUMBER", default_value_t = 3.0, allow_negative_numbers = true)]
     largest_wave_number: f64,
     #[command(flatten)]
@@ -46,11 +49,11 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 enum Field {
-    /// Displacements where cells keep their places, else velocities.
+    /// Displacements if cells keep their places, else velocities.
     Auto,
-    /// Displacements from the mean places of the cells.
+    /// Displacements from the mean positions of the cells.
     Displacements,
-    /// Velocities where the cells are.
+    /// Velocities at the current positions of the cells.
     Velocities,
 }
 
