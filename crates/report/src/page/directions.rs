@@ -1,6 +1,5 @@
 //! The table of what the data determine.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::parameter_table::symbol_of;
@@ -10,20 +9,20 @@ use crate::infer_report::EigenDirection;
 use crate::numbers::NO_VALUE;
 
 /// The table of eigenvalues: one column per parameter, tinted by the component.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct Directions {
     names: Vec<String>,
     rows: Vec<DirectionRow>,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct DirectionRow {
     words: String,
     eigenvalue: f64,
     cells: Vec<DirectionCell>,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct DirectionCell {
     text: String,
     colour: String,

@@ -1,6 +1,5 @@
 //! The page of the command `infer`.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::kinds::{self, KindRow};
@@ -103,7 +102,10 @@ impl InferPage<'_> {
             spread_figures: self.spreads.iter().map(SpreadView::histogram).collect(),
             kinds: kinds::rows(&report.by_label),
             kind_figure: kinds::figure(&report.by_label),
-            player: self.movie.map(|movie| Player::new(movie, movie.still(), CELLS)).transpose()?,
+            player: self
+                .movie
+                .map(|movie| Player::new(movie, &Figure::new(movie.still(), CELLS)))
+                .transpose()?,
             panels: self.panels(),
         };
         render(TEMPLATE, &context)
@@ -208,7 +210,7 @@ impl InferPage<'_> {
     }
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a InferReport,

@@ -7,7 +7,6 @@ use crate::colour::{BLUE, GREEN, GREY, VERMILLION};
 use crate::figure::{ErrorPoint, PointSeries, PointsAndCurves, points_and_curves};
 use crate::infer_report::{KindReport, Parameter};
 use crate::markers::Marker;
-use schemars::JsonSchema;
 use serde::Serialize;
 
 /// Standard errors between the ends of a 95 % interval.
@@ -16,7 +15,7 @@ const COLOURS: [&str; 4] = [BLUE, VERMILLION, GREEN, GREY];
 const MARKERS: [Marker; 3] = [Marker::Circle, Marker::Square, Marker::Triangle];
 
 /// One label in the table.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct KindRow {
     label: i64,
     cells: usize,

@@ -1,6 +1,5 @@
 //! The rows of the parameter table: symbols, meanings, digits.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::figure::{Estimate, ParameterRow};
@@ -9,7 +8,7 @@ use crate::numbers::{NO_VALUE, as_given, interval_text, significant};
 use crate::units::unit_text;
 
 /// A parameter as the table shows it.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct TableRow {
     pub(super) symbol: String,
     pub(super) meaning: String,

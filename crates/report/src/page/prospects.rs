@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::parameter_table::symbol_of;
@@ -11,7 +10,7 @@ use crate::numbers::{NO_VALUE, significant};
 use crate::units::unit_text;
 
 /// The table; measurements that cannot be judged have no column.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct ProspectsView {
     words: String,
     columns: Vec<String>,
@@ -20,7 +19,7 @@ pub(super) struct ProspectsView {
 }
 
 /// A quantity, or two effects, and a cell for each measurement.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Row {
     name: String,
     unit: String,
@@ -30,7 +29,7 @@ struct Row {
     is_main: bool,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Cell {
     text: String,
     /// As a share of now.

@@ -1,6 +1,5 @@
 //! The figures and sentences that say how well the parameters are known.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::Figure;
@@ -23,7 +22,7 @@ pub struct Uncertainty {
 }
 
 /// The section of the page.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct Known {
     intervals: Figure,
     parameters: Vec<String>,

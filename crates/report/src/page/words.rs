@@ -1,9 +1,7 @@
 //! Words and numbers that several pages say alike.
 
-use super::parameter_table::symbol_of;
 use crate::infer_report::{FitStatus, FlowGrid, MeanRemoved, NoiseSource, RunRecord};
 use crate::numbers::{NO_VALUE, significant, with_interval};
-use crate::svg::{SubscriptMarkup, subscripts};
 
 /// The caption of a map of polarities.
 pub(super) const POLARITIES: &str = "polarities: what the cells move by of themselves";
@@ -76,44 +74,9 @@ pub(super) fn probability(p: f64) -> String {
     if (0.0..1e-4).contains(&p) { "<\u{a0}0.0001".to_owned() } else { significant(p, 2) }
 }
 
-/// A sentence as markup: symbols with subscripts, names of effects as words, everything escaped.
-pub(super) fn prose(text: &str) -> String {
-    let is_inner = |letter: char| letter.is_alphanumeric() || letter == '_';
-    let mut markup = String::with_capacity(text.len());
-    let mut word = String::new();
-    for letter in text.chars().chain(std::iter::once('\0')) {
-        if is_inner(letter) {
-            word.push(letter);
-            continue;
-        }
-        markup.push_str(&subscripts(&printed_word(&word), SubscriptMarkup::Html));
-        word.clear();
-        if letter != '\0' {
-            markup.push_str(&crate::svg::escape(letter.encode_utf8(&mut [0; 4])));
-        }
-    }
-    markup
-}
-
-/// A word with the symbol it stands for; an underscore behind more than one letter joins words.
-fn printed_word(word: &str) -> String {
-    let symbol = symbol_of(word);
-    match word.split_once('_') {
-        Some((head, _)) if symbol == word && head.chars().count() != 1 => effect_name(word),
-        _ => symbol,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn prose_tells_symbols_from_names_of_effects() {
-        let text = "density_gradient moves K_P_alpha and P_0, not <alpha>";
-        let markup = "density gradient moves K<sub>P</sub> α and P<sub>0</sub>, not &lt;α&gt;";
-        assert_eq!(prose(text), markup);
-    }
 
     #[test]
     fn errors_decide_the_digits() {

@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_observables::Fluctuations;
 use voronudge_report::numbers::{significant, with_interval};
-use voronudge_report::page::{Card, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Page, Section, Table};
 use voronudge_report::units::unit_text;
 use voronudge_report::waves_report::{Measured, WaveShellRecord, WavesReport};
 
@@ -47,33 +47,20 @@ pub(super) fn page(
     report: &WavesReport,
     (found, beside): (&Fluctuations, &Beside),
 ) -> Result<String, Failure> {
-    let mut sections = vec![Section {
-        heading: "How waves relax".into(),
-        figures: figures::relaxation(found, beside, &report.units),
-        ..Section::default()
-    }];
+    let relaxation = figures::relaxation(found, beside, &report.units);
+    let mut sections = vec![Section::new("How waves relax").with(Block::pairs(relaxation))];
     let spectra = figures::spectra(found, beside, &report.units);
     if !spectra.is_empty() {
-        sections.push(Section {
-            heading: "Dynamic structure factor".into(),
-            text: vec![segments(report)],
-            figures: spectra,
-            ..Section::default()
-        });
+        let section = Section::new("Dynamic structure factor");
+        sections.push(section.with(Block::paragraph(segments(report))).with(Block::pairs(spectra)));
     }
-    sections.push(Section {
-        heading: "Shells of wave numbers".into(),
-        table: Some(table(report)),
-        ..Section::default()
-    });
-    let page = SectionPage {
-        title,
-        headline: &headline(report),
-        summary: &said(report),
-        cards: &cards(report),
-        guide: GUIDE,
-        sections: &sections,
-        run: &report.run,
+    sections.push(Section::new("Shells of wave numbers").with(Block::table(table(report))));
+    let page = Page {
+        summary: said(report).into_iter().map(Block::summary).collect(),
+        cards: cards(report),
+        guide: vec![Block::terms(GUIDE)],
+        sections,
+        ..Page::new(title, headline(report), &report.run)
     };
     Ok(page.render()?)
 }
@@ -145,7 +132,7 @@ fn table(report: &WavesReport) -> Table {
             }
             row
         };
-    Table { header: header.to_vec(), rows: report.shells.iter().map(row).collect() }
+    Table::new(header).rows(report.shells.iter().map(row))
 }
 
 /// The shell whose frequency is furthest above zero at the lower end of its interval.

@@ -1,6 +1,5 @@
 //! The answer at a glance: what is missing, how sure that is, what it does to forecasts.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::parameter_table::TableRow;
@@ -12,7 +11,7 @@ use crate::discover_report::{DiscoverReport, ForecastReport, Gain, HeldOutError,
 const MOST: usize = 2;
 
 /// A question and what the search says to it.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct Answer {
     question: &'static str,
     lines: Vec<String>,

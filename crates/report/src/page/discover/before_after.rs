@@ -1,6 +1,5 @@
 //! The tables before against after: errors, noise, parameters.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -15,14 +14,14 @@ use crate::units::unit_text;
 const LABEL: usize = 24;
 
 /// Errors of the models side by side.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct Comparison {
     columns: Vec<String>,
     rows: Vec<ErrorRow>,
     figure: Figure,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct ErrorRow {
     label: &'static str,
     cells: Vec<String>,
@@ -31,7 +30,7 @@ struct ErrorRow {
 }
 
 /// Another data set, predicted.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct PredictionRow {
     dataset: String,
     velocities: usize,
@@ -204,7 +203,7 @@ fn error_figure(columns: &[Column<'_>]) -> Figure {
 }
 
 /// One row of the table of noise and nudges.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct NoiseRow {
     label: String,
     unit: String,
@@ -241,7 +240,7 @@ pub(super) fn noise_rows(report: &DiscoverReport) -> Vec<NoiseRow> {
 }
 
 /// One parameter before and after.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct ParameterComparison {
     before: TableRow,
     after: TableRow,

@@ -1,6 +1,5 @@
 //! The ranking of all candidates.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -10,7 +9,7 @@ use crate::figure::effect_ranking;
 use crate::numbers::{NO_VALUE, significant};
 
 /// One row of the table.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct CandidateRow {
     name: String,
     family: &'static str,

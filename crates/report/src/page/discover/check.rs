@@ -1,6 +1,5 @@
 //! Whether movies that the models make are like the measured one.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -18,7 +17,7 @@ const ALWAYS: [&str; 3] = ["mean_square_displacement", "velocity_autocorrelation
 const UNUSUAL: f64 = 0.05;
 
 /// The section of the page.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct CheckView {
     trails: Option<Figure>,
     figures: Vec<Figure>,

@@ -1,6 +1,5 @@
 //! The effects that were added: size, interval, aliases.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -11,7 +10,7 @@ use crate::figure::{ParameterRow, PartialRegression, parameter_intervals, partia
 use crate::units::Units;
 
 /// One selected effect.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct EffectView {
     name: String,
     formula: String,

@@ -1,6 +1,5 @@
 //! How well models say what the cells do next.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -17,7 +16,7 @@ use crate::units::unit_text;
 const LEAST: f64 = -0.5;
 
 /// The section of the page.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct ForecastView {
     figures: Vec<Figure>,
     columns: Vec<String>,

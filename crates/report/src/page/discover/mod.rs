@@ -8,7 +8,6 @@ mod effects;
 mod forecast;
 mod remainder;
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use self::answer::{Answer, answers};
@@ -72,7 +71,7 @@ pub struct DiscoverFigures {
     pub outliers: Vec<Vec<Outlier>>,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct Context<'a> {
     head: PageHead<'a>,
     report: &'a DiscoverReport,
@@ -177,7 +176,7 @@ impl DiscoverPage<'_> {
             ),
             false => "Cells where they were seen, and what the base model leaves of their velocities.".into(),
         };
-        let player = |movie: &CellMovie| Player::new(movie, movie.still(), &caption);
+        let player = |movie: &CellMovie| Player::new(movie, &Figure::new(movie.still(), &caption));
         self.figures.movie.as_ref().map(player).transpose()
     }
 

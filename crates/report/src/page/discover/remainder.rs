@@ -1,6 +1,5 @@
 //! What remains after the last fit.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use super::super::Figure;
@@ -10,14 +9,14 @@ use crate::figure::{CorrelationFunction, correlation_function};
 use crate::numbers::significant;
 
 /// Numbers, tests and correlation functions of the rest.
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 pub(super) struct Remainder {
     facts: Vec<(&'static str, String)>,
     tests: Vec<TestRow>,
     correlations: Vec<Figure>,
 }
 
-#[derive(Serialize, JsonSchema)]
+#[derive(Serialize)]
 struct TestRow {
     name: String,
     statistic: String,
