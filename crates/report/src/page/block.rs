@@ -65,29 +65,18 @@ pub enum Block {
 /// Figures under one tab, for example those of one frame.
 #[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Panel {
-    /// Name of the tab.
-    pub label: String,
-    /// The figures, row by row.
-    pub figures: Vec<Figure>,
+    label: String,
     /// How many figures stand side by side where there is room.
-    pub columns: Columns,
+    class: &'static str,
+    figures: Vec<Figure>,
 }
 
-/// How many figures stand side by side where there is room.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "snake_case")]
-pub enum Columns {
-    /// Two, for maps of many cells.
-    Two,
-    /// Three.
-    Three,
-}
-
-impl Columns {
-    /// The layout at which the maps of `cells` cells stay legible.
+impl Panel {
+    /// A tab of this name; maps of many cells stand two side by side, others three.
     #[must_use]
-    pub fn for_cells(cells: usize) -> Self {
-        if cells > 700 { Self::Two } else { Self::Three }
+    pub fn new(label: &str, cells: usize, figures: Vec<Figure>) -> Self {
+        let class = if cells > 700 { "figures two" } else { "figures three" };
+        Self { label: label.to_owned(), class, figures }
     }
 }
 

@@ -17,7 +17,7 @@ mod text;
 mod uncertainty;
 mod words;
 
-pub use block::{Block, Columns, Panel};
+pub use block::{Block, Panel};
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
 pub use player::Player;
@@ -32,10 +32,7 @@ use serde::Serialize;
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
 use crate::numbers::significant;
-use crate::units::unit_text;
 
-const BASE: &str = include_str!("../../templates/base.html");
-const MACROS: &str = include_str!("../../templates/macros.html");
 const TEMPLATE: &str = include_str!("../../templates/page.html");
 const STYLE: &str = include_str!("../../templates/style.css");
 const SCRIPT: &str = include_str!("../../templates/tabs.js");
@@ -93,6 +90,15 @@ impl Section {
     pub fn with_all<B: Into<Block>>(mut self, blocks: impl IntoIterator<Item = B>) -> Self {
         self.blocks.extend(blocks.into_iter().map(Into::into).filter(|block| !block.is_empty()));
         self
+    }
+
+    /// With a block under a heading of its own, and how it is to be read; nothing of that if the block is empty.
+    #[must_use]
+    pub fn with_part(self, heading: &str, how: &str, block: Block) -> Self {
+        match block.is_empty() {
+            true => self,
+            false => self.with(Block::heading(heading)).with(Block::paragraph(how)).with(block),
+        }
     }
 }
 
@@ -167,65 +173,6 @@ fn fill(template: &'static str, source: &str, context: &Value) -> Result<String,
 /// Markup that is not escaped again.
 fn safe(text: Text) -> Value {
     Value::from_safe_string(text.as_markup().to_owned())
-}
-
-/// What every page has, whatever the command.
-#[derive(Debug, Clone, Serialize)]
-pub struct PageHead<'a> {
-    /// Title of the page, for example the name of the data set.
-    pub title: &'a str,
-    /// The answer in one sentence.
-    pub headline: &'a str,
-    /// Further sentences, one paragraph each.
-    pub summary: &'a [String],
-    /// Reasons not to trust the numbers, which stand in a box of their own.
-    pub doubts: &'a [String],
-    /// What else the reader should know before using the numbers.
-    pub warnings: Vec<&'a str>,
-    /// Key numbers.
-    pub cards: Vec<Card>,
-    /// The run.
-    pub run: &'a RunRecord,
-}
-
-/// A template of this crate or of a caller; it may extend `base.html` and import `macros.html`.
-#[derive(Debug, Clone, Copy)]
-pub struct Template {
-    /// File name, ending in `.html`.
-    pub name: &'static str,
-    /// Source text.
-    pub source: &'static str,
-}
-
-/// Fills `template` with `context` (available as `page`) and the scaffolding.
-///
-/// # Errors
-///
-/// [`ReportError::Template`] where the template is faulty or a value is missing.
-pub fn render(template: Template, context: &impl Serialize) -> Result<String, ReportError> {
-    let fill = || -> Result<String, minijinja::Error> {
-        let mut environment = Environment::new();
-        environment.set_auto_escape_callback(|_| AutoEscape::Html);
-        environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
-        environment.add_filter("symbol", |text: &str| safe(Text::from(text)));
-        environment.add_filter("prose", |text: &str| safe(Text::prose(text)));
-        environment.add_filter("significant", significant_value);
-        environment.add_filter("unit", |unit: String| unit_text(&unit));
-        environment.add_template("base.html", BASE)?;
-        environment.add_template("macros.html", MACROS)?;
-        environment.add_template(template.name, template.source)?;
-        environment.get_template(template.name)?.render(minijinja::context! {
-            page => Value::from_serialize(context),
-            style => Value::from_safe_string(STYLE.to_owned()),
-            script => Value::from_safe_string(SCRIPT.to_owned()),
-        })
-    };
-    fill().map_err(|source| ReportError::Template { template: template.name, source })
-}
-
-/// A number with some digits; anything that is not a number is unknown.
-fn significant_value(value: Value, digits: usize) -> String {
-    significant(f64::try_from(value).unwrap_or(f64::NAN), digits)
 }
 
 #[cfg(test)]

@@ -1,6 +1,7 @@
 //! Words and numbers that several pages say alike.
 
-use crate::infer_report::{FitStatus, FlowGrid, MeanRemoved, NoiseSource, RunRecord};
+use super::{Block, Section};
+use crate::infer_report::{CellCounts, FitStatus, FlowGrid, MeanRemoved, NoiseSource};
 use crate::numbers::{NO_VALUE, significant, with_interval};
 
 /// The caption of a map of polarities.
@@ -9,11 +10,6 @@ pub(super) const POLARITIES: &str = "polarities: what the cells move by of thems
 /// What velocities belong to.
 pub(super) fn data(flow: Option<&FlowGrid>) -> &'static str {
     if flow.is_some() { "grid points" } else { "cells" }
-}
-
-/// The warnings that are no doubts, which have a box of their own.
-pub(super) fn warnings<'a>(run: &'a RunRecord, doubts: &[String]) -> Vec<&'a str> {
-    run.warnings.iter().filter(|text| !doubts.contains(text)).map(String::as_str).collect()
 }
 
 pub(super) fn mean_removed(mean: MeanRemoved) -> &'static str {
@@ -39,6 +35,15 @@ pub(super) fn fit_status(status: FitStatus) -> &'static str {
         FitStatus::IterationLimit => "stopped at the limit of iterations",
         FitStatus::Stalled => "stalled before a minimum",
     }
+}
+
+/// The section about what took no part in the fit; `data` is what velocities belong to.
+pub(super) fn left_out(cells: &CellCounts, data: &str) -> Section {
+    let reasons = cells.left_out.iter().map(|(reason, count)| [reason.replace('_', " "), count.to_string()]);
+    Section::new("What was left out").with(match cells.left_out.is_empty() {
+        true => Block::paragraph(format!("Nothing: all {} {data} were used.", cells.used)),
+        false => Block::facts([[format!("{data} used"), cells.used.to_string()]].into_iter().chain(reasons)),
+    })
 }
 
 /// The name of an effect as it is printed.
