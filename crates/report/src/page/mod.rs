@@ -65,6 +65,14 @@ pub struct Card {
     pub note: String,
 }
 
+impl Card {
+    /// A name or symbol, the number with its unit, and a line beneath.
+    #[must_use]
+    pub fn new(label: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> Self {
+        Self { label: label.into(), value: value.into(), note: note.into() }
+    }
+}
+
 /// A part of a page under a heading; one without content is left out.
 #[derive(Debug, Clone, PartialEq, Default, Serialize)]
 pub struct Section {

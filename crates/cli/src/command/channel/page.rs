@@ -179,30 +179,21 @@ fn boundary(report: &ChannelReport) -> &'static str {
 }
 
 fn cards(report: &ChannelReport) -> Vec<Card> {
-    let length = |name: &str, label: &str| {
-        report.decays.get(name).map(|decay| Card {
-            label: label.into(),
-            value: format!("{} {}", significant(decay.length, 3), report.units.length_text()),
-            note: interval(decay),
-        })
+    let length = |(name, label): (&str, &str)| {
+        let decay = report.decays.get(name)?;
+        let value = format!("{} {}", significant(decay.length, 3), report.units.length_text());
+        Some(Card::new(label, value, interval(decay)))
     };
-    let mut cards: Vec<Card> = [
-        length("velocity_x", "decay length of v_x"),
-        length("velocity_y", "decay length of v_y"),
-        length("density", "decay length of the density"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    if let Some(flow) = &report.chirality_from_flow {
+    let slope = report.chirality_from_flow.as_ref().map(|flow| {
         let [low, high] = flow.slope_ci95.map(|end| significant(end, 3));
-        cards.push(Card {
-            label: "v_y/v_x".into(),
-            value: significant(flow.slope, 3),
-            note: format!("{low} to {high}"),
-        });
-    }
-    cards
+        Card::new("v_y/v_x", significant(flow.slope, 3), format!("{low} to {high}"))
+    });
+    let lengths = [
+        ("velocity_x", "decay length of v_x"),
+        ("velocity_y", "decay length of v_y"),
+        ("density", "decay length of the density"),
+    ];
+    lengths.into_iter().filter_map(length).chain(slope).collect()
 }
 
 fn momentum(report: &ChannelReport) -> String {

@@ -93,14 +93,10 @@ pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Result<
         ),
         figure("⟨P/√A⟩", "", "Shape index", |own| own.shape_index, None),
     ];
-    let middle = nearest_to_one(report);
-    let cards: Vec<Card> = quantities(middle)
-        .into_iter()
-        .map(|(label, own)| {
-            let [value, low, high] = with_interval(own.value, interval(own));
-            Card { label: label.into(), value, note: format!("{low} … {high}") }
-        })
-        .collect();
+    let cards = quantities(nearest_to_one(report)).map(|(label, own)| {
+        let [value, low, high] = with_interval(own.value, interval(own));
+        Card::new(label, value, format!("{low} … {high}"))
+    });
     let page = Page {
         summary: vec![Block::summary(format!(
             "{} cells in each of {} runs for a density; averages over {} {} after {}; p, τ, B and A in {rate}.",
@@ -110,7 +106,7 @@ pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Result<
             report.units.time_text(),
             significant(report.relaxation, 3)
         ))],
-        cards,
+        cards: cards.into(),
         guide: vec![Block::terms(GUIDE)],
         sections: vec![
             Section::new("Against density").with(Block::pairs(figures)),

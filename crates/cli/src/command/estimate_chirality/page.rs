@@ -79,8 +79,8 @@ pub(super) fn page(
         .with(Block::pairs([Figure::new(svg, caption)]));
     let [low, high] = line.slope_ci95.map(|end| significant(end, 3));
     let cards = vec![
-        Card { label: "α".into(), value: best(report), note: alpha_note(report) },
-        Card { label: "v_y/v_x".into(), value: significant(line.slope, 3), note: format!("{low} to {high}") },
+        Card::new("α", best(report), alpha_note(report)),
+        Card::new("v_y/v_x", significant(line.slope, 3), format!("{low} to {high}")),
     ];
     let page = Page {
         summary: vec![Block::summary(sentence(report))],

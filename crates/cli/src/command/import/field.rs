@@ -173,12 +173,8 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
             report.linked
         ))],
         cards: vec![
-            Card { label: "cells".into(), value: first.to_string(), note: "in the first frame".into() },
-            Card {
-                label: "least prominence".into(),
-                value: significant(report.smallest_prominence, 3),
-                note: "of an extremum taken".into(),
-            },
+            Card::new("cells", first.to_string(), "in the first frame"),
+            Card::new("least prominence", significant(report.smallest_prominence, 3), "of an extremum taken"),
         ],
         guide: vec![Block::terms(GUIDE)],
         sections: vec![Section::new("The field and its cells").with(Block::pairs([found]))],

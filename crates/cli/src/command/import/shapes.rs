@@ -226,11 +226,7 @@ fn page(
              Areas count pixels; perimeters are Crofton's in eight directions."
         ));
     }
-    let card = |label: &str, value: f64, note: &str| Card {
-        label: label.into(),
-        value: significant(value, 3),
-        note: note.into(),
-    };
+    let card = |label: &str, value: f64, note: &str| Card::new(label, significant(value, 3), note);
     let cards = vec![
         card("precision", all.precision, "of Voronoi contacts"),
         card("recall", all.recall, "of true contacts"),

@@ -64,10 +64,9 @@ pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<Strin
 }
 
 fn cards(report: &ModuliReport, unit: &str) -> Vec<Card> {
-    let card = |(record, unit): (&ModulusRecord, &str)| Card {
-        label: record.symbol.into(),
-        value: format!("{} {unit}", significant(record.value, 3)).trim_end().to_owned(),
-        note: format!("± {}", significant(record.error, 1)),
+    let card = |(record, unit): (&ModulusRecord, &str)| {
+        let value = format!("{} {unit}", significant(record.value, 3));
+        Card::new(record.symbol, value.trim_end(), format!("± {}", significant(record.error, 1)))
     };
     let moduli = report.moduli.iter().map(|record| (record, unit));
     moduli.chain(report.viscosities.iter().map(|record| (record, ""))).map(card).collect()

@@ -185,7 +185,7 @@ fn cards(report: &ObserveReport) -> Vec<Card> {
             "mean over frames".into()
         };
         let value = format!("{} {}", significant(number.value, 3), number.unit);
-        Some(Card { label: label.into(), value: value.trim_end().into(), note })
+        Some(Card::new(label, value.trim_end(), note))
     };
     of.into_iter().filter_map(card).collect()
 }

@@ -54,7 +54,6 @@ fn guide(report: &PhaseReport) -> Block {
 
 fn cards(report: &PhaseReport) -> Vec<Card> {
     let [columns, rows] = [report.preferred_perimeters.len(), report.chiralities.len()];
-    let card = |label: &str, value: String, note: String| Card { label: label.into(), value, note };
     let runs = match report.replicas {
         1 => "one run each".into(),
         replicas => format!("{replicas} runs each"),
@@ -62,15 +61,15 @@ fn cards(report: &PhaseReport) -> Vec<Card> {
     let [low, high] = report.steps.map(|step| as_given((step * 1e4).round() / 1e4));
     let steps = if low == high { format!("steps of {low}") } else { format!("steps of {low} to {high}") };
     let mut cards = vec![
-        card("points", format!("{columns} × {rows}"), runs),
-        card("cells", report.cells.to_string(), "periodic square box".into()),
-        card("duration of a run", format!("{} / Kₚ", as_given(report.time)), steps),
+        Card::new("points", format!("{columns} × {rows}"), runs),
+        Card::new("cells", report.cells.to_string(), "periodic square box"),
+        Card::new("duration of a run", format!("{} / Kₚ", as_given(report.time)), steps),
     ];
     if let Some(collapse) = &report.collapse {
         let fitted = collapse.fitted;
         let [beta, phi] = [fitted.beta, fitted.phi].map(|own| significant(own.value, 2));
         let scatter = format!("fitted; scatter {} in ln ⟨v²⟩", significant(fitted.scatter, 2));
-        cards.push(card("scaling exponents", format!("β = {beta}, φ = {phi}"), scatter));
+        cards.push(Card::new("scaling exponents", format!("β = {beta}, φ = {phi}"), scatter));
     }
     cards
 }

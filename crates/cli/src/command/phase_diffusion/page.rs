@@ -70,11 +70,7 @@ pub(super) fn page(
         .collect();
     let card = |label: &str, estimate: &Diffusivity| {
         let [value, low, high] = with_interval(estimate.value, estimate.ci95);
-        Card {
-            label: label.into(),
-            value: format!("{value} {}", unit_text(&estimate.unit)),
-            note: format!("{low} … {high}"),
-        }
+        Card::new(label, format!("{value} {}", unit_text(&estimate.unit)), format!("{low} … {high}"))
     };
     let summary = format!(
         "{} cells in {} frames; {} wave vectors, rates up to {} order in q. {} The equation explains {} % of the changes of the \

@@ -37,14 +37,10 @@ const GUIDE: &[[&str; 2]] = &[
 pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
     let unit = report.units.powers(0, -1);
     let last = &report.fits[report.fits.len() - 1];
-    let cards: Vec<Card> = last
-        .moduli
-        .iter()
-        .map(|own| {
-            let [value, low, high] = with_interval(own.value, own.ci95);
-            Card { label: own.symbol.clone(), value, note: format!("{low} … {high}") }
-        })
-        .collect();
+    let card = |own: &RheologyQuantity| {
+        let [value, low, high] = with_interval(own.value, own.ci95);
+        Card::new(&own.symbol, value, format!("{low} … {high}"))
+    };
     let mut sections = Vec::new();
     if report.fits.len() > 1 {
         let figures = last.moduli.iter().map(|own| against(report, own, &unit));
@@ -81,7 +77,7 @@ pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
             report.cells,
             report.seeds.len()
         ))],
-        cards,
+        cards: last.moduli.iter().map(card).collect(),
         guide: vec![Block::terms(GUIDE)],
         sections,
         ..Page::new("Rheology of a fitted tissue", headline(report), &report.run)

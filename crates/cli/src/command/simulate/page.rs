@@ -117,31 +117,33 @@ fn paragraphs(report: &Report, measurements: &Measurements) -> Vec<String> {
 }
 
 fn cards(report: &Report, units: &Units) -> Vec<Card> {
-    let card =
-        |label: &str, value: String, note: &str| Card { label: label.into(), value, note: note.into() };
     let known = |value: Option<f64>| value.map_or("none".into(), |value| significant(value, 3));
     let error = report
         .mean_square_velocity_error
         .map_or(String::new(), |error| format!("± {} over the second half", significant(error, 1)));
     let mut cards = vec![
-        card("⟨v²⟩", format!("{} {}", known(report.mean_square_velocity), units.powers(2, -2)), &error),
-        card("T1 transitions", known(report.t1_rate), "per cell and time"),
-        card(
+        Card::new("⟨v²⟩", format!("{} {}", known(report.mean_square_velocity), units.powers(2, -2)), error),
+        Card::new("T1 transitions", known(report.t1_rate), "per cell and time"),
+        Card::new(
             "hexatic order Ψ_6",
             significant(report.hexatic_order, 2),
-            &format!("⟨|ψ|⟩ = {}", significant(report.hexatic_mean_modulus, 2)),
+            format!("⟨|ψ|⟩ = {}", significant(report.hexatic_mean_modulus, 2)),
         ),
-        card(
+        Card::new(
             "shape index",
             significant(report.shape_index.mean, 4),
-            &format!("± {} over cells", significant(report.shape_index.standard_deviation, 2)),
+            format!("± {} over cells", significant(report.shape_index.standard_deviation, 2)),
         ),
     ];
     if let Some(exponent) = &report.lyapunov {
         let unit = units.powers(0, -1);
         let error =
             exponent.standard_error.map_or(String::new(), |error| format!("± {}", significant(error, 1)));
-        cards.push(card("Lyapunov exponent", format!("{} {unit}", significant(exponent.value, 3)), &error));
+        cards.push(Card::new(
+            "Lyapunov exponent",
+            format!("{} {unit}", significant(exponent.value, 3)),
+            error,
+        ));
     }
     cards
 }

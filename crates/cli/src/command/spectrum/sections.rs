@@ -217,7 +217,6 @@ pub(super) fn strip(record: &StripRecord, (ended, bands): (&EndedLattice, &Bands
 /// Key numbers of a frame.
 pub(super) fn cards(frame: &FrameSpectrum, units: &Units) -> Vec<Card> {
     let [unit, square_unit] = [-1, -2].map(|power| units.powers(0, power));
-    let card = |label: &str, value: String, note: String| Card { label: label.into(), value, note };
     let mode = |record: &Option<ModeRecord>, of: fn(&ModeRecord) -> f64| {
         record.as_ref().map_or(NO_VALUE.into(), |mode| format!("{} {unit}", significant(of(mode), 3)))
     };
@@ -227,15 +226,15 @@ pub(super) fn cards(frame: &FrameSpectrum, units: &Units) -> Vec<Card> {
         format!("period {}", significant(std::f64::consts::TAU / mode.frequency.abs(), 2))
     });
     let mut cards = vec![
-        card("growing modes", frame.growing.to_string(), format!("of {}", frame.modes)),
-        card("waves", frame.oscillating.to_string(), "modes that oscillate".into()),
-        card("largest rate of growth", mode(&frame.largest_growth, |mode| mode.rate), growth),
-        card("highest frequency", mode(&frame.fastest_oscillation, |mode| mode.frequency), period),
+        Card::new("growing modes", frame.growing.to_string(), format!("of {}", frame.modes)),
+        Card::new("waves", frame.oscillating.to_string(), "modes that oscillate"),
+        Card::new("largest rate of growth", mode(&frame.largest_growth, |mode| mode.rate), growth),
+        Card::new("highest frequency", mode(&frame.fastest_oscillation, |mode| mode.frequency), period),
     ];
     cards.extend(frame.mean_square_frequency.map(|square| {
         let scaled = frame.mean_square_frequency_over_k_p;
         let note = scaled.map_or(String::new(), |scaled| format!("{} Kₚ²", significant(scaled, 3)));
-        card("⟨ω²⟩", format!("{} {square_unit}", significant(square, 3)), note)
+        Card::new("⟨ω²⟩", format!("{} {square_unit}", significant(square, 3)), note)
     }));
     cards
 }

@@ -228,18 +228,14 @@ fn moduli(report: &WavesReport) -> Vec<(&'static str, &Measured)> {
 
 fn cards(report: &WavesReport) -> Vec<Card> {
     let which = if report.verdict == "not_linear" { "at this lag only" } else { "long waves" };
-    let card = |(label, own): (&str, &Measured)| Card {
-        label: label.into(),
-        value: with_unit(own.value, 3, &own.unit),
-        note: format!("± {}, {which}", significant(own.standard_error, 1)),
+    let card = |label: &str, own: &Measured, digits, which: &str| {
+        let note = format!("± {}, {which}", significant(own.standard_error, 1));
+        Card::new(label, with_unit(own.value, digits, &own.unit), note)
     };
-    let mut all: Vec<Card> = moduli(report).into_iter().map(card).collect();
-    all.extend(report.localisation.as_ref().map(|own| Card {
-        label: "error of localisation".into(),
-        value: with_unit(own.value, 2, &own.unit),
-        note: format!("± {}, in each coordinate", significant(own.standard_error, 1)),
-    }));
-    all
+    let moduli = moduli(report).into_iter().map(|(label, own)| card(label, own, 3, which));
+    let localisation = report.localisation.as_ref();
+    let localisation = localisation.map(|own| card("error of localisation", own, 2, "in each coordinate"));
+    moduli.chain(localisation).collect()
 }
 
 /// What is printed.

@@ -238,18 +238,15 @@ fn cell_size(report: &InferReport) -> String {
 fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
     let parameter = |row: &ParameterRow| {
         let [value, interval] = value_and_interval(row);
-        Card {
-            label: row.symbol.clone(),
-            value: if row.value.is_finite() {
-                format!("{value} {}", unit_text(&row.unit)).trim_end().to_owned()
-            } else {
-                NO_VALUE.to_owned()
-            },
-            note: match row.interval() {
-                Some(_) => format!("95 %: {interval}"),
-                None => interval,
-            },
-        }
+        let value = match row.value.is_finite() {
+            true => format!("{value} {}", unit_text(&row.unit)),
+            false => NO_VALUE.to_owned(),
+        };
+        let note = match row.interval() {
+            Some(_) => format!("95 %: {interval}"),
+            None => interval,
+        };
+        Card::new(&row.symbol, value.trim_end(), note)
     };
     // What explains nothing has no key parameters.
     let shown = if report.verdict.kind.is_finding() { 3 } else { 0 };
@@ -258,19 +255,12 @@ fn cards(report: &InferReport, rows: &[ParameterRow]) -> Vec<Card> {
         Some(nmse) => (nmse, "cross-validated; 1 predicts nothing"),
         None => (report.nmse.un_nudged, "at measured positions; 1 predicts nothing"),
     };
-    cards.push(Card { label: "NMSE".into(), value: significant(nmse, 2), note: note.into() });
-    cards.push(Card {
-        label: data(report.flow.as_ref()).into(),
-        value: report.cells.used.to_string(),
-        note: format!(
-            "used in {}; {} left out",
-            frames_text(report.cells.frames.len()),
-            report.cells.left_out.values().sum::<usize>()
-        ),
-    });
+    cards.push(Card::new("NMSE", significant(nmse, 2), note));
+    let frames = match report.cells.frames.len() {
+        1 => "1 frame".to_owned(),
+        count => format!("{count} frames"),
+    };
+    let note = format!("used in {frames}; {} left out", report.cells.left_out.values().sum::<usize>());
+    cards.push(Card::new(data(report.flow.as_ref()), report.cells.used.to_string(), note));
     cards
-}
-
-fn frames_text(count: usize) -> String {
-    if count == 1 { "1 frame".to_owned() } else { format!("{count} frames") }
 }
