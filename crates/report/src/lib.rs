@@ -5,7 +5,7 @@
 //!
 //! - [`figure`]: one function per figure, each a stand-alone SVG. Charts stand on [`chart::Chart`]
 //!   (axes, ticks, grid), pictures of the tissue on [`map::Map`] (equal aspect, scale bar).
-//! - [`page`]: self-contained HTML pages; `templates/base.html` is the scaffolding they share.
+//! - [`page`]: self-contained HTML pages, made of sections and blocks; `templates/page.html` writes them all.
 //! - [`movie`]: cells of many frames, for the player of a page and as an animated image.
 //! - [`infer_report`], [`discover_report`], [`spectrum_report`] and their like: what `report.json` holds, described by [`schema_of`].
 //!
@@ -61,10 +61,7 @@ pub use error::ReportError;
 pub use infer_report::InferReport;
 pub use model_parameters::ModelParameters;
 pub use moduli_report::ModuliReport;
-pub use page::{
-    DiscoverFigures, DiscoverPage, InferPage, ModuliPage, PhasePage, SectionPage, SimulatePage, SpectrumPage,
-    SpreadView, StripFigures, Uncertainty,
-};
+pub use page::{DiscoverFigures, DiscoverPage, InferPage, SpreadView, Uncertainty};
 pub use phase_diffusion_report::PhaseDiffusionReport;
 pub use phase_report::PhaseReport;
 pub use rheology_report::RheologyReport;

@@ -1,55 +1,33 @@
 //! The table of what the data determine.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
 use super::parameter_table::symbol_of;
 use super::uncertainty::printed;
+use super::{Block, Cell, Row, Table};
 use crate::colour::diverging;
 use crate::infer_report::EigenDirection;
-use crate::numbers::NO_VALUE;
+use crate::numbers::{NO_VALUE, significant};
 
-/// The table of eigenvalues: one column per parameter, tinted by the component.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct Directions {
-    names: Vec<String>,
-    rows: Vec<DirectionRow>,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct DirectionRow {
-    words: String,
-    eigenvalue: f64,
-    cells: Vec<DirectionCell>,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct DirectionCell {
-    text: String,
-    colour: String,
-}
-
-/// The table of the given directions, in their order.
-pub(super) fn directions(modes: &[EigenDirection]) -> Directions {
+/// The eigenvalues in their order: one column per parameter, tinted by the component. Empty without any.
+pub(super) fn directions(modes: &[EigenDirection]) -> Block {
     let mut names: Vec<&String> = modes.iter().flat_map(|mode| mode.direction.keys()).collect();
     names.sort();
     names.dedup();
-    let cell = |component: Option<&f64>| {
-        let component = component.copied().filter(|value| value.is_finite());
-        // Half strength keeps the text legible on the tint.
-        let tint = diverging(0.5 + 0.16 * component.unwrap_or(0.0).clamp(-1.0, 1.0));
-        let [red, green, blue] = tint;
-        let size = component.unwrap_or(0.0).abs();
-        DirectionCell {
-            text: component
-                .map_or_else(|| NO_VALUE.to_owned(), |value| format!("{value:.2}").replace('-', "−")),
-            colour: if size < 0.1 { "#fff".into() } else { format!("#{red:02x}{green:02x}{blue:02x}") },
-        }
+    let symbols = names.iter().map(|name| symbol_of(name).into());
+    let header = [Cell::from("eigenvalue")].into_iter().chain(symbols).chain([("in words", "words").into()]);
+    let row = |mode: &EigenDirection| -> Row {
+        let components = names.iter().map(|name| component(mode.direction.get(*name)));
+        let ends = [significant(mode.eigenvalue, 3), printed(&mode.words)].map(Cell::from);
+        let [eigenvalue, words] = ends;
+        [eigenvalue].into_iter().chain(components).chain([words]).collect()
     };
-    let rows = modes.iter().map(|mode| DirectionRow {
-        words: printed(&mode.words),
-        eigenvalue: mode.eigenvalue,
-        cells: names.iter().map(|name| cell(mode.direction.get(*name))).collect(),
-    });
-    Directions { rows: rows.collect(), names: names.iter().map(|name| symbol_of(name)).collect() }
+    Block::table(Table::new(header).class("directions").without_names().rows(modes.iter().map(row)))
+}
+
+fn component(component: Option<&f64>) -> Cell {
+    let component = component.copied().filter(|value| value.is_finite());
+    // Half strength keeps the text legible on the tint.
+    let [red, green, blue] = diverging(0.5 + 0.16 * component.unwrap_or(0.0).clamp(-1.0, 1.0));
+    let size = component.unwrap_or(0.0).abs();
+    let text = component.map_or_else(|| NO_VALUE.to_owned(), |value| format!("{value:.2}").replace('-', "−"));
+    Cell::from(text).on(if size < 0.1 { "#fff".into() } else { format!("#{red:02x}{green:02x}{blue:02x}") })
 }

@@ -1,58 +1,49 @@
 //! Self-contained HTML pages: style, script and figures are inside the file.
 //!
-//! A page is a template that extends `base.html` and a context of plain data. Text is escaped;
-//! figures ([`Figure`]) and symbols are the only markup that passes.
+//! A page is a head and sections, and a section is a heading and blocks ([`Block`]): plain data that one template, `page.html`, writes. Text is escaped where it
+//! is made ([`Text`]); figures ([`Figure`]) are the only markup that passes.
 
+mod block;
 mod directions;
 mod discover;
 mod infer;
 mod kinds;
-mod moduli;
 mod parameter_table;
-mod phase_diagram;
 mod player;
 mod prospects;
-mod sections;
-mod simulate;
-mod spectrum;
 mod spreads;
-mod strip;
+mod table;
+mod text;
 mod uncertainty;
 mod words;
 
+pub use block::{Block, Panel};
 pub use discover::{DiscoverFigures, DiscoverPage};
 pub use infer::InferPage;
-pub use moduli::ModuliPage;
-pub use phase_diagram::PhasePage;
-pub use sections::{Section, SectionPage, Table};
-pub use simulate::SimulatePage;
-pub use spectrum::SpectrumPage;
+pub use player::Player;
 pub use spreads::SpreadView;
-pub use strip::StripFigures;
+pub use table::{Cell, Row, Table};
+pub use text::Text;
 pub use uncertainty::Uncertainty;
 
 use minijinja::{AutoEscape, Environment, Value};
-use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
 use crate::numbers::significant;
-use crate::svg::{SubscriptMarkup, subscripts};
-use crate::units::unit_text;
 
-const BASE: &str = include_str!("../../templates/base.html");
-const MACROS: &str = include_str!("../../templates/macros.html");
+const TEMPLATE: &str = include_str!("../../templates/page.html");
 const STYLE: &str = include_str!("../../templates/style.css");
 const SCRIPT: &str =
     concat!(include_str!("../../templates/tabs.js"), include_str!("../../templates/keep.js"));
 
 /// A figure with its caption.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Serialize)]
 pub struct Figure {
     /// Stand-alone SVG.
     pub svg: String,
-    /// What it shows, plain text.
+    /// What it shows; `_x` sets a subscript.
     pub caption: String,
 }
 
@@ -65,7 +56,7 @@ impl Figure {
 }
 
 /// A key number at the head of a page.
-#[derive(Debug, Clone, PartialEq, Eq, Serialize, JsonSchema)]
+#[derive(Debug, Clone, PartialEq, Eq, Serialize)]
 pub struct Card {
     /// Name or symbol; `_x` sets a subscript.
     pub label: String,
@@ -75,110 +66,122 @@ pub struct Card {
     pub note: String,
 }
 
-/// Figures under one tab, for example those of one frame.
-#[derive(Debug, Clone, PartialEq, Serialize, JsonSchema)]
-pub struct Panel {
-    /// Name of the tab.
-    pub label: String,
-    /// The figures, row by row.
-    pub figures: Vec<Figure>,
-    /// How many figures stand side by side where there is room.
-    pub columns: Columns,
-}
-
-/// How many figures stand side by side where there is room.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, JsonSchema)]
-#[serde(rename_all = "snake_case")]
-pub enum Columns {
-    /// Two, for maps of many cells.
-    Two,
-    /// Three.
-    Three,
-}
-
-impl Columns {
-    /// The layout at which the maps of `cells` cells stay legible.
+impl Card {
+    /// A name or symbol, the number with its unit, and a line beneath.
     #[must_use]
-    pub fn for_cells(cells: usize) -> Self {
-        if cells > 700 { Self::Two } else { Self::Three }
+    pub fn new(label: impl Into<String>, value: impl Into<String>, note: impl Into<String>) -> Self {
+        Self { label: label.into(), value: value.into(), note: note.into() }
     }
 }
 
-/// What every page has, whatever the command.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub struct PageHead<'a> {
-    /// Title of the page, for example the name of the data set.
-    pub title: &'a str,
-    /// The answer in one sentence.
-    pub headline: &'a str,
-    /// Further sentences, one paragraph each.
-    pub summary: &'a [String],
+/// A part of a page under a heading; one without content is left out.
+#[derive(Debug, Clone, PartialEq, Default, Serialize)]
+pub struct Section {
+    heading: String,
+    blocks: Vec<Block>,
+}
+
+impl Section {
+    /// A section without content.
+    #[must_use]
+    pub fn new(heading: impl Into<String>) -> Self {
+        Self { heading: heading.into(), blocks: Vec::new() }
+    }
+
+    /// With one more block, unless it is empty.
+    #[must_use]
+    pub fn with(self, block: impl Into<Block>) -> Self {
+        self.with_all([block])
+    }
+
+    /// With these blocks beneath those it has; empty ones are left out.
+    #[must_use]
+    pub fn with_all<B: Into<Block>>(mut self, blocks: impl IntoIterator<Item = B>) -> Self {
+        self.blocks.extend(blocks.into_iter().map(Into::into).filter(|block| !block.is_empty()));
+        self
+    }
+
+    /// With a block under a heading of its own, and how it is to be read; nothing of that if the block is empty.
+    #[must_use]
+    pub fn with_part(self, heading: &str, how: &str, block: Block) -> Self {
+        match block.is_empty() {
+            true => self,
+            false => self.with(Block::heading(heading)).with(Block::paragraph(how)).with(block),
+        }
+    }
+}
+
+/// A page.
+///
+/// ```
+/// # use voronudge_report::infer_report::RunRecord;
+/// use voronudge_report::page::{Block, Page, Section};
+/// # fn page(run: &RunRecord) -> Result<String, voronudge_report::ReportError> {
+/// let cells = Section::new("Cells").with(Block::paragraph("All of them rest."));
+/// Page { sections: vec![cells], ..Page::new("100 cells", "A solid.", run) }.render()
+/// # }
+/// ```
+#[derive(Debug, Clone, Serialize)]
+pub struct Page<'a> {
+    /// Title, for example the name of the data set.
+    pub title: String,
+    /// The answer in one plain sentence.
+    pub headline: String,
+    /// What is said beneath it.
+    pub summary: Vec<Block>,
     /// Reasons not to trust the numbers, which stand in a box of their own.
     pub doubts: &'a [String],
-    /// What else the reader should know before using the numbers.
-    pub warnings: Vec<&'a str>,
     /// Key numbers.
     pub cards: Vec<Card>,
-    /// The run.
+    /// What stands under "How to read this page".
+    pub guide: Vec<Block>,
+    /// The sections.
+    pub sections: Vec<Section>,
+    /// The run. Its warnings stand in a box, those that are doubts left out.
     pub run: &'a RunRecord,
 }
 
-impl<'a> PageHead<'a> {
-    /// A page without doubts, whose warnings are those of the run.
-    pub(super) fn sound(
-        [title, headline]: [&'a str; 2],
-        summary: &'a [String],
-        cards: Vec<Card>,
-        run: &'a RunRecord,
-    ) -> Self {
-        let warnings = run.warnings.iter().map(String::as_str).collect();
-        Self { title, headline, summary, doubts: &[], warnings, cards, run }
+impl<'a> Page<'a> {
+    /// A page of a title, the answer in one plain sentence, and the run.
+    #[must_use]
+    pub fn new(title: impl Into<String>, headline: impl Into<String>, run: &'a RunRecord) -> Self {
+        let (title, headline) = (title.into(), headline.into());
+        let (summary, cards, guide, sections) = Default::default();
+        Self { title, headline, summary, doubts: &[], cards, guide, sections, run }
+    }
+
+    /// The HTML text of the page.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Template`] if the template cannot be filled.
+    pub fn render(&self) -> Result<String, ReportError> {
+        let is_doubt = |warning: &&String| self.doubts.contains(warning);
+        let warnings: Vec<&String> = self.run.warnings.iter().filter(|own| !is_doubt(own)).collect();
+        fill("page.html", TEMPLATE, &minijinja::context! { page => self, warnings })
     }
 }
 
-/// A template of this crate or of a caller; it may extend `base.html` and import `macros.html`.
-#[derive(Debug, Clone, Copy)]
-pub struct Template {
-    /// File name, ending in `.html`.
-    pub name: &'static str,
-    /// Source text.
-    pub source: &'static str,
-}
-
-/// Fills `template` with `context` (available as `page`) and the scaffolding.
-///
-/// # Errors
-///
-/// [`ReportError::Template`] where the template is faulty or a value is missing.
-pub fn render(template: Template, context: &impl Serialize) -> Result<String, ReportError> {
+/// Fills the template `source` with `context` and the scaffolding.
+fn fill(template: &'static str, source: &str, context: &Value) -> Result<String, ReportError> {
     let fill = || -> Result<String, minijinja::Error> {
         let mut environment = Environment::new();
         environment.set_auto_escape_callback(|_| AutoEscape::Html);
         environment.set_undefined_behavior(minijinja::UndefinedBehavior::Strict);
-        environment.add_filter("symbol", symbol);
-        environment.add_filter("prose", |text: String| Value::from_safe_string(words::prose(&text)));
-        environment.add_filter("significant", significant_value);
-        environment.add_filter("unit", |unit: String| unit_text(&unit));
-        environment.add_template("base.html", BASE)?;
-        environment.add_template("macros.html", MACROS)?;
-        environment.add_template(template.name, template.source)?;
-        environment.get_template(template.name)?.render(minijinja::context! {
-            page => Value::from_serialize(context),
-            style => Value::from_safe_string(STYLE.to_owned()),
-            script => Value::from_safe_string(SCRIPT.to_owned()),
-        })
+        environment.add_filter("symbol", |text: &str| safe(Text::from(text)));
+        environment.add_filter("prose", |text: &str| safe(Text::prose(text)));
+        environment.add_filter("significant", significant);
+        for (name, source) in [("style", STYLE), ("script", SCRIPT)] {
+            environment.add_global(name, Value::from_safe_string(source.to_owned()));
+        }
+        environment.template_from_named_str(template, source)?.render(context)
     };
-    fill().map_err(|source| ReportError::Template { template: template.name, source })
+    fill().map_err(|source| ReportError::Template { template, source })
 }
 
-/// Escaped text with subscripts as markup.
-fn symbol(text: String) -> Value {
-    Value::from_safe_string(subscripts(&text, SubscriptMarkup::Html))
-}
-
-/// A number with some digits; anything that is not a number is unknown.
-fn significant_value(value: Value, digits: usize) -> String {
-    significant(f64::try_from(value).unwrap_or(f64::NAN), digits)
+/// Markup that is not escaped again.
+fn safe(text: Text) -> Value {
+    Value::from_safe_string(text.as_markup().to_owned())
 }
 
 #[cfg(test)]
@@ -187,8 +190,8 @@ mod tests {
 
     #[test]
     fn a_faulty_template_is_an_error_with_its_name() {
-        let template = Template { name: "broken.html", source: "{{ page.missing.deeper }}" };
-        let error = render(template, &1.0).unwrap_err();
+        let page = minijinja::context! { page => 1.0 };
+        let error = fill("broken.html", "{{ page.missing.deeper }}", &page).unwrap_err();
         assert!(error.to_string().contains("broken.html"));
     }
 }

@@ -1,45 +1,28 @@
 //! The rows of the parameter table: symbols, meanings, digits.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
+use super::Text;
 use crate::figure::{Estimate, ParameterRow};
 use crate::infer_report::{ActivityReport, NaiveParameters, Parameter, Parameters};
-use crate::numbers::{NO_VALUE, as_given, interval_text, significant};
+use crate::numbers::{as_given, interval_text, significant};
 use crate::units::unit_text;
 
-/// A parameter as the table shows it.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct TableRow {
-    pub(super) symbol: String,
-    pub(super) meaning: String,
-    pub(super) unit: String,
-    pub(super) value: String,
-    pub(super) interval: String,
-    pub(super) naive: String,
+/// A value and its interval as they are printed.
+pub(super) fn value_and_interval(row: &ParameterRow) -> [String; 2] {
+    match (row.interval(), row.estimate) {
+        (Some(ends), Estimate::AtBound) => {
+            let [value, interval] = interval_text(row.value, ends);
+            [value, format!("{interval}, at a bound")]
+        }
+        (Some(ends), _) => interval_text(row.value, ends),
+        (None, Estimate::Fixed) => [as_given(row.value), "held fixed".to_owned()],
+        (None, _) => [significant(row.value, 3), "not determined".to_owned()],
+    }
 }
 
-impl TableRow {
-    /// The texts of a row.
-    pub(super) fn new(row: &ParameterRow) -> Self {
-        let [value, interval] = match (row.interval(), row.estimate) {
-            (Some(ends), Estimate::AtBound) => {
-                let [value, interval] = interval_text(row.value, ends);
-                [value, format!("{interval}, at a bound")]
-            }
-            (Some(ends), _) => interval_text(row.value, ends),
-            (None, Estimate::Fixed) => [as_given(row.value), "held fixed".to_owned()],
-            (None, _) => [significant(row.value, 3), "not determined".to_owned()],
-        };
-        Self {
-            symbol: row.symbol.clone(),
-            meaning: row.meaning.clone(),
-            unit: unit_text(&row.unit),
-            value,
-            interval,
-            naive: row.naive.map_or_else(|| NO_VALUE.to_owned(), |naive| significant(naive, 3)),
-        }
-    }
+/// Symbol, value, interval and unit as cells of a table.
+pub(super) fn cells_of(row: &ParameterRow) -> [Text; 4] {
+    let [value, interval] = value_and_interval(row);
+    [Text::from(&row.symbol), value.into(), interval.into(), Text::plain(&unit_text(&row.unit))]
 }
 
 /// The printed symbol of the name of a parameter, or of the coefficient of an effect, in the file.

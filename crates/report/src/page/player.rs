@@ -1,8 +1,8 @@
 //! Cells that can be played, stepped through, coloured and asked for their numbers.
 
-use schemars::JsonSchema;
 use serde::Serialize;
 
+use super::Figure;
 use crate::error::ReportError;
 use crate::movie::CellMovie;
 use crate::view::CellStatus;
@@ -10,8 +10,8 @@ use crate::view::CellStatus;
 const SCRIPT: &str = include_str!("../../templates/player.js");
 
 /// A movie in a page. Without a script, and in print, a still stands in its place.
-#[derive(Debug, Clone, Serialize, JsonSchema)]
-pub(super) struct Player {
+#[derive(Debug, Clone, PartialEq, Serialize)]
+pub struct Player {
     /// Stand-alone SVG.
     still: String,
     caption: String,
@@ -27,15 +27,15 @@ pub(super) struct Player {
 }
 
 impl Player {
-    /// A movie with what stands in its place and beneath it.
+    /// A movie with what stands in its place, and beneath it.
     ///
     /// # Errors
     ///
     /// [`ReportError::Json`] if the numbers cannot be written.
-    pub(super) fn new(movie: &CellMovie, still: String, caption: &str) -> Result<Self, ReportError> {
+    pub(super) fn new(movie: &CellMovie, still: &Figure) -> Result<Self, ReportError> {
         let frames = movie.frames();
         let data = movie.to_json()?;
-        let mut words = vec![caption.to_owned(), movie.what_is_left_out()];
+        let mut words = vec![still.caption.clone(), movie.what_is_left_out()];
         if frames.len() > 1 {
             words.push(format!(
                 "Space plays, the arrow keys step. The movie is {} kB of this page.",
@@ -45,7 +45,7 @@ impl Player {
         words.retain(|sentence| !sentence.is_empty());
         let cells = || frames.iter().flat_map(|frame| &frame.cells);
         Ok(Self {
-            still,
+            still: still.svg.clone(),
             caption: words.join(" "),
             label: format!("cells, {} frames; what is known of each cell stands beneath", frames.len()),
             frames: frames.len(),

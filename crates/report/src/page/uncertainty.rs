@@ -1,15 +1,12 @@
 //! The figures and sentences that say how well the parameters are known.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use super::Figure;
-use super::directions::{Directions, directions};
+use super::directions::directions;
+use super::{Block, Figure, Section};
 use crate::figure::{
     BootstrapHistogram, Landscape, ParameterRow, ProfileCurve, bootstrap_histogram, landscape,
     parameter_intervals, profile,
 };
-use crate::infer_report::{InferReport, Parameter};
+use crate::infer_report::{BootstrapResult, InferReport, Parameter};
 
 /// What was asked beyond the fit, as figures show it.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -23,36 +20,61 @@ pub struct Uncertainty {
 }
 
 /// The section of the page.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct Known {
-    intervals: Figure,
-    parameters: Vec<String>,
-    directions: Directions,
-    profiles: Vec<Figure>,
-    bootstrap: Vec<Figure>,
-    landscapes: Vec<Figure>,
+pub(super) fn known(report: &InferReport, rows: &[ParameterRow], figures: &Uncertainty) -> Section {
+    let p = &report.parameters;
+    let free = |parameter: &&Parameter| !parameter.fixed;
+    let free = [&p.K_P_alpha, &p.P_0, &p.alpha, &p.K_P, &p.K_A].into_iter().filter(free);
+    let sentences = Block::list(free.map(|parameter| printed(&parameter.words)));
+    let intervals = Figure::new(
+        parameter_intervals(rows),
+        "Each parameter on its own axis; the dashed upright line is zero. An arrow head says that \
+         the interval is not bounded there, a thick upright line that the estimate stopped at a \
+         bound.",
+    );
+    let is_finding = report.verdict.kind.is_finding();
+    Section::new("How well is it known")
+        .with_all(is_finding.then_some(sentences))
+        .with(Block::group(if is_finding { "single" } else { "single void" }, [intervals]))
+        .with(Block::heading("What the data determine"))
+        .with_all(determined(report))
+        .with_part(
+            "Profiles",
+            "The parameter is held at each value and everything else fitted again. Where the curve is no parabola, believe the profile rather than the table above.",
+            Block::pairs(figures.profiles.iter().map(profile_figure)),
+        )
+        .with_part(
+            "Landscapes",
+            "Left as a picture of the loss is usually drawn, with the nudges as they were fitted. Right what matters for the uncertainty: nudges and all other parameters \
+             follow. The lines bound 68 % and 95 %.",
+            Block::pairs(figures.landscapes.iter().flatten().map(landscape_figure)),
+        )
+        .with_part(
+            "Bootstrap",
+            &report.bootstrap.as_ref().map(bootstrapped).unwrap_or_default(),
+            Block::group("figures three", figures.bootstrap.iter().map(bootstrap_figure)),
+        )
 }
 
-impl Known {
-    /// The figures and sentences of a report.
-    pub(super) fn new(report: &InferReport, rows: &[ParameterRow], figures: &Uncertainty) -> Self {
-        let p = &report.parameters;
-        let free = |parameter: &&Parameter| !parameter.fixed;
-        let sentences = [&p.K_P_alpha, &p.P_0, &p.alpha, &p.K_P, &p.K_A].into_iter().filter(free);
-        Self {
-            intervals: Figure::new(
-                parameter_intervals(rows),
-                "Each parameter on its own axis; the dashed upright line is zero. An arrow head says that \
-                 the interval is not bounded there, a thick upright line that the estimate stopped at a \
-                 bound.",
-            ),
-            parameters: sentences.map(|parameter| printed(&parameter.words)).collect(),
-            directions: directions(&report.identifiability),
-            profiles: figures.profiles.iter().map(profile_figure).collect(),
-            bootstrap: figures.bootstrap.iter().map(bootstrap_figure).collect(),
-            landscapes: figures.landscapes.iter().flatten().map(landscape_figure).collect(),
-        }
+fn determined(report: &InferReport) -> Vec<Block> {
+    if report.identifiability.is_empty() {
+        return vec![Block::paragraph("No parameter was fitted.")];
     }
+    let how = "Directions in the space of the fitted coefficients, best determined first. A small eigenvalue means that the data hardly notice a change of the parameters in \
+               that direction, so these parameters can be traded for each other. In units of the cell size; K_P P_0 is counted in units of 3.72, the outline of a regular \
+               hexagon.";
+    vec![Block::paragraph(how), directions(&report.identifiability)]
+}
+
+fn bootstrapped(own: &BootstrapResult) -> String {
+    let failed = match own.failed {
+        0 => String::new(),
+        count => format!(", {count} more could not be"),
+    };
+    format!(
+        "{} synthetic data sets were fitted{failed}: cells at the nudged positions that move as the fit predicts, with noise. Estimates that lie to one side of the \
+         upright line mean that the fit is biased.",
+        own.replicates
+    )
 }
 
 /// A sentence with the symbols of the page.

@@ -1,9 +1,8 @@
 //! Words and numbers that several pages say alike.
 
-use super::parameter_table::symbol_of;
-use crate::infer_report::{FitStatus, FlowGrid, MeanRemoved, NoiseSource, RunRecord};
+use super::{Block, Section};
+use crate::infer_report::{CellCounts, FitStatus, FlowGrid, MeanRemoved, NoiseSource};
 use crate::numbers::{NO_VALUE, significant, with_interval};
-use crate::svg::{SubscriptMarkup, subscripts};
 
 /// The caption of a map of polarities.
 pub(super) const POLARITIES: &str = "polarities: what the cells move by of themselves";
@@ -11,11 +10,6 @@ pub(super) const POLARITIES: &str = "polarities: what the cells move by of thems
 /// What velocities belong to.
 pub(super) fn data(flow: Option<&FlowGrid>) -> &'static str {
     if flow.is_some() { "grid points" } else { "cells" }
-}
-
-/// The warnings that are no doubts, which have a box of their own.
-pub(super) fn warnings<'a>(run: &'a RunRecord, doubts: &[String]) -> Vec<&'a str> {
-    run.warnings.iter().filter(|text| !doubts.contains(text)).map(String::as_str).collect()
 }
 
 pub(super) fn mean_removed(mean: MeanRemoved) -> &'static str {
@@ -41,6 +35,15 @@ pub(super) fn fit_status(status: FitStatus) -> &'static str {
         FitStatus::IterationLimit => "stopped at the limit of iterations",
         FitStatus::Stalled => "stalled before a minimum",
     }
+}
+
+/// The section about what took no part in the fit; `data` is what velocities belong to.
+pub(super) fn left_out(cells: &CellCounts, data: &str) -> Section {
+    let reasons = cells.left_out.iter().map(|(reason, count)| [reason.replace('_', " "), count.to_string()]);
+    Section::new("What was left out").with(match cells.left_out.is_empty() {
+        true => Block::paragraph(format!("Nothing: all {} {data} were used.", cells.used)),
+        false => Block::facts([[format!("{data} used"), cells.used.to_string()]].into_iter().chain(reasons)),
+    })
 }
 
 /// The name of an effect as it is printed.
@@ -76,44 +79,9 @@ pub(super) fn probability(p: f64) -> String {
     if (0.0..1e-4).contains(&p) { "<\u{a0}0.0001".to_owned() } else { significant(p, 2) }
 }
 
-/// A sentence as markup: symbols with subscripts, names of effects as words, everything escaped.
-pub(super) fn prose(text: &str) -> String {
-    let is_inner = |letter: char| letter.is_alphanumeric() || letter == '_';
-    let mut markup = String::with_capacity(text.len());
-    let mut word = String::new();
-    for letter in text.chars().chain(std::iter::once('\0')) {
-        if is_inner(letter) {
-            word.push(letter);
-            continue;
-        }
-        markup.push_str(&subscripts(&printed_word(&word), SubscriptMarkup::Html));
-        word.clear();
-        if letter != '\0' {
-            markup.push_str(&crate::svg::escape(letter.encode_utf8(&mut [0; 4])));
-        }
-    }
-    markup
-}
-
-/// A word with the symbol it stands for; an underscore behind more than one letter joins words.
-fn printed_word(word: &str) -> String {
-    let symbol = symbol_of(word);
-    match word.split_once('_') {
-        Some((head, _)) if symbol == word && head.chars().count() != 1 => effect_name(word),
-        _ => symbol,
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn prose_tells_symbols_from_names_of_effects() {
-        let text = "density_gradient moves K_P_alpha and P_0, not <alpha>";
-        let markup = "density gradient moves K<sub>P</sub> α and P<sub>0</sub>, not &lt;α&gt;";
-        assert_eq!(prose(text), markup);
-    }
 
     #[test]
     fn errors_decide_the_digits() {

@@ -3,8 +3,8 @@
 use crate::chromium::assert_sound;
 use crate::{discover_sample, movies, sample};
 use std::error::Error;
-use voronudge_report::page::Figure;
-use voronudge_report::{DiscoverFigures, DiscoverPage, FrameView, InferPage, SimulatePage, Uncertainty};
+use voronudge_report::page::{Block, Figure, Page, Section};
+use voronudge_report::{DiscoverFigures, DiscoverPage, FrameView, InferPage, Uncertainty};
 
 #[test]
 fn pages_fit_their_window_and_movies_play() {
@@ -34,16 +34,13 @@ fn pages() -> Result<Vec<(&'static str, String)>, Box<dyn Error>> {
         figures: &figures,
     };
     let figure = Figure::new(movie.still(), "Cells.");
-    let simulate = SimulatePage {
-        title: "100 cells",
-        headline: "The cells move at 2.75 ℓ₀ K_P.",
-        summary: &[],
-        cards: &[],
-        configuration: &figure,
-        movie: Some(&movie),
-        course: std::slice::from_ref(&figure),
-        structure: std::slice::from_ref(&figure),
-        run: &report.run,
+    let tissue = Block::group("beside", [Block::player(&movie, &figure)?, figure.clone().into()]);
+    let simulate = Page {
+        sections: vec![
+            Section::new("The tissue").with(tissue),
+            Section::new("In time").with(Block::pairs([figure.clone()])),
+        ],
+        ..Page::new("100 cells", "The cells move at 2.75 ℓ₀ K_P.", &report.run)
     };
     Ok(vec![
         ("infer.html", InferPage { movie: Some(&movie), ..infer }.render()?),

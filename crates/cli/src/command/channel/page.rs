@@ -6,7 +6,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::channel_report::{ChannelReport, CycleRecord, DecayRecord, DisturbanceRecord};
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Section, SectionPage};
+use voronudge_report::page::{Block, Card, Page, Section};
 use voronudge_simulate::measure::Estimate;
 
 const PERIODIC: [&str; 2] = [
@@ -52,62 +52,46 @@ const GUIDE: [[&str; 2]; 5] = [
 
 pub(super) fn page(figures: &Figures<'_>, disturbance: Option<Disturbances<'_>>) -> Result<String, Failure> {
     let report = &figures.findings.report;
+    let flow = [figures.velocities(), figures.ratio(), figures.edge_to_edge(), figures.density()];
     let mut sections = vec![
-        Section {
-            heading: "Flow".into(),
-            figures: vec![figures.velocities(), figures.ratio(), figures.edge_to_edge(), figures.density()],
-            rows: decay_rows(report),
-            ..Section::default()
-        },
-        Section {
-            heading: "What drives the flow along the channel".into(),
-            text: std::iter::once(momentum(report)).chain(liquid(report)).collect(),
-            figures: vec![figures.momentum()],
-            ..Section::default()
-        },
-        Section {
-            heading: "Births, extrusions and conservation".into(),
-            text: vec![format!(
+        Section::new("Flow").with(Block::facts(decay_rows(report))).with(Block::pairs(flow)),
+        Section::new("What drives the flow along the channel")
+            .with(Block::paragraph(momentum(report)))
+            .with_all(liquid(report).map(Block::paragraph))
+            .with(Block::pairs([figures.momentum()])),
+        Section::new("Births, extrusions and conservation")
+            .with(Block::paragraph(format!(
                 "∂_x(ρ v_x)/ρ and the net proliferation counted differ by at most {} {}, {} standard errors, where the largest rate is {}.",
                 significant(report.conservation.largest_difference, 2),
                 rate_unit(report),
                 significant(report.conservation.largest_in_errors, 2),
                 significant(report.conservation.largest_rate, 3),
-            )],
-            figures: vec![figures.rates(), figures.conservation()],
-            ..Section::default()
-        },
+            )))
+            .with(Block::pairs([figures.rates(), figures.conservation()])),
     ];
     if let (Some(all), Some(record)) = (disturbance, &report.birth_disturbance) {
-        sections.push(Section {
-            heading: "What a birth disturbs".into(),
-            text: vec![format!(
+        sections.push(Section::new("What a birth disturbs")
+            .with(Block::paragraph(format!(
                 "The largest change of a velocity is {} {} in the mean for births on vertices and {} for births beside a mother{}.",
                 significant(record.vertex_mean, 3),
                 report.units.velocity_text(),
                 significant(record.division_mean, 3),
                 in_two(record, ", and {} for divisions in two"),
-            )],
-            figures: vec![figures.disturbance(all)],
-            ..Section::default()
-        });
+            )))
+            .with(Block::pairs([figures.disturbance(all)])));
     }
-    sections.push(Section {
-        heading: "Young and old cells".into(),
-        text: report.turnover.cycle.iter().map(|cycle| cycles(report, cycle)).collect(),
-        figures: vec![figures.shapes()],
-        ..Section::default()
-    });
+    let cycles = report.turnover.cycle.iter().map(|cycle| Block::paragraph(cycles(report, cycle)));
+    sections
+        .push(Section::new("Young and old cells").with_all(cycles).with(Block::pairs([figures.shapes()])));
     let mut guide = GUIDE.to_vec();
     guide.insert(1, if report.walls.is_some() { WALLED } else { PERIODIC });
-    let page = SectionPage {
-        title: &figures.request.title,
-        headline: &headline(report, figures.folded.velocity[1].first()),
-        summary: &[cells(report), setting(report)],
-        cards: &cards(report),
-        guide: &guide,
-        sections: &sections,
-        run: &report.run,
+    let headline = headline(report, figures.folded.velocity[1].first());
+    let page = Page {
+        summary: [cells(report), setting(report)].map(Block::summary).into(),
+        cards: cards(report),
+        guide: vec![Block::terms(&guide)],
+        sections,
+        ..Page::new(&figures.request.title, headline, &report.run)
     };
     Ok(page.render()?)
 }
@@ -195,30 +179,21 @@ fn boundary(report: &ChannelReport) -> &'static str {
 }
 
 fn cards(report: &ChannelReport) -> Vec<Card> {
-    let length = |name: &str, label: &str| {
-        report.decays.get(name).map(|decay| Card {
-            label: label.into(),
-            value: format!("{} {}", significant(decay.length, 3), report.units.length_text()),
-            note: interval(decay),
-        })
+    let length = |(name, label): (&str, &str)| {
+        let decay = report.decays.get(name)?;
+        let value = format!("{} {}", significant(decay.length, 3), report.units.length_text());
+        Some(Card::new(label, value, interval(decay)))
     };
-    let mut cards: Vec<Card> = [
-        length("velocity_x", "decay length of v_x"),
-        length("velocity_y", "decay length of v_y"),
-        length("density", "decay length of the density"),
-    ]
-    .into_iter()
-    .flatten()
-    .collect();
-    if let Some(flow) = &report.chirality_from_flow {
+    let slope = report.chirality_from_flow.as_ref().map(|flow| {
         let [low, high] = flow.slope_ci95.map(|end| significant(end, 3));
-        cards.push(Card {
-            label: "v_y/v_x".into(),
-            value: significant(flow.slope, 3),
-            note: format!("{low} to {high}"),
-        });
-    }
-    cards
+        Card::new("v_y/v_x", significant(flow.slope, 3), format!("{low} to {high}"))
+    });
+    let lengths = [
+        ("velocity_x", "decay length of v_x"),
+        ("velocity_y", "decay length of v_y"),
+        ("density", "decay length of the density"),
+    ];
+    lengths.into_iter().filter_map(length).chain(slope).collect()
 }
 
 fn momentum(report: &ChannelReport) -> String {

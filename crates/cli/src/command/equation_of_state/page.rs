@@ -13,7 +13,7 @@ use voronudge_report::figure::{
 };
 use voronudge_report::markers::Marker;
 use voronudge_report::numbers::{significant, with_interval};
-use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Figure, Page, Row, Section, Table};
 use voronudge_report::units::label_with_unit;
 
 const GUIDE: &[[&str; 2]] = &[
@@ -93,33 +93,26 @@ pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Result<
         ),
         figure("⟨P/√A⟩", "", "Shape index", |own| own.shape_index, None),
     ];
-    let sections = [
-        Section { heading: "Against density".into(), figures, ..Section::default() },
-        Section { heading: "Numbers".into(), table: Some(table(report)), ..Section::default() },
-    ];
-    let middle = nearest_to_one(report);
-    let cards: Vec<Card> = quantities(middle)
-        .into_iter()
-        .map(|(label, own)| {
-            let [value, low, high] = with_interval(own.value, interval(own));
-            Card { label: label.into(), value, note: format!("{low} … {high}") }
-        })
-        .collect();
-    let page = SectionPage {
-        title: "Equation of state",
-        headline: &headline(report),
-        summary: &[format!(
+    let cards = quantities(nearest_to_one(report)).map(|(label, own)| {
+        let [value, low, high] = with_interval(own.value, interval(own));
+        Card::new(label, value, format!("{low} … {high}"))
+    });
+    let page = Page {
+        summary: vec![Block::summary(format!(
             "{} cells in each of {} runs for a density; averages over {} {} after {}; p, τ, B and A in {rate}.",
             report.cells,
             report.replicas,
             significant(report.time, 3),
             report.units.time_text(),
             significant(report.relaxation, 3)
-        )],
-        cards: &cards,
-        guide: GUIDE,
-        sections: &sections,
-        run: &report.run,
+        ))],
+        cards: cards.into(),
+        guide: vec![Block::terms(GUIDE)],
+        sections: vec![
+            Section::new("Against density").with(Block::pairs(figures)),
+            Section::new("Numbers").with(Block::table(table(report))),
+        ],
+        ..Page::new("Equation of state", headline(report), &report.run)
     };
     Ok(page.render()?)
 }
@@ -159,9 +152,9 @@ fn table(report: &EquationOfStateReport) -> Table {
     let header = ["ρ ℓ₀²", "p", "τ", "B", "A", "P/√A"];
     let row = |point: &UniformRecord| {
         let numbers = quantities(point).map(|(_, own)| with_error(own));
-        std::iter::once(significant(point.relative_density, 4)).chain(numbers).collect()
+        std::iter::once(significant(point.relative_density, 4)).chain(numbers).collect::<Row>()
     };
-    Table { header: header.map(String::from).to_vec(), rows: report.points.iter().map(row).collect() }
+    Table::new(header).rows(report.points.iter().map(row))
 }
 
 /// The answer in a sentence.

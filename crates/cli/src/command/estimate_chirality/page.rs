@@ -10,7 +10,7 @@ use voronudge_report::figure::{
 };
 use voronudge_report::markers::Marker;
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Figure, Section, SectionPage};
+use voronudge_report::page::{Block, Card, Figure, Page, Section};
 use voronudge_report::{ChiralityReport, Units};
 
 const GUIDE: [[&str; 2]; 2] = [
@@ -74,25 +74,20 @@ pub(super) fn page(
         curves: &curves,
     });
     let caption = "Velocity along the channel against velocity across it, one point for each place, with standard errors.";
-    let sections = [Section {
-        heading: "Slope".into(),
-        figures: vec![Figure::new(svg, caption)],
-        rows: rows(report),
-        ..Section::default()
-    }];
+    let slope = Section::new("Slope")
+        .with(Block::facts(rows(report)))
+        .with(Block::pairs([Figure::new(svg, caption)]));
     let [low, high] = line.slope_ci95.map(|end| significant(end, 3));
-    let cards = [
-        Card { label: "α".into(), value: best(report), note: alpha_note(report) },
-        Card { label: "v_y/v_x".into(), value: significant(line.slope, 3), note: format!("{low} to {high}") },
+    let cards = vec![
+        Card::new("α", best(report), alpha_note(report)),
+        Card::new("v_y/v_x", significant(line.slope, 3), format!("{low} to {high}")),
     ];
-    let page = SectionPage {
-        title,
-        headline: &format!("The flow implies α = {}.", best(report)),
-        summary: &[sentence(report)],
-        cards: &cards,
-        guide: &GUIDE,
-        sections: &sections,
-        run: &report.run,
+    let page = Page {
+        summary: vec![Block::summary(sentence(report))],
+        cards,
+        guide: vec![Block::terms(&GUIDE)],
+        sections: vec![slope],
+        ..Page::new(title, format!("The flow implies α = {}.", best(report)), &report.run)
     };
     Ok(page.render()?)
 }

@@ -15,7 +15,7 @@ use voronudge_geometry::Tessellation;
 use voronudge_io::{FieldImport, FieldOptions, Snapshot, WantedExtrema, import_field_series};
 use voronudge_report::figure::{ExtremaMap, extrema_map};
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Figure, Section, SectionPage};
+use voronudge_report::page::{Block, Card, Figure, Page, Section};
 use voronudge_report::{FieldReport, Units};
 use voronudge_segmentation::Edge;
 
@@ -164,32 +164,23 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
     let first = report.frames.first().copied().unwrap_or(0);
     let headline =
         format!("{first} cells are found in the first frame, {} in all frames together.", report.tracks);
-    let page = SectionPage {
-        title: &file.display().to_string(),
-        headline: &headline,
-        summary: &[format!(
+    let found = Figure::new(
+        extrema_map(&frame, &field, &report.units),
+        "The field in the first frame, with the extrema taken for cells (dots) and their Voronoi polygons.",
+    );
+    let page = Page {
+        summary: vec![Block::summary(format!(
             "{} frames; {} extrema were followed from the frame before.",
             report.frames.len(),
             report.linked
-        )],
-        cards: &[
-            Card { label: "cells".into(), value: first.to_string(), note: "in the first frame".into() },
-            Card {
-                label: "least prominence".into(),
-                value: significant(report.smallest_prominence, 3),
-                note: "of an extremum taken".into(),
-            },
+        ))],
+        cards: vec![
+            Card::new("cells", first.to_string(), "in the first frame"),
+            Card::new("least prominence", significant(report.smallest_prominence, 3), "of an extremum taken"),
         ],
-        guide: GUIDE,
-        sections: &[Section {
-            heading: "The field and its cells".into(),
-            figures: vec![Figure::new(
-                extrema_map(&frame, &field, &report.units),
-                "The field in the first frame, with the extrema taken for cells (dots) and their Voronoi polygons.",
-            )],
-            ..Section::default()
-        }],
-        run: &report.run,
+        guide: vec![Block::terms(GUIDE)],
+        sections: vec![Section::new("The field and its cells").with(Block::pairs([found]))],
+        ..Page::new(file.display().to_string(), headline, &report.run)
     };
     Ok(page.render()?)
 }

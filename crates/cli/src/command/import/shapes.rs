@@ -12,7 +12,7 @@ use voronudge_geometry::{Domain, FieldOfView, Seen, Tessellation, areas, perimet
 use voronudge_io::{OutputDirectory, ShapeImport, Snapshot};
 use voronudge_report::figure::{ShapeMeasure, outline_map, shape_scatter};
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Figure, Page, Section, Table};
 use voronudge_report::shape_report::{AgreementRecord, FrameAgreement, ShapeReport};
 use voronudge_report::{FrameView, Units};
 use voronudge_segmentation::{MeasuredShape, agreement, comparable};
@@ -226,11 +226,7 @@ fn page(
              Areas count pixels; perimeters are Crofton's in eight directions."
         ));
     }
-    let card = |label: &str, value: f64, note: &str| Card {
-        label: label.into(),
-        value: significant(value, 3),
-        note: note.into(),
-    };
+    let card = |label: &str, value: f64, note: &str| Card::new(label, significant(value, 3), note);
     let cards = vec![
         card("precision", all.precision, "of Voronoi contacts"),
         card("recall", all.recall, "of true contacts"),
@@ -280,19 +276,15 @@ fn page(
         ),
         "The same of perimeters.",
     ));
-    let page = SectionPage {
-        title: &source.file.display().to_string(),
-        headline: &headline,
-        summary: &summary,
-        cards: &cards,
-        guide: GUIDE,
-        sections: &[Section {
-            heading: "Voronoi polygons against outlines".into(),
-            table: Some(Table { header: header.split('|').map(str::to_owned).collect(), rows }),
-            figures,
-            ..Section::default()
-        }],
-        run: &report.run,
+    let agreement = Section::new("Voronoi polygons against outlines")
+        .with(Block::table(Table::new(header.split('|')).rows(rows)))
+        .with(Block::pairs(figures));
+    let page = Page {
+        summary: summary.into_iter().map(Block::summary).collect(),
+        cards,
+        guide: vec![Block::terms(GUIDE)],
+        sections: vec![agreement],
+        ..Page::new(source.file.display().to_string(), headline, &report.run)
     };
     Ok(page.render()?)
 }

@@ -2,6 +2,7 @@
 
 mod dynamic;
 pub(crate) mod measure;
+mod page;
 pub(crate) mod protocol;
 pub(crate) mod report;
 
@@ -14,7 +15,6 @@ use crate::run::Run;
 use clap::Args;
 use protocol::{Protocol, ProtocolArguments};
 use std::path::Path;
-use voronudge_report::ModuliPage;
 use voronudge_report::ModuliReport;
 
 /// Measures the elastic moduli B, A, μ, Kᵒ of a tissue from its stress under small strains, and compares them with
@@ -68,11 +68,8 @@ impl Reporting for Arguments {
         let measured = measure::replicas(&starts, &models, &protocol, self.common.verbosity())?;
         report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));
         let report = report::report(run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
-        let (title, headline) = (report::title(&self), report::headline(&report));
-        let unit = report.units.powers(0, -1);
-        let dynamic = dynamic::figures(&report.dynamic, &report.media, &unit);
-        let page = ModuliPage { title: &title, headline: &headline, summary: &[], dynamic, report: &report };
+        let page = page::page(&self, &report)?;
         let summary = report::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page.render()?, summary)
+        Rendered::with_page(out, &report, &page, summary)
     }
 }

@@ -15,7 +15,7 @@ use voronudge_report::figure::{ErrorPoint, PointSeries, PointsAndCurves, points_
 use voronudge_report::infer_report::Quantity as Amount;
 use voronudge_report::markers::Marker;
 use voronudge_report::observe_report::ObservedAvalanches;
-use voronudge_report::page::{Figure, Section};
+use voronudge_report::page::{Block, Figure, Section};
 use voronudge_report::units::label_with_unit;
 
 #[derive(Debug, Args)]
@@ -140,7 +140,7 @@ impl Found {
                 "The same of bursts. In a larger field more transitions follow each other.",
             ),
         ];
-        Section { heading: "Avalanches of T1 transitions".into(), figures, ..Section::default() }
+        Section::new("Avalanches of T1 transitions").with(Block::pairs(figures))
     }
 
     fn curve(&self, of: Quantity) -> Option<&Curve> {

@@ -18,7 +18,7 @@ use voronudge_report::Units;
 use voronudge_report::figure::{AroundDefects, DefectMark, around_defects, defect_map};
 use voronudge_report::infer_report::Quantity as Amount;
 use voronudge_report::observe_report::ObservedNematic;
-use voronudge_report::page::{Figure, Section};
+use voronudge_report::page::{Block, Figure, Section};
 
 /// Smoothing width in mean spacings, if none is given.
 const WIDTH: f64 = 1.5;
@@ -142,7 +142,7 @@ impl Measured {
         let curves = [Quantity::NematicCorrelation, Quantity::SwirlAroundPlus, Quantity::SwirlAroundMinus];
         let found = curves.iter().filter_map(|of| self.nematic.curves.iter().find(|curve| curve.of == *of));
         figures.extend(found.filter_map(|curve| figure(curve, units)));
-        Section { heading: "Shapes as a nematic".into(), figures, ..Section::default() }
+        Section::new("Shapes as a nematic").with(Block::pairs(figures))
     }
 }
 

@@ -18,7 +18,7 @@ use voronudge_report::figure::{
 use voronudge_report::markers::Marker;
 use voronudge_report::numbers::significant;
 use voronudge_report::observe_report::{ObserveReport, ObservedNumber};
-use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Figure, Page, Section, Table, Text};
 use voronudge_report::units::label_with_unit;
 use voronudge_report::{FrameView, Units};
 
@@ -82,50 +82,30 @@ pub(super) fn page(
     ];
     let shapes = [Quantity::ShapeIndex, Quantity::Area];
     let order = [Quantity::PairCorrelation, Quantity::HexaticCorrelation, Quantity::Density];
-    let section = |heading: &str, all: &[Quantity]| Section {
-        heading: heading.into(),
-        figures: figures(all),
-        ..Section::default()
-    };
-    let mut sections = vec![Section {
-        heading: "The cells".into(),
-        figures: recording.frames().first().map(|frame| cells(frame, report, units)).into_iter().collect(),
-        ..Section::default()
-    }];
-    sections.extend(
-        [
-            section("Motion", &motion),
-            section("Neighbours", &contacts),
-            section("Shapes", &shapes),
-            section("Order", &order),
-        ]
-        .into_iter()
-        .filter(|section| !section.figures.is_empty()),
-    );
-    sections.extend(avalanches.map(|found| found.section(units)));
+    let section = |heading: &str, all: &[Quantity]| Section::new(heading).with(Block::pairs(figures(all)));
     let first = recording.frames().first();
+    let cells = first.map(|frame| cells(frame, report, units));
+    let mut sections = vec![
+        Section::new("The cells").with(Block::pairs(cells)),
+        section("Motion", &motion),
+        section("Neighbours", &contacts),
+        section("Shapes", &shapes),
+        section("Order", &order),
+    ];
+    sections.extend(avalanches.map(|found| found.section(units)));
     sections.extend(first.map(|frame| nematic.section(frame, label(report), units)));
-    sections.push(Section {
-        heading: "Numbers".into(),
-        table: Some(Table {
-            header: ["", "value", "standard error", "unit"].map(str::to_owned).to_vec(),
-            rows: numbers(report)
-                .map(|(of, number)| {
-                    let error = told(number.standard_error, 1);
-                    vec![capital(of.words()), significant(number.value, 3), error, number.unit.clone()]
-                })
-                .collect(),
-        }),
-        ..Section::default()
+    let rows = numbers(report).map(|(of, number)| {
+        let [value, error] = [significant(number.value, 3), told(number.standard_error, 1)];
+        [capital(of.words()).into(), value.into(), error.into(), Text::plain(&number.unit)]
     });
-    let page = SectionPage {
-        title,
-        headline: &headline(report),
-        summary: &[said(report)],
-        cards: &cards(report),
-        guide: GUIDE,
-        sections: &sections,
-        run: &report.run,
+    let numbers = Table::new(["", "value", "standard error", "unit"]).rows(rows);
+    sections.push(Section::new("Numbers").with(Block::table(numbers)));
+    let page = Page {
+        summary: vec![Block::summary(said(report))],
+        cards: cards(report),
+        guide: vec![Block::terms(GUIDE)],
+        sections,
+        ..Page::new(title, headline(report), &report.run)
     };
     Ok(page.render()?)
 }
@@ -205,7 +185,7 @@ fn cards(report: &ObserveReport) -> Vec<Card> {
             "mean over frames".into()
         };
         let value = format!("{} {}", significant(number.value, 3), number.unit);
-        Some(Card { label: label.into(), value: value.trim_end().into(), note })
+        Some(Card::new(label, value.trim_end(), note))
     };
     of.into_iter().filter_map(card).collect()
 }

@@ -2,6 +2,7 @@
 
 mod diagram;
 mod outcome;
+mod page;
 mod point;
 pub(crate) mod points;
 pub(crate) mod request;

@@ -1,6 +1,7 @@
 //! A diagram as files, page and summary.
 
 use super::diagram::{Diagram, Field};
+use super::page::page;
 use super::points::{FILE, Points};
 use super::request::{Quantity, Request};
 use super::scaling::{Collapse, Scaling};
@@ -11,7 +12,6 @@ use crate::run::Run;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use voronudge_io::OutputDirectory;
-use voronudge_report::PhasePage;
 use voronudge_report::figure::{LineStyle, MapLine, PhaseMap, phase_map};
 use voronudge_report::numbers::significant;
 use voronudge_report::page::Figure;
@@ -49,15 +49,8 @@ pub(crate) fn finish(
     let summary = summary(&report, points, &out);
     let rendered = if whole {
         let maps = maps(request, &diagram);
-        let page = PhasePage {
-            title: "phase diagram",
-            headline: &headline(&diagram),
-            summary: &[],
-            report: &report,
-            maps: &maps,
-            collapse: &collapse.figures,
-        };
-        Rendered::with_page(out, &report, &page.render()?, summary)
+        let page = page(&headline(&diagram), &report, maps, collapse.figures)?;
+        Rendered::with_page(out, &report, &page, summary)
     } else {
         Rendered::new(out, &report, summary)
     };

@@ -6,7 +6,7 @@ use std::path::Path;
 use voronudge_infer::phase_diffusion::PhaseDiffusion;
 use voronudge_report::figure::{GrowthCurve, GrowthPoint, growth_matrix};
 use voronudge_report::numbers::{significant, with_interval};
-use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Figure, Page, Section, Table};
 use voronudge_report::phase_diffusion_report::{Diffusivity, PhaseDiffusionReport};
 use voronudge_report::units::unit_text;
 
@@ -42,13 +42,10 @@ pub(super) fn page(
     found: &PhaseDiffusion,
 ) -> Result<String, Failure> {
     let d = &report.diffusivities;
-    let rows = named(report)
-        .into_iter()
-        .map(|(name, estimate)| {
-            let [value, low, high] = with_interval(estimate.value, estimate.ci95);
-            vec![name.to_owned(), value, format!("{low} … {high}"), unit_text(&estimate.unit)]
-        })
-        .collect();
+    let rows = named(report).map(|(name, estimate)| {
+        let [value, low, high] = with_interval(estimate.value, estimate.ci95);
+        [name.to_owned(), value, format!("{low} … {high}"), unit_text(&estimate.unit)]
+    });
     let moduli = [
         ("B", &report.moduli.B),
         ("μ", &report.moduli.mu),
@@ -56,9 +53,7 @@ pub(super) fn page(
         ("A", &report.moduli.A),
     ];
     let modulus_rows = moduli
-        .into_iter()
-        .map(|(name, modulus)| vec![name.to_owned(), significant(modulus.value, 3), unit_text(&modulus.unit)])
-        .collect();
+        .map(|(name, modulus)| [name.to_owned(), significant(modulus.value, 3), unit_text(&modulus.unit)]);
     let points: Vec<GrowthPoint> = found
         .waves
         .iter()
@@ -75,13 +70,9 @@ pub(super) fn page(
         .collect();
     let card = |label: &str, estimate: &Diffusivity| {
         let [value, low, high] = with_interval(estimate.value, estimate.ci95);
-        Card {
-            label: label.into(),
-            value: format!("{value} {}", unit_text(&estimate.unit)),
-            note: format!("{low} … {high}"),
-        }
+        Card::new(label, format!("{value} {}", unit_text(&estimate.unit)), format!("{low} … {high}"))
     };
-    let summary = [format!(
+    let summary = format!(
         "{} cells in {} frames; {} wave vectors, rates up to {} order in q. {} The equation explains {} % of the changes of the \
          amplitudes; residuals of consecutive frames correlate by {}.",
         report.cells,
@@ -94,41 +85,29 @@ pub(super) fn page(
         },
         significant(100.0 * report.explained, 4),
         significant(report.residual_correlation, 2)
-    )];
-    let header = |names: &[&str]| names.iter().map(|name| (*name).to_owned()).collect();
-    let page = SectionPage {
-        title,
-        headline: &headline(report),
-        summary: &summary,
-        cards: &[
+    );
+    let growth = Figure::new(
+        growth_matrix(&points, &curve, &report.units),
+        "Entries of D(q), fitted to each wave vector alone (marks, with one standard error) and to all together (lines). Without \
+         chirality those off the diagonal are zero.",
+    );
+    let page = Page {
+        summary: vec![Block::summary(summary)],
+        cards: vec![
             card("D∥", &d.D_parallel),
             card("D⊥", &d.D_perp),
             card("D∥ˣ", &d.D_parallel_cross),
             card("D⊥ˣ", &d.D_perp_cross),
         ],
-        guide: GUIDE,
-        sections: &[
-            Section {
-                heading: "Growth matrix".into(),
-                figures: vec![Figure::new(
-                    growth_matrix(&points, &curve, &report.units),
-                    "Entries of D(q), fitted to each wave vector alone (marks, with one standard error) and to all together (lines). Without \
-                     chirality those off the diagonal are zero.",
-                )],
-                ..Section::default()
-            },
-            Section {
-                heading: "Phase diffusivities".into(),
-                table: Some(Table { header: header(&["", "value", "95 % interval", "unit"]), rows }),
-                ..Section::default()
-            },
-            Section {
-                heading: "Moduli they imply, over the friction of a cell".into(),
-                table: Some(Table { header: header(&["", "value", "unit"]), rows: modulus_rows }),
-                ..Section::default()
-            },
+        guide: vec![Block::terms(GUIDE)],
+        sections: vec![
+            Section::new("Growth matrix").with(Block::pairs([growth])),
+            Section::new("Phase diffusivities")
+                .with(Block::table(Table::new(["", "value", "95 % interval", "unit"]).rows(rows))),
+            Section::new("Moduli they imply, over the friction of a cell")
+                .with(Block::table(Table::new(["", "value", "unit"]).rows(modulus_rows))),
         ],
-        run: &report.run,
+        ..Page::new(title, headline(report), &report.run)
     };
     Ok(page.render()?)
 }

@@ -8,7 +8,7 @@ use voronudge_report::colour::{BLUE, VERMILLION};
 use voronudge_report::figure::{ErrorPoint, PointSeries, PointsAndCurves, points_and_curves};
 use voronudge_report::markers::Marker;
 use voronudge_report::numbers::{significant, with_interval};
-use voronudge_report::page::{Card, Figure, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Figure, Page, Section, Table};
 use voronudge_report::rheology_report::{FittedRheology, RheologyQuantity, RheologyReport};
 use voronudge_report::units::label_with_unit;
 
@@ -37,22 +37,14 @@ const GUIDE: &[[&str; 2]] = &[
 pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
     let unit = report.units.powers(0, -1);
     let last = &report.fits[report.fits.len() - 1];
-    let cards: Vec<Card> = last
-        .moduli
-        .iter()
-        .map(|own| {
-            let [value, low, high] = with_interval(own.value, own.ci95);
-            Card { label: own.symbol.clone(), value, note: format!("{low} … {high}") }
-        })
-        .collect();
+    let card = |own: &RheologyQuantity| {
+        let [value, low, high] = with_interval(own.value, own.ci95);
+        Card::new(&own.symbol, value, format!("{low} … {high}"))
+    };
     let mut sections = Vec::new();
     if report.fits.len() > 1 {
-        let figures = last.moduli.iter().map(|own| against(report, own, &unit)).collect();
-        sections.push(Section {
-            heading: "In the course of the movie".into(),
-            figures,
-            ..Section::default()
-        });
+        let figures = last.moduli.iter().map(|own| against(report, own, &unit));
+        sections.push(Section::new("In the course of the movie").with(Block::pairs(figures)));
     }
     for fit in &report.fits {
         let heading = if report.fits.len() > 1 {
@@ -62,38 +54,33 @@ pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
         };
         let parameters =
             fit.parameters.iter().map(|(name, value)| format!("{name} {}", significant(*value, 3)));
-        let text = vec![format!(
+        let text = format!(
             "{}: {}; {} of {} tissues came to rest; {} axes of the covariance.",
             fit.path,
             parameters.collect::<Vec<_>>().join(", "),
             fit.at_rest,
             fit.at_rest + fit.flowing,
             fit.axes
-        )];
-        sections.push(Section { heading, text, table: Some(table(&fit.moduli)), ..Section::default() });
+        );
+        let moduli =
+            Section::new(heading).with(Block::paragraph(text)).with(Block::table(table(&fit.moduli)));
+        sections.push(moduli);
         if !fit.dynamic.is_empty() {
-            sections.push(Section {
-                heading: "Storage and loss moduli".into(),
-                figures: vec![
-                    over_frequency(fit, "shear", "μ", &unit),
-                    over_frequency(fit, "odd_shear", "Kᵒ", &unit),
-                ],
-                ..Section::default()
-            });
+            let figures = [("shear", "μ"), ("odd_shear", "Kᵒ")]
+                .map(|(name, symbol)| over_frequency(fit, name, symbol, &unit));
+            sections.push(Section::new("Storage and loss moduli").with(Block::pairs(figures)));
         }
     }
-    let page = SectionPage {
-        title: "Rheology of a fitted tissue",
-        headline: &headline(report),
-        summary: &[format!(
+    let page = Page {
+        summary: vec![Block::summary(format!(
             "{} cells in each of {} tissues; moduli in {unit}, over the friction of a cell; viscosities in units of it.",
             report.cells,
             report.seeds.len()
-        )],
-        cards: &cards,
-        guide: GUIDE,
-        sections: &sections,
-        run: &report.run,
+        ))],
+        cards: last.moduli.iter().map(card).collect(),
+        guide: vec![Block::terms(GUIDE)],
+        sections,
+        ..Page::new("Rheology of a fitted tissue", headline(report), &report.run)
     };
     Ok(page.render()?)
 }
@@ -113,7 +100,7 @@ fn table(quantities: &[RheologyQuantity]) -> Table {
             own.mean_field.map_or("–".into(), |value| significant(value, 3)),
         ]
     };
-    Table { header: header.map(String::from).to_vec(), rows: quantities.iter().map(row).collect() }
+    Table::new(header).rows(quantities.iter().map(row))
 }
 
 /// A quantity against time or frame, with half its interval as bars.

@@ -17,9 +17,9 @@ use voronudge_report::figure::{
 use voronudge_report::markers::Marker;
 use voronudge_report::movie::{CellMovie, MOST_IN_FRAME};
 use voronudge_report::numbers::significant;
-use voronudge_report::page::{Card, Figure};
+use voronudge_report::page::{Block, Card, Figure, Page, Section};
 use voronudge_report::units::label_with_unit;
-use voronudge_report::{ChangedEdges, FrameView, SimulatePage, Units};
+use voronudge_report::{ChangedEdges, FrameView, Units};
 use voronudge_simulate::{Derivatives, Simulation};
 use voronudge_theory::hexagon_perimeter;
 
@@ -28,29 +28,46 @@ const MOST_MARKS: usize = 60;
 /// Mean speeds below this share of K_P ℓ₀ are rest.
 const AT_REST: f64 = 1e-4;
 
+const GUIDE: [[&str; 2]; 3] = [
+    [
+        "Solid and liquid",
+        "Cells of a solid come to rest, and their mean square displacement stays bounded. Cells of a liquid change neighbours and get ever further: at long times the \
+         mean square displacement grows in proportion to time.",
+    ],
+    [
+        "Shape index",
+        "Perimeter over the root of the area: 3.722 for a regular hexagon, more for longer cells.",
+    ],
+    [
+        "Structure factors",
+        "How strongly density and velocity vary over a length 2π/q. S(q) of the density is 1 for random positions; the peak is the distance between neighbours. The \
+         velocity is split into compression (longitudinal) and shear (transverse).",
+    ],
+];
+
 pub(super) fn page(
     report: &Report,
     measurements: &Measurements,
     (simulation, differentiated, movie): (&Simulation, Option<&Differentiated>, Option<&CellMovie>),
     units: &Units,
 ) -> Result<String, Failure> {
-    let mut in_time = course(report, measurements, units);
-    in_time.extend(differentiated.map(|own| derivatives(own, report.spacing(), units)));
-    let page = SimulatePage {
-        title: &format!("{} cells", report.request.cells),
-        headline: &headline(report, units),
-        summary: &paragraphs(report, measurements),
-        cards: &cards(report, units),
-        configuration: &configuration(
-            simulation,
-            &cell_box(simulation, &report.request)?,
-            movie.is_some(),
-            units,
-        ),
-        movie,
-        course: &in_time,
-        structure: &structure(measurements, simulation, units),
-        run: &report.run,
+    let cell_box = cell_box(simulation, &report.request)?;
+    let cells = configuration(simulation, &cell_box, movie.is_some(), units);
+    let cells = movie.map_or(Ok(cells.clone().into()), |movie| Block::player(movie, &cells))?;
+    let mut structure = structure(measurements, simulation, units).into_iter();
+    let first = Block::group("stack", structure.next());
+    let in_time = course(report, measurements, units).into_iter();
+    let derivatives = differentiated.map(|own| derivatives(own, report.spacing(), units));
+    let page = Page {
+        summary: paragraphs(report, measurements).into_iter().map(Block::summary).collect(),
+        cards: cards(report, units),
+        guide: vec![Block::terms(&GUIDE)],
+        sections: vec![
+            Section::new("The tissue").with(Block::group("beside", [cells, first])),
+            Section::new("In time").with(Block::pairs(in_time.chain(derivatives))),
+            Section::new("Structure").with(Block::pairs(structure)),
+        ],
+        ..Page::new(format!("{} cells", report.request.cells), headline(report, units), &report.run)
     };
     Ok(page.render()?)
 }
@@ -100,31 +117,33 @@ fn paragraphs(report: &Report, measurements: &Measurements) -> Vec<String> {
 }
 
 fn cards(report: &Report, units: &Units) -> Vec<Card> {
-    let card =
-        |label: &str, value: String, note: &str| Card { label: label.into(), value, note: note.into() };
     let known = |value: Option<f64>| value.map_or("none".into(), |value| significant(value, 3));
     let error = report
         .mean_square_velocity_error
         .map_or(String::new(), |error| format!("± {} over the second half", significant(error, 1)));
     let mut cards = vec![
-        card("⟨v²⟩", format!("{} {}", known(report.mean_square_velocity), units.powers(2, -2)), &error),
-        card("T1 transitions", known(report.t1_rate), "per cell and time"),
-        card(
+        Card::new("⟨v²⟩", format!("{} {}", known(report.mean_square_velocity), units.powers(2, -2)), error),
+        Card::new("T1 transitions", known(report.t1_rate), "per cell and time"),
+        Card::new(
             "hexatic order Ψ_6",
             significant(report.hexatic_order, 2),
-            &format!("⟨|ψ|⟩ = {}", significant(report.hexatic_mean_modulus, 2)),
+            format!("⟨|ψ|⟩ = {}", significant(report.hexatic_mean_modulus, 2)),
         ),
-        card(
+        Card::new(
             "shape index",
             significant(report.shape_index.mean, 4),
-            &format!("± {} over cells", significant(report.shape_index.standard_deviation, 2)),
+            format!("± {} over cells", significant(report.shape_index.standard_deviation, 2)),
         ),
     ];
     if let Some(exponent) = &report.lyapunov {
         let unit = units.powers(0, -1);
         let error =
             exponent.standard_error.map_or(String::new(), |error| format!("± {}", significant(error, 1)));
-        cards.push(card("Lyapunov exponent", format!("{} {unit}", significant(exponent.value, 3)), &error));
+        cards.push(Card::new(
+            "Lyapunov exponent",
+            format!("{} {unit}", significant(exponent.value, 3)),
+            error,
+        ));
     }
     cards
 }

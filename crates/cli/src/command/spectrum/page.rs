@@ -2,6 +2,7 @@
 
 use super::frame::Solved;
 use super::lattice::Waves;
+use super::sections;
 use super::strip::{Bands, EndedLattice};
 use super::strip_page;
 use super::view::{drawn, frame_view, points};
@@ -9,9 +10,9 @@ use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_io::{Boundary, DataSet};
-use voronudge_report::SpectrumPage;
-use voronudge_report::figure::DrawnMode;
+use voronudge_report::figure::{DrawnMode, mode_map};
 use voronudge_report::numbers::significant;
+use voronudge_report::page::{Block, Figure, Page};
 use voronudge_report::spectrum_report::{FrameSpectrum, ModeRecord, SpectrumReport};
 use voronudge_report::units::unit_text;
 
@@ -28,16 +29,22 @@ pub(super) fn page(
     let (Some(first), Some(frame)) = (solved.first(), report.frames.first()) else {
         return Err(Failure::new("no frame was looked at").with_hint("choose one by --frames"));
     };
-    let page = SpectrumPage {
-        title,
-        headline: &headline(frame, &report.units.time),
-        summary: &paragraphs(data, first, report),
-        report,
-        points: &points(first),
-        frame: &frame_view(first),
-        modes: &drawn_modes(first, frame),
-        dispersion: waves.map_or(&[], |waves| &waves.points),
-        strip: strip.map(|(ended, bands)| bands.figures(ended)),
+    let (units, points, view) = (&report.units, points(first), frame_view(first));
+    let maps = drawn_modes(first, frame).into_iter();
+    let maps = maps.map(|(mode, caption)| Figure::new(mode_map(&view, &mode, units), &caption));
+    let page = Page {
+        summary: paragraphs(data, first, report).into_iter().map(Block::summary).collect(),
+        cards: sections::cards(frame, units),
+        guide: vec![Block::paragraph(sections::INTRODUCTION), Block::terms(&sections::GUIDE)],
+        sections: [
+            sections::eigenvalues(report, &points),
+            sections::modes(frame, units, maps.collect()),
+            sections::waves(report, waves.map_or(&[], |waves| &waves.points)),
+        ]
+        .into_iter()
+        .chain(report.strip.as_ref().zip(strip).map(|(record, strip)| sections::strip(record, strip, units)))
+        .collect(),
+        ..Page::new(title, headline(frame, &units.time), &report.run)
     };
     Ok(page.render()?)
 }

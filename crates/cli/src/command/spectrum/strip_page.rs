@@ -1,15 +1,11 @@
-//! A strip as a record, as figures and in words.
+//! A strip as a record and in words.
 
 use super::strip::{Bands, EndedLattice, EndsName};
 use std::fmt::Write as _;
-use voronudge_report::StripFigures;
-use voronudge_report::figure::{StripPoint, StripSide};
+use voronudge_report::figure::StripSide;
 use voronudge_report::numbers::significant;
 use voronudge_report::spectrum_report::StripRecord;
 use voronudge_spectrum::{Complex64, Strip, StripMode};
-
-/// Modes whose profile is drawn.
-const PROFILES: usize = 4;
 
 /// Rates of growth below this are those of translations.
 const GROWING: f64 = 1e-8;
@@ -96,57 +92,10 @@ impl Bands {
         }
         warnings
     }
-
-    /// What the page shows.
-    pub fn figures(&self, ended: &EndedLattice) -> StripFigures {
-        let strip = &ended.strip;
-        let point = |mode: &StripMode| StripPoint {
-            value: parts(mode.value),
-            side: side_of(mode, strip),
-            of_edge: mode.is_of_edge(strip.places().len()),
-        };
-        let points = |modes: &[StripMode]| modes.iter().map(point).collect::<Vec<_>>();
-        let flat = |values: &Vec<[Complex64; 2]>| values.iter().flatten().copied().map(parts).collect();
-        StripFigures {
-            shown: points(&self.shown),
-            loops: self.loops.to_vec(),
-            winding: self.winding.clone(),
-            wave_numbers: self.wave_numbers.clone(),
-            bands: self.modes.iter().map(|modes| points(modes)).collect(),
-            periodic: self.periodic.iter().map(flat).collect(),
-            growth: (self.shown.iter())
-                .filter_map(|mode| {
-                    let expected = mode.expected_growth(strip.places().len())? / strip.spacing();
-                    Some([expected, mode.localisation.growth])
-                })
-                .collect(),
-            places: strip.places().to_vec(),
-            profiles: self.profiles(strip),
-        }
-    }
-
-    /// The modes that are most localised, half of them at each side, with the growth that is expected of them.
-    fn profiles(&self, strip: &Strip) -> Vec<(String, Vec<f64>, f64)> {
-        let mut order: Vec<&StripMode> = self.shown.iter().collect();
-        order.sort_by(|a, b| b.localisation.growth.abs().total_cmp(&a.localisation.growth.abs()));
-        let on = |right: bool| {
-            order.iter().filter(move |mode| (mode.localisation.growth > 0.0) == right).take(PROFILES / 2)
-        };
-        on(false)
-            .chain(on(true))
-            .map(|mode| {
-                let expected = mode.expected_growth(strip.places().len()).unwrap_or(f64::NAN);
-                let [re, im] = parts(mode.value);
-                let sign = if im < 0.0 { '−' } else { '+' };
-                let name = format!("λ = {} {sign} {} i", significant(re, 3), significant(im.abs(), 3));
-                (name, mode.profile.clone(), expected / strip.spacing())
-            })
-            .collect()
-    }
 }
 
 /// The end at which a mode is.
-fn side_of(mode: &StripMode, strip: &Strip) -> StripSide {
+pub(super) fn side_of(mode: &StripMode, strip: &Strip) -> StripSide {
     match mode.piles_up_right(strip.places()) {
         None => StripSide::Neither,
         Some(true) => StripSide::Right,
@@ -154,7 +103,7 @@ fn side_of(mode: &StripMode, strip: &Strip) -> StripSide {
     }
 }
 
-fn parts(value: Complex64) -> [f64; 2] {
+pub(super) fn parts(value: Complex64) -> [f64; 2] {
     [value.re, value.im]
 }
 

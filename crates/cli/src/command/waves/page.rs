@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_observables::Fluctuations;
 use voronudge_report::numbers::{significant, with_interval};
-use voronudge_report::page::{Card, Section, SectionPage, Table};
+use voronudge_report::page::{Block, Card, Page, Section, Table};
 use voronudge_report::units::unit_text;
 use voronudge_report::waves_report::{Measured, WaveShellRecord, WavesReport};
 
@@ -47,33 +47,20 @@ pub(super) fn page(
     report: &WavesReport,
     (found, beside): (&Fluctuations, &Beside),
 ) -> Result<String, Failure> {
-    let mut sections = vec![Section {
-        heading: "How waves relax".into(),
-        figures: figures::relaxation(found, beside, &report.units),
-        ..Section::default()
-    }];
+    let relaxation = figures::relaxation(found, beside, &report.units);
+    let mut sections = vec![Section::new("How waves relax").with(Block::pairs(relaxation))];
     let spectra = figures::spectra(found, beside, &report.units);
     if !spectra.is_empty() {
-        sections.push(Section {
-            heading: "Dynamic structure factor".into(),
-            text: vec![segments(report)],
-            figures: spectra,
-            ..Section::default()
-        });
+        let section = Section::new("Dynamic structure factor");
+        sections.push(section.with(Block::paragraph(segments(report))).with(Block::pairs(spectra)));
     }
-    sections.push(Section {
-        heading: "Shells of wave numbers".into(),
-        table: Some(table(report)),
-        ..Section::default()
-    });
-    let page = SectionPage {
-        title,
-        headline: &headline(report),
-        summary: &said(report),
-        cards: &cards(report),
-        guide: GUIDE,
-        sections: &sections,
-        run: &report.run,
+    sections.push(Section::new("Shells of wave numbers").with(Block::table(table(report))));
+    let page = Page {
+        summary: said(report).into_iter().map(Block::summary).collect(),
+        cards: cards(report),
+        guide: vec![Block::terms(GUIDE)],
+        sections,
+        ..Page::new(title, headline(report), &report.run)
     };
     Ok(page.render()?)
 }
@@ -145,7 +132,7 @@ fn table(report: &WavesReport) -> Table {
             }
             row
         };
-    Table { header: header.to_vec(), rows: report.shells.iter().map(row).collect() }
+    Table::new(header).rows(report.shells.iter().map(row))
 }
 
 /// The shell whose frequency is furthest above zero at the lower end of its interval.
@@ -241,18 +228,14 @@ fn moduli(report: &WavesReport) -> Vec<(&'static str, &Measured)> {
 
 fn cards(report: &WavesReport) -> Vec<Card> {
     let which = if report.verdict == "not_linear" { "at this lag only" } else { "long waves" };
-    let card = |(label, own): (&str, &Measured)| Card {
-        label: label.into(),
-        value: with_unit(own.value, 3, &own.unit),
-        note: format!("± {}, {which}", significant(own.standard_error, 1)),
+    let card = |label: &str, own: &Measured, digits, which: &str| {
+        let note = format!("± {}, {which}", significant(own.standard_error, 1));
+        Card::new(label, with_unit(own.value, digits, &own.unit), note)
     };
-    let mut all: Vec<Card> = moduli(report).into_iter().map(card).collect();
-    all.extend(report.localisation.as_ref().map(|own| Card {
-        label: "error of localisation".into(),
-        value: with_unit(own.value, 2, &own.unit),
-        note: format!("± {}, in each coordinate", significant(own.standard_error, 1)),
-    }));
-    all
+    let moduli = moduli(report).into_iter().map(|(label, own)| card(label, own, 3, which));
+    let localisation = report.localisation.as_ref();
+    let localisation = localisation.map(|own| card("error of localisation", own, 2, "in each coordinate"));
+    moduli.chain(localisation).collect()
 }
 
 /// What is printed.

@@ -1,36 +1,26 @@
 //! The answer at a glance: what is missing, how sure that is, what it does to forecasts.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use super::super::parameter_table::TableRow;
+use super::super::parameter_table::value_and_interval;
 use super::super::words::{effect_name, listed, probability, with_error};
+use super::super::{Block, Text};
 use super::effects::rows;
 use crate::discover_report::{DiscoverReport, ForecastReport, Gain, HeldOutError, SelectedEffect};
+use crate::figure::ParameterRow;
+use crate::units::unit_text;
 
 /// Coefficients of an effect that are told one by one, at most.
 const MOST: usize = 2;
 
-/// A question and what the search says to it.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct Answer {
-    question: &'static str,
-    lines: Vec<String>,
-}
-
-/// The first things that a reader asks.
-pub(super) fn answers(report: &DiscoverReport) -> Vec<Answer> {
-    let mut all = vec![
-        Answer { question: "What is missing", lines: missing(report) },
-        Answer { question: "How sure that is", lines: sureness(report) },
-    ];
-    if let Some(forecast) = &report.forecast {
-        all.push(Answer { question: "What it does to forecasts", lines: forecasts(forecast) });
-    }
-    if let Some(check) = &report.check {
-        all.push(Answer { question: "What the models make", lines: vec![check.words.clone()] });
-    }
-    all
+/// The first things that a reader asks, and what the search says to them.
+pub(super) fn answers(report: &DiscoverReport) -> Block {
+    let forecasts = report.forecast.as_ref().map(|own| ("What it does to forecasts", forecasts(own)));
+    let check = report.check.as_ref().map(|own| ("What the models make", vec![own.words.clone()]));
+    let all = [("What is missing", missing(report)), ("How sure that is", sureness(report))];
+    let entry = |(question, lines): (&str, Vec<String>)| {
+        [question.into(), Text::lines(lines.iter().map(|line| Text::prose(line)))]
+    };
+    let entries = all.into_iter().chain(forecasts).chain(check).map(entry).collect();
+    Block::Terms { class: "answers", entries }
 }
 
 /// Each effect with its coefficients.
@@ -40,8 +30,7 @@ fn missing(report: &DiscoverReport) -> Vec<String> {
     }
     let line = |effect: &SelectedEffect| {
         let named = effect.coefficients.iter().zip(rows(effect));
-        let mut values: Vec<String> =
-            named.map(|(own, row)| value(&own.name, &TableRow::new(&row))).collect();
+        let mut values: Vec<String> = named.map(|(own, row)| value(&own.name, &row)).collect();
         if values.len() > MOST {
             values = vec![format!("{} coefficients", values.len())];
         }
@@ -56,10 +45,11 @@ fn missing(report: &DiscoverReport) -> Vec<String> {
 }
 
 /// A coefficient with its interval; that of an effect with one alone needs no name.
-fn value(name: &str, row: &TableRow) -> String {
+fn value(name: &str, row: &ParameterRow) -> String {
     let equals = if name.is_empty() { String::new() } else { format!("{name} = ") };
-    let unit = if row.unit.is_empty() { String::new() } else { format!(" {}", row.unit) };
-    format!("{equals}{}{unit} (95 %: {})", row.value, row.interval)
+    let [value, interval] = value_and_interval(row);
+    let value = format!("{value} {}", unit_text(&row.unit));
+    format!("{equals}{} (95 %: {interval})", value.trim_end())
 }
 
 /// Errors on data that no fit has seen, and what chance does.

@@ -1,56 +1,62 @@
-//! The tables before against after: errors, noise, parameters.
+//! The tables before against after: errors, noise, parameters, other data.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use super::super::Figure;
-use super::super::parameter_table::{TableRow, parameter_rows};
-use super::super::words::{effect_name, noise_source, with_error};
+use super::super::directions::directions;
+use super::super::parameter_table::{cells_of, parameter_rows};
+use super::super::words::{self, data, effect_name, listed, noise_source, with_error};
+use super::super::{Block, Cell, Figure, Row, Section, Table, Text};
 use crate::discover_report::{DiscoverReport, HeldOutError, ModelFit, ModelNmse, Prediction};
-use crate::figure::{Emphasis, ErrorBar, error_bars_with_floor};
-use crate::numbers::significant;
+use crate::figure::{Emphasis, ErrorBar, ParameterRow, error_bars_with_floor, noise_budget};
+use crate::numbers::{NO_VALUE, significant};
 use crate::units::unit_text;
 
 /// Longest name of a model that stands beside its bar, in letters.
 const LABEL: usize = 24;
 
 /// Errors of the models side by side.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct Comparison {
-    columns: Vec<String>,
-    rows: Vec<ErrorRow>,
-    figure: Figure,
-}
-
-#[derive(Serialize, JsonSchema)]
-struct ErrorRow {
-    label: &'static str,
-    cells: Vec<String>,
-    note: String,
-    is_main: bool,
-}
-
-/// Another data set, predicted.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct PredictionRow {
-    dataset: String,
-    velocities: usize,
-    before: String,
-    after: String,
-    gain: String,
+pub(super) fn errors(report: &DiscoverReport) -> Section {
+    let columns = columns(report);
+    let names = columns.iter().map(|column| Cell::from(&column.name));
+    let header = [Cell::default()].into_iter().chain(names).chain([("", "text quiet").into()]);
+    let frames = match report.cells.frames.len() {
+        0 | 1 => String::new(),
+        count => format!(", over {count} frames"),
+    };
+    let how = format!(
+        "For the errors, {}. {} {} were used{frames}.",
+        words::mean_removed(report.models.before.nmse.mean_removed),
+        report.cells.used,
+        data(report.flow.as_ref())
+    );
+    let is_extended = report.is_extended();
+    Section::new(if is_extended { "Before and after" } else { "How well the base model fits" })
+        .with(Block::table(Table::new(header).class("comparison").rows(error_rows(&columns))))
+        .with(Block::remark(how))
+        .with(Block::group("narrow", [error_figure(&columns)]))
 }
 
 /// Other data sets, in the order given.
-pub(super) fn predictions(report: &DiscoverReport) -> Vec<PredictionRow> {
-    let error = |own: HeldOutError| with_error(own.value, own.standard_error);
-    let row = |own: &Prediction| PredictionRow {
-        dataset: own.dataset.clone(),
-        velocities: own.velocities,
-        before: error(own.before),
-        after: error(own.after),
-        gain: with_error(own.gain.value, own.gain.standard_error),
+pub(super) fn predictions(report: &DiscoverReport) -> Section {
+    let section = Section::new("Other data predicted");
+    if report.predictions.is_empty() {
+        return section;
+    }
+    let error = |own: HeldOutError| with_error(own.value, own.standard_error).into();
+    let row = |own: &Prediction| -> [Text; 5] {
+        [
+            Text::plain(&own.dataset),
+            own.velocities.to_string().into(),
+            error(own.before),
+            error(own.after),
+            with_error(own.gain.value, own.gain.standard_error).into(),
+        ]
     };
-    report.predictions.iter().map(row).collect()
+    let header = ["data set", data(report.flow.as_ref()), "base model", "with effects", "gain"];
+    let table = Table::new(header).class("").rows(report.predictions.iter().map(row));
+    section
+        .with(Block::paragraph(
+            "Velocities of other data sets, predicted with everything as it was fitted here. An error of 1 is that of no prediction at all.",
+        ))
+        .with(Block::table(table))
 }
 
 /// One column of the table.
@@ -88,17 +94,6 @@ impl<'a> Column<'a> {
     }
 }
 
-impl Comparison {
-    pub(super) fn new(report: &DiscoverReport) -> Self {
-        let columns = columns(report);
-        Self {
-            figure: error_figure(&columns),
-            rows: rows(&columns),
-            columns: columns.into_iter().map(|column| column.name).collect(),
-        }
-    }
-}
-
 fn columns(report: &DiscoverReport) -> Vec<Column<'_>> {
     let models = &report.models;
     let mut columns = vec![Column::of(Model::Base, "base".into(), &models.before)];
@@ -117,16 +112,14 @@ fn columns(report: &DiscoverReport) -> Vec<Column<'_>> {
     columns
 }
 
-fn rows(columns: &[Column<'_>]) -> Vec<ErrorRow> {
-    let row = |label, note: String, cell: &dyn Fn(&Column<'_>) -> String| ErrorRow {
-        label,
-        cells: columns.iter().map(cell).collect(),
-        note,
-        is_main: false,
+fn error_rows(columns: &[Column<'_>]) -> Vec<Row> {
+    let row = |label: &str, note: &str, cell: &dyn Fn(&Column<'_>) -> String| {
+        let cells: Vec<String> = columns.iter().map(cell).collect();
+        let is_known = cells.iter().any(|cell| cell != NO_VALUE);
+        let all = [label.to_owned()].into_iter().chain(cells).chain([note.to_owned()]);
+        is_known.then(|| all.collect::<Row>())
     };
-    let mut rows = Vec::new();
-    let held_out = columns.first().and_then(|base| base.nmse.held_out());
-    if let Some(error) = held_out {
+    let held_out = columns.first().and_then(|base| base.nmse.held_out()).and_then(|error| {
         let frames = columns.iter().any(|column| column.nmse.held_out_frames.is_some());
         let [label, what] = if frames {
             ["error on frames held out", "runs of frames"]
@@ -135,37 +128,32 @@ fn rows(columns: &[Column<'_>]) -> Vec<ErrorRow> {
         };
         let note =
             format!("NMSE on data that the fit has not seen, {} {what}; the number to quote", error.folds);
-        rows.push(ErrorRow {
-            is_main: true,
-            ..row(label, note, &|column| match column.nmse.held_out() {
-                Some(error) => with_error(error.value, error.standard_error),
-                None => number(f64::NAN),
-            })
+        let row = row(label, &note, &|column| match column.nmse.held_out() {
+            Some(error) => with_error(error.value, error.standard_error),
+            None => NO_VALUE.to_owned(),
         });
-    }
-    rows.extend([
+        Some(row?.main(true))
+    });
+    let others = [
         row(
             "what noise alone leaves",
-            "but for chance, no prediction of new data gets below it".into(),
+            "but for chance, no prediction of new data gets below it",
             &|column| number(column.floor),
         ),
-        row("error at measured positions", "all cells, without their nudges".into(), &|column| {
+        row("error at measured positions", "all cells, without their nudges", &|column| {
             number(column.nmse.un_nudged)
         }),
-        row("error of least squares", "parameters found without nudges".into(), &|column| {
-            number(column.nmse.naive)
-        }),
+        row("error of least squares", "parameters found without nudges", &|column| number(column.nmse.naive)),
         row(
             "error of the fit itself",
-            "always too good: the nudges were chosen with these velocities".into(),
+            "always too good: the nudges were chosen with these velocities",
             &|column| number(column.nmse.nudged),
         ),
-        row("χ² per degree of freedom", "1 if model and noise levels are right".into(), &|column| {
+        row("χ² per degree of freedom", "1 if model and noise levels are right", &|column| {
             number(column.chi_square)
         }),
-    ]);
-    rows.retain(|row| row.cells.iter().any(|cell| *cell != crate::numbers::NO_VALUE));
-    rows
+    ];
+    [held_out].into_iter().chain(others).flatten().collect()
 }
 
 fn number(value: f64) -> String {
@@ -203,28 +191,43 @@ fn error_figure(columns: &[Column<'_>]) -> Figure {
     Figure::new(error_bars_with_floor(&bars, Some(floor)), &caption)
 }
 
-/// One row of the table of noise and nudges.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct NoiseRow {
-    label: String,
-    unit: String,
-    cells: Vec<String>,
+/// Where the squared velocities go, and noise and nudges of the models.
+pub(super) fn noise(report: &DiscoverReport) -> Section {
+    let budget = &report.noise_budget;
+    let table = Block::table(noise_table(report));
+    if !budget.before.is_known() {
+        return Section::new("Noise").with(table);
+    }
+    let mut bars = vec![("base model", budget.before)];
+    if report.is_extended() {
+        bars.push(("with effects", budget.after));
+    }
+    let figure = Figure::new(
+        noise_budget(&bars),
+        "Where the squared velocities go. Noise of positions counts because the forces of the model depend \
+         sensitively on positions.",
+    );
+    let total = format!("{} {}", number(budget.before.total), report.units.powers(2, -2));
+    let total = format!("Σ|v|² over the {} used is {total}.", data(report.flow.as_ref()));
+    Section::new("Noise budget")
+        .with(Block::group("wide", [figure]))
+        .with(Block::remark(Text::plain(&total)))
+        .with(table)
 }
 
-pub(super) fn noise_rows(report: &DiscoverReport) -> Vec<NoiseRow> {
+fn noise_table(report: &DiscoverReport) -> Table {
     let mut models = vec![&report.models.before];
     if report.is_extended() {
         models.push(&report.models.after);
     }
-    let row = |label: &str, unit: &str, cell: fn(&ModelFit) -> String| NoiseRow {
-        label: label.to_owned(),
-        unit: unit_text(unit),
-        cells: models.iter().map(|model| cell(model)).collect(),
+    let row = |label: &str, unit: &str, cell: fn(&ModelFit) -> String| -> Row {
+        let cells = models.iter().map(|model| Text::from(cell(model)));
+        [label.into()].into_iter().chain(cells).chain([Text::plain(&unit_text(unit))]).collect()
     };
     let units = &report.units;
     let velocity = units.velocity_text();
     let source = noise_source(report.models.before.noise.source);
-    vec![
+    let rows = [
         row(&format!("position noise σ_r, {source}"), &units.length, |model| number(model.noise.sigma_r)),
         row(&format!("velocity noise σ_v, {source}"), &velocity, |model| number(model.noise.sigma_v)),
         row("spring constant k = σ_v²/σ_r²", &units.powers(0, -2), |model| number(model.nudge.k)),
@@ -237,23 +240,44 @@ pub(super) fn noise_rows(report: &DiscoverReport) -> Vec<NoiseRow> {
             number(model.nudge.expected_contribution_ratio)
         }),
         row("contacts changed by nudges", "", |model| model.nudge.edges_changed.to_string()),
-    ]
+    ];
+    let names: &[&str] = if report.is_extended() { &["", "before", "after"] } else { &["", ""] };
+    let header = names.iter().copied().map(Cell::from).chain([("", "unit").into()]);
+    Table::new(header).class("").rows(rows)
 }
 
-/// One parameter before and after.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct ParameterComparison {
-    before: TableRow,
-    after: TableRow,
-}
-
-pub(super) fn parameters(report: &DiscoverReport) -> Vec<ParameterComparison> {
-    let rows = |fit: &ModelFit| parameter_rows(&fit.parameters, None);
-    let pairs = rows(&report.models.before).into_iter().zip(rows(&report.models.after));
-    pairs
-        .map(|(before, after)| ParameterComparison {
-            before: TableRow::new(&before),
-            after: TableRow::new(&after),
-        })
-        .collect()
+/// Parameters of the base model, and what the data determine of the last one.
+pub(super) fn parameters(report: &DiscoverReport) -> Section {
+    let is_extended = report.is_extended();
+    let models = if is_extended { vec!["before", "after"] } else { vec!["value"] };
+    let header = models.iter().flat_map(|model| [*model, "95 % interval"]);
+    let ends = [Cell::from(("unit", "unit")), ("meaning", "text").into()];
+    let header = [""].into_iter().chain(header).map(Cell::from).chain(ends);
+    let of = |fit: &ModelFit| parameter_rows(&fit.parameters, None);
+    let row = |(before, after): (ParameterRow, ParameterRow)| -> Vec<Text> {
+        let ([symbol, value, interval, unit], [_, value_after, interval_after, _]) =
+            (cells_of(&before), cells_of(&after));
+        let mut cells = vec![symbol, value, interval];
+        cells.extend(is_extended.then_some([value_after, interval_after]).into_iter().flatten());
+        cells.extend([unit, Text::plain(&before.meaning)]);
+        cells
+    };
+    let rows = of(&report.models.before).into_iter().zip(of(&report.models.after)).map(row);
+    let added = listed(report.selected.iter().map(|effect| &effect.effect), "and");
+    let (heading, remark, whose) = match is_extended {
+        true => (
+            "Parameters of the base model, before and after",
+            "A parameter that moves by more than its interval was biased by what the base model lacked.",
+            format!(" of the model with {added}"),
+        ),
+        false => ("Parameters of the base model", "", String::new()),
+    };
+    Section::new(heading)
+        .with(Block::table(Table::new(header).rows(rows)))
+        .with(Block::remark(remark))
+        .with_part(
+            "What the data determine",
+            &format!("Directions in the space of all coefficients{whose}, best determined first."),
+            directions(&report.models.after.identifiability),
+        )
 }

@@ -1,10 +1,7 @@
 //! Whether movies that the models make are like the measured one.
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use super::super::Figure;
 use super::super::words::probability;
+use super::super::{Block, Figure, Row, Section, Table, Text};
 use crate::chart::AxisScale;
 use crate::colour::{BLUE, VERMILLION};
 use crate::discover_report::{CheckReport, CheckedQuantity};
@@ -17,33 +14,36 @@ const ALWAYS: [&str; 3] = ["mean_square_displacement", "velocity_autocorrelation
 /// Below it a function is drawn.
 const UNUSUAL: f64 = 0.05;
 
-/// The section of the page.
-#[derive(Serialize, JsonSchema)]
-pub(super) struct CheckView {
-    trails: Option<Figure>,
-    figures: Vec<Figure>,
-    columns: Vec<&'static str>,
-    rows: Vec<(String, Vec<String>)>,
-}
-
-impl CheckView {
-    pub fn new(report: &CheckReport, trails: Option<&Figure>) -> Self {
-        let mut rows: Vec<(String, Vec<String>)> =
-            vec![("all together".into(), report.p.named().map(|(_, p)| probability(*p)).collect())];
-        rows.extend(report.quantities.iter().map(|own| {
-            (own.words.to_owned(), own.simulated.named().map(|(_, model)| probability(model.p)).collect())
-        }));
-        let unusual = |own: &&CheckedQuantity| {
-            ALWAYS.contains(&own.name) || own.simulated.named().any(|(_, model)| model.p < UNUSUAL)
-        };
-        let curves = report.quantities.iter().filter(|own| !own.axis.is_empty()).filter(unusual);
-        Self {
-            trails: trails.cloned(),
-            figures: curves.map(figure).collect(),
-            columns: report.p.named().map(|(name, _)| name).collect(),
-            rows,
-        }
-    }
+/// The section of the page; `trails` are where cells went.
+pub(super) fn section(report: &CheckReport, trails: Option<&Figure>) -> Section {
+    let row = |name: &str, p: Vec<f64>| -> Row {
+        [name.to_owned()].into_iter().chain(p.into_iter().map(probability)).collect()
+    };
+    let together = row("all together", report.p.named().map(|(_, p)| *p).collect());
+    let each = report.quantities.iter().map(|own| {
+        let p = own.simulated.named().map(|(_, model)| model.p);
+        row(own.words, p.collect())
+    });
+    let header = ["p"].into_iter().chain(report.p.named().map(|(name, _)| name));
+    let table = Table::new(header).class("").row(together).rows(each);
+    let unusual = |own: &&CheckedQuantity| {
+        ALWAYS.contains(&own.name) || own.simulated.named().any(|(_, model)| model.p < UNUSUAL)
+    };
+    let curves = report.quantities.iter().filter(|own| !own.axis.is_empty()).filter(unusual);
+    Section::new("What the models make of the cells")
+        .with(Block::paragraph(Text::prose(&report.words)))
+        .with(Block::remark(format!(
+            "From a frame near the beginning each model goes on by itself for as long as the movie, {} times with other noise; cells come, go and are missed as they did, \
+             and those at the rim are led as they went. Bands hold nine of ten simulated movies; p is the share of movies that are as unusual as the measured one: a small p \
+             says that the model does not make such cells.",
+            report.draws
+        )))
+        .with_all(trails.cloned())
+        .with(Block::group("beside", curves.map(figure)))
+        .with(Block::Fold {
+            summary: "Everything that was compared".into(),
+            blocks: vec![Block::table(table)],
+        })
 }
 
 fn figure(own: &CheckedQuantity) -> Figure {

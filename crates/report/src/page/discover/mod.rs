@@ -7,38 +7,56 @@ mod check;
 mod effects;
 mod forecast;
 mod remainder;
+mod search;
 
-use schemars::JsonSchema;
-use serde::Serialize;
-
-use self::answer::{Answer, answers};
-use self::before_after::{Comparison, NoiseRow, ParameterComparison, PredictionRow};
-use self::candidates::{CandidateRow, ranking_figure};
-use self::check::CheckView;
-use self::effects::{EffectView, coefficient_figure};
-use self::forecast::ForecastView;
-use self::remainder::Remainder;
-use super::directions::{Directions, directions};
-use super::player::Player;
-use super::prospects::ProspectsView;
 use super::spreads::SpreadView;
-use super::words::{self, listed, percent};
-use super::{Columns, Figure, PageHead, Panel, Template, render};
+use super::words::{self, listed};
+use super::{Block, Figure, Page, Panel, Section, Text, prospects};
 use crate::arrows::ArrowScale;
 use crate::before_after::BeforeAfter;
 use crate::discover_report::DiscoverReport;
 use crate::error::ReportError;
 use crate::figure::{
-    CorrelationFunction, FlowMap, Outlier, PartialRegression, noise_budget, outlier_map, polarity_map,
-    residual_flow_maps, residual_maps,
+    CorrelationFunction, FlowMap, Outlier, PartialRegression, outlier_map, polarity_map, residual_flow_maps,
+    residual_maps,
 };
 use crate::many_cells::Squares;
 use crate::movie::CellMovie;
-use crate::numbers::significant;
 use crate::view::FrameView;
 
-const TEMPLATE: Template =
-    Template { name: "discover.html", source: include_str!("../../../templates/discover.html") };
+const INTRODUCTION: &str = "The base model says that each cell resists changes of its area and of the length of its outline, and that the force of the outline has a part \
+    turned by a right angle (chirality α). The program fits it, looks at the velocities that it does not explain, and asks of each candidate effect in a list whether it \
+    explains them. An effect is added only if it stands out against all other candidates and against made-up data in which nothing is missing. Then everything is fitted \
+    again and compared on data that the fit has not seen.";
+
+const GUIDE: [[&str; 2]; 6] = [
+    [
+        "NMSE, the error",
+        "The share of the squared velocities that a model does not explain: 0 is a perfect prediction, 1 is as good as predicting no motion at all. Only the error on data \
+         held out says whether an added effect helps; the error of the fit itself falls with every effect, needed or not.",
+    ],
+    [
+        "What noise alone leaves",
+        "Positions and velocities are measured with errors. Even the true model could not bring the error below this line.",
+    ],
+    [
+        "Detection limit",
+        "How large an effect has to be to be found in these data. An effect below its limit may well be there.",
+    ],
+    [
+        "Alias",
+        "Two effects are aliases if they push the cells measured here in nearly the same way. The data cannot tell which of them it is, whatever the size; another \
+         measurement can.",
+    ],
+    [
+        "Adjusted p",
+        "How often the best of all candidates would look at least as good by chance if nothing were missing. It accounts for the number of candidates tried.",
+    ],
+    [
+        "Description",
+        "A smooth field that follows the residual wherever it goes. It says how much could be explained, not by what; it is never named as a mechanism.",
+    ],
+];
 
 /// Everything the page of `discover` shows.
 #[derive(Debug, Clone, Copy)]
@@ -72,40 +90,6 @@ pub struct DiscoverFigures {
     pub outliers: Vec<Vec<Outlier>>,
 }
 
-#[derive(Serialize, JsonSchema)]
-struct Context<'a> {
-    head: PageHead<'a>,
-    report: &'a DiscoverReport,
-    verdict: &'static str,
-    meaning: &'static str,
-    data: &'static str,
-    mean_removed: &'static str,
-    answers: Vec<Answer>,
-    is_extended: bool,
-    added: String,
-    comparison: Comparison,
-    forecast: Option<ForecastView>,
-    check: Option<CheckView>,
-    player: Option<Player>,
-    panels: Vec<Panel>,
-    effects: Vec<EffectView>,
-    spreads: Vec<Figure>,
-    coefficients: Option<Figure>,
-    ranking_figure: Option<Figure>,
-    candidates: Vec<CandidateRow>,
-    remainder: Remainder,
-    budget: Option<Figure>,
-    budget_total: String,
-    noise: Vec<NoiseRow>,
-    parameters: Vec<ParameterComparison>,
-    directions: Directions,
-    prospects: Option<ProspectsView>,
-    predictions: Vec<PredictionRow>,
-    likelihood_gain: Option<String>,
-    single_p: String,
-    false_positives: String,
-}
-
 impl DiscoverPage<'_> {
     /// The HTML text of the page.
     ///
@@ -113,55 +97,50 @@ impl DiscoverPage<'_> {
     ///
     /// [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
-        let report = self.report;
+        let Self { report, figures, .. } = *self;
         let doubts = report.doubts();
-        let head = PageHead {
-            title: self.title,
-            headline: &report.sentence,
-            summary: &[],
+        let forecast = report.forecast.as_ref().map(forecast::section);
+        let check = report.check.as_ref().map(|own| check::section(own, figures.trails.as_ref()));
+        let prospects = report.prospects.iter().filter(|own| !own.quantities.is_empty());
+        let page = Page {
+            summary: self.lead(),
             doubts: &doubts,
-            warnings: words::warnings(&report.run, &doubts),
-            cards: Vec::new(),
-            run: &report.run,
+            guide: vec![Block::paragraph(INTRODUCTION), Block::terms(&GUIDE)],
+            sections: vec![
+                before_after::errors(report),
+                forecast.unwrap_or_default(),
+                check.unwrap_or_default(),
+                before_after::predictions(report),
+                self.what_is_left(),
+                Section::new("The cells").with_all(self.player()?),
+                effects::section(report, &figures.regressions, &figures.spreads),
+                candidates::section(report),
+                remainder::section(report, &figures.correlations),
+                before_after::noise(report),
+                before_after::parameters(report),
+                Section::new("What another measurement would tell")
+                    .with_all(prospects.flat_map(prospects::blocks)),
+                search::section(report),
+                words::left_out(&report.cells, words::data(report.flow.as_ref())),
+            ],
+            ..Page::new(self.title, &report.sentence, &report.run)
         };
-        let calibration = report.calibration.as_ref();
-        let context = Context {
-            head,
-            report,
-            verdict: report.verdict.name(),
-            meaning: report.verdict.meaning(),
-            data: words::data(report.flow.as_ref()),
-            mean_removed: words::mean_removed(report.models.before.nmse.mean_removed),
-            answers: answers(report),
-            is_extended: report.is_extended(),
-            added: self.added(),
-            comparison: Comparison::new(report),
-            forecast: report.forecast.as_ref().map(ForecastView::new),
-            check: report.check.as_ref().map(|check| CheckView::new(check, self.figures.trails.as_ref())),
-            player: self.player()?,
-            panels: self.panels(),
-            effects: effects::views(report, &self.figures.regressions),
-            spreads: self.figures.spreads.iter().map(SpreadView::histogram).collect(),
-            coefficients: coefficient_figure(report),
-            ranking_figure: ranking_figure(report),
-            candidates: candidates::rows(report),
-            remainder: Remainder::new(report, &self.figures.correlations),
-            budget: self.budget(),
-            budget_total: self.budget_total(),
-            noise: before_after::noise_rows(report),
-            parameters: before_after::parameters(report),
-            directions: directions(&report.models.after.identifiability),
-            prospects: ProspectsView::new(report.prospects.as_ref()),
-            predictions: before_after::predictions(report),
-            likelihood_gain: report
-                .likelihood_gain
-                .filter(|gain| gain.value.is_finite())
-                .map(|gain| words::with_error(gain.value, gain.standard_error)),
-            single_p: calibration.map_or_else(String::new, |found| words::probability(found.single_p)),
-            false_positives: calibration
-                .map_or_else(String::new, |found| percent(found.unadjusted_false_positives)),
-        };
-        render(TEMPLATE, &context)
+        page.render()
+    }
+
+    /// The answer at a glance.
+    fn lead(&self) -> Vec<Block> {
+        let DiscoverReport { caveat, measure_next, verdict, .. } = self.report;
+        let mut blocks = vec![answer::answers(self.report)];
+        if !caveat.is_empty() {
+            blocks.push(Block::of_class("caveat", Text::prose(caveat)));
+        }
+        if !measure_next.is_empty() {
+            let next = Text::bold("What to measure next:") + " " + Text::prose(measure_next);
+            blocks.push(Block::of_class("next", next));
+        }
+        blocks.push(Block::remark(Text::marked("verdict", verdict.name()) + " " + verdict.meaning()));
+        blocks
     }
 
     /// The selected effects in words.
@@ -169,16 +148,31 @@ impl DiscoverPage<'_> {
         listed(self.report.selected.iter().map(|effect| &effect.effect), "and")
     }
 
-    fn player(&self) -> Result<Option<Player>, ReportError> {
-        let caption = match self.report.is_extended() {
-            true => format!(
-                "Cells where they were seen, and what the base model leaves of their velocities, before and after adding {}.",
-                self.added()
-            ),
-            false => "Cells where they were seen, and what the base model leaves of their velocities.".into(),
+    fn player(&self) -> Result<Option<Block>, ReportError> {
+        let and_after = match self.report.is_extended() {
+            true => format!(", before and after adding {}", self.added()),
+            false => String::new(),
         };
-        let player = |movie: &CellMovie| Player::new(movie, movie.still(), &caption);
+        let caption = format!(
+            "Cells where they were seen, and what the base model leaves of their velocities{and_after}."
+        );
+        let player = |movie: &CellMovie| Block::player(movie, &Figure::new(movie.still(), &caption));
         self.figures.movie.as_ref().map(player).transpose()
+    }
+
+    fn what_is_left(&self) -> Section {
+        let panels = self.panels();
+        let and_after = if self.report.is_extended() { ", before and after" } else { "" };
+        let section = Section::new(format!("What is left of the motion{and_after}"));
+        if panels.is_empty() {
+            return section;
+        }
+        section
+            .with(Block::paragraph(
+                "Measured velocity minus what the model predicts. Arrows that look random are what noise leaves; arrows that line up over several cells are something that \
+                 the model lacks.",
+            ))
+            .with(Block::Tabs { panels })
     }
 
     /// One panel of maps for each frame: residuals before and after, and suspicious cells.
@@ -218,31 +212,8 @@ impl DiscoverPage<'_> {
                     "cells that may be merged, split or mis-tracked; look at them in the images",
                 ));
             }
-            let cells = whole.before.cells.len();
-            Panel { label: whole.before.label.clone(), figures, columns: Columns::for_cells(cells) }
+            Panel::new(&whole.before.label, whole.before.cells.len(), figures)
         };
         self.frames.iter().enumerate().map(panel).collect()
-    }
-
-    fn budget(&self) -> Option<Figure> {
-        let budget = &self.report.noise_budget;
-        if !budget.before.is_known() {
-            return None;
-        }
-        let mut bars = vec![("base model", budget.before)];
-        if self.report.is_extended() {
-            bars.push(("with effects", budget.after));
-        }
-        Some(Figure::new(
-            noise_budget(&bars),
-            "Where the squared velocities go. Noise of positions counts because the forces of the model depend \
-             sensitively on positions.",
-        ))
-    }
-
-    fn budget_total(&self) -> String {
-        let units = &self.report.units;
-        let unit = units.powers(2, -2);
-        format!("{} {unit}", significant(self.report.noise_budget.before.total, 3))
     }
 }
