@@ -9,6 +9,7 @@ use schemars::{JsonSchema, Schema};
 use serde::Serialize;
 use std::marker::PhantomData;
 use voronudge_io::OutputDirectory;
+use voronudge_report::page::{Figure, Page};
 use voronudge_report::schema_of;
 
 /// What a command that ran has to say.
@@ -80,6 +81,8 @@ pub(crate) struct Rendered<R> {
     /// What is printed otherwise.
     summary: String,
     answer: Answer,
+    /// Those of the page.
+    figures: Vec<Figure>,
     /// Whether the page is shown in a browser.
     shown: bool,
     report: PhantomData<R>,
@@ -104,18 +107,26 @@ impl<R: Serialize> Rendered<R> {
     pub fn with_page(
         mut out: OutputDirectory,
         report: &R,
-        page: &str,
+        page: Page,
         summary: impl Into<String>,
     ) -> Result<Self, Failure> {
-        out.write_text("report.html", page)?;
-        Self::new(out, report, summary)
+        out.write_text("report.html", &page.render()?)?;
+        Ok(Self { figures: page.into_figures(), ..Self::new(out, report, summary)? })
     }
 }
 
 impl<R> Rendered<R> {
     /// Results that are no report, such as those of a part.
     pub fn without_report(out: Option<OutputDirectory>, json: String, summary: String) -> Self {
-        Self { out, json, summary, answer: Answer::Positive, shown: false, report: PhantomData }
+        Self {
+            out,
+            json,
+            summary,
+            answer: Answer::Positive,
+            figures: Vec::new(),
+            shown: false,
+            report: PhantomData,
+        }
     }
 
     pub fn with_answer(self, answer: Answer) -> Self {
@@ -128,10 +139,28 @@ impl<R> Rendered<R> {
     }
 
     /// Puts the results in place and prints them.
-    fn deliver(self, run: &Run) -> Result<Answer, Failure> {
+    fn deliver(mut self, run: &Run) -> Result<Answer, Failure> {
+        if let Some(out) = self.out.as_mut().filter(|_| run.keeps_figures) {
+            keep(&self.figures, out)?;
+        }
         let page = self.out.as_ref().filter(|_| self.shown).map(|out| out.path().join("report.html"));
         run.finish(self.out, &self.json, &self.summary)?;
         page.iter().for_each(|page| browser::open(page));
         Ok(self.answer)
     }
+}
+
+/// Writes figures as files of their own, with the numbers of those that have some.
+fn keep(figures: &[Figure], out: &mut OutputDirectory) -> Result<(), Failure> {
+    for (index, figure) in figures.iter().enumerate() {
+        let title = figure.title().to_lowercase();
+        let words =
+            title.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|word| !word.is_empty());
+        let name = format!("figure-{:02}-{}", index + 1, words.collect::<Vec<_>>().join("-"));
+        out.write_text(&format!("{name}.svg"), &figure.svg)?;
+        if let Some(table) = figure.table() {
+            out.write_text(&format!("{name}.csv"), &table)?;
+        }
+    }
+    Ok(())
 }

@@ -16,6 +16,8 @@ pub(crate) struct Run {
     pub format: Format,
     pub verbosity: Verbosity,
     pub warnings: Vec<String>,
+    /// Whether the figures of the page are written as files, too.
+    pub keeps_figures: bool,
 }
 
 /// More threads than any machine of use has cores.
@@ -47,6 +49,7 @@ impl Run {
             format: common.format,
             verbosity: common.verbosity(),
             warnings: Vec::new(),
+            keeps_figures: common.figures,
         })
     }
 

@@ -279,6 +279,14 @@ pub fn escape(text: &str) -> String {
         .replace('\'', "&#39;")
 }
 
+/// The text of the first element of this name without attributes.
+pub(crate) fn element(markup: &str, name: &str) -> Option<String> {
+    let (_, rest) = markup.split_once(&format!("<{name}>"))?;
+    let (text, _) = rest.split_once(&format!("</{name}>"))?;
+    let plain = text.replace("&lt;", "<").replace("&gt;", ">").replace("&quot;", "\"").replace("&#39;", "'");
+    Some(plain.replace("&amp;", "&"))
+}
+
 /// A point in tenths of a pixel; far points are drawn in to ±10⁶ px.
 fn tenths(point: [f64; 2]) -> Option<[i64; 2]> {
     point

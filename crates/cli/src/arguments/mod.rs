@@ -49,6 +49,9 @@ pub(crate) struct CommonArguments {
     /// Replace a data set in --out even if this program did not write it there. Input files are never replaced.
     #[arg(long)]
     pub overwrite: bool,
+    /// Also write each figure of report.html as a file, figure-01-….svg and so on, and the numbers in charts as CSV.
+    #[arg(long)]
+    pub figures: bool,
     /// Read options from a TOML file whose keys are option names. Options on the command line take precedence.
     #[arg(long, value_name = "FILE")]
     config: Option<PathBuf>,

@@ -79,3 +79,23 @@ fn colours_of_which_nothing_is_known_are_told() {
         "{warnings}"
     );
 }
+
+#[test]
+fn figures_are_written_with_their_numbers() {
+    let out = Folder::new();
+    succeed(&format!("{LINE} --figures"), &[("--out", out.path())]);
+    let names =
+        || fs::read_dir(out.path()).unwrap().map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let figures: Vec<String> = names().filter(|name| name.ends_with(".svg")).collect();
+    let page = fs::read_to_string(out.file("report.html")).unwrap();
+    assert_eq!(figures.len(), page.matches("<figure").count(), "{figures:?}");
+    for name in &figures {
+        let picture = fs::read_to_string(out.file(name)).unwrap();
+        assert!(picture.starts_with("<svg") && page.contains(&picture), "{name}");
+        let table = out.file(&name.replace(".svg", ".csv"));
+        assert_eq!(picture.contains("<metadata>"), table.exists(), "{name}");
+    }
+    let table = names().find(|name| name.contains("mean-square-displacement") && name.ends_with(".csv"));
+    let table = fs::read_to_string(out.file(&table.unwrap())).unwrap();
+    assert!(table.starts_with("series,lag") && table.lines().count() > 3, "{table}");
+}

@@ -160,6 +160,23 @@ impl Block {
         Player::new(movie, still).map(Self::Player)
     }
 
+    /// The figures in it.
+    pub(super) fn into_figures(self) -> Vec<Figure> {
+        match self {
+            Self::Figure(figure) => vec![figure],
+            Self::Player(player) => vec![player.into_still()],
+            Self::Tabs { panels } => panels.into_iter().flat_map(|panel| panel.figures).collect(),
+            Self::Group { blocks, .. } | Self::Fold { blocks, .. } => {
+                blocks.into_iter().flat_map(Self::into_figures).collect()
+            }
+            Self::Paragraph { .. }
+            | Self::Heading { .. }
+            | Self::List { .. }
+            | Self::Terms { .. }
+            | Self::Table(_) => Vec::new(),
+        }
+    }
+
     /// Whether nothing would be seen of it.
     pub(super) fn is_empty(&self) -> bool {
         match self {

@@ -32,6 +32,7 @@ use serde::Serialize;
 use crate::error::ReportError;
 use crate::infer_report::RunRecord;
 use crate::numbers::significant;
+use crate::svg::element;
 
 const TEMPLATE: &str = include_str!("../../templates/page.html");
 const STYLE: &str = include_str!("../../templates/style.css");
@@ -52,6 +53,18 @@ impl Figure {
     #[must_use]
     pub fn new(svg: String, caption: &str) -> Self {
         Self { svg, caption: caption.to_owned() }
+    }
+
+    /// What a screen reader says of it, from its title.
+    #[must_use]
+    pub fn title(&self) -> String {
+        element(&self.svg, "title").unwrap_or_default()
+    }
+
+    /// The numbers in a chart, as CSV.
+    #[must_use]
+    pub fn table(&self) -> Option<String> {
+        element(&self.svg, "metadata")
     }
 }
 
@@ -122,7 +135,7 @@ impl Section {
 /// # }
 /// ```
 #[derive(Debug, Clone, Serialize)]
-pub struct Page<'a> {
+pub struct Page {
     /// Title, for example the name of the data set.
     pub title: String,
     /// The answer in one plain sentence.
@@ -130,7 +143,7 @@ pub struct Page<'a> {
     /// What is said beneath it.
     pub summary: Vec<Block>,
     /// Reasons not to trust the numbers, which stand in a box of their own.
-    pub doubts: &'a [String],
+    pub doubts: Vec<String>,
     /// Key numbers.
     pub cards: Vec<Card>,
     /// What stands under "How to read this page".
@@ -138,16 +151,23 @@ pub struct Page<'a> {
     /// The sections.
     pub sections: Vec<Section>,
     /// The run. Its warnings stand in a box, those that are doubts left out.
-    pub run: &'a RunRecord,
+    pub run: RunRecord,
 }
 
-impl<'a> Page<'a> {
+impl Page {
     /// A page of a title, the answer in one plain sentence, and the run.
     #[must_use]
-    pub fn new(title: impl Into<String>, headline: impl Into<String>, run: &'a RunRecord) -> Self {
+    pub fn new(title: impl Into<String>, headline: impl Into<String>, run: &RunRecord) -> Self {
         let (title, headline) = (title.into(), headline.into());
-        let (summary, cards, guide, sections) = Default::default();
-        Self { title, headline, summary, doubts: &[], cards, guide, sections, run }
+        let (summary, doubts, cards, guide, sections) = Default::default();
+        Self { title, headline, summary, doubts, cards, guide, sections, run: run.clone() }
+    }
+
+    /// The figures, in the order in which they are met; of a movie what stands in its place.
+    #[must_use]
+    pub fn into_figures(self) -> Vec<Figure> {
+        let sections = self.sections.into_iter().flat_map(|section| section.blocks);
+        self.summary.into_iter().chain(self.guide).chain(sections).flat_map(Block::into_figures).collect()
     }
 
     /// The HTML text of the page.

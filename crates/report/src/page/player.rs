@@ -56,4 +56,9 @@ impl Player {
             script: SCRIPT,
         })
     }
+
+    /// What stands in its place.
+    pub(super) fn into_still(self) -> Figure {
+        Figure { svg: self.still, caption: self.caption }
+    }
 }

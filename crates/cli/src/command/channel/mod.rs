@@ -128,10 +128,10 @@ impl Reporting for Arguments {
             by_age: &by_age,
         };
         let disturbances = disturbance.as_ref().map(|[vertex, division]| (vertex, division, in_two.as_ref()));
-        let page = page::page(&figures, disturbances)?;
+        let page = page::page(&figures, disturbances);
         let summary = page::summary(&findings.report, out.path());
         let answer = Answer::of(outcome.ended.is_none());
-        Ok(Rendered::with_page(out, &findings.report, &page, summary)?.with_answer(answer))
+        Ok(Rendered::with_page(out, &findings.report, page, summary)?.with_answer(answer))
     }
 }
 

@@ -1,7 +1,6 @@
 //! A channel as a page and as a summary.
 
 use super::figures::{Disturbances, Figures};
-use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::channel_report::{ChannelReport, CycleRecord, DecayRecord, DisturbanceRecord};
@@ -50,7 +49,7 @@ const GUIDE: [[&str; 2]; 5] = [
     ],
 ];
 
-pub(super) fn page(figures: &Figures<'_>, disturbance: Option<Disturbances<'_>>) -> Result<String, Failure> {
+pub(super) fn page(figures: &Figures<'_>, disturbance: Option<Disturbances<'_>>) -> Page {
     let report = &figures.findings.report;
     let flow = [figures.velocities(), figures.ratio(), figures.edge_to_edge(), figures.density()];
     let mut sections = vec![
@@ -86,14 +85,13 @@ pub(super) fn page(figures: &Figures<'_>, disturbance: Option<Disturbances<'_>>)
     let mut guide = GUIDE.to_vec();
     guide.insert(1, if report.walls.is_some() { WALLED } else { PERIODIC });
     let headline = headline(report, figures.folded.velocity[1].first());
-    let page = Page {
+    Page {
         summary: [cells(report), setting(report)].map(Block::summary).into(),
         cards: cards(report),
         guide: vec![Block::terms(&guide)],
         sections,
         ..Page::new(&figures.request.title, headline, &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 /// What is to be said of divisions in two, if there are any.

@@ -186,7 +186,7 @@ impl Reporting for Arguments {
         let summary = summary::summary(&report, &folder);
         out.end_run();
         let answer = Answer::of(last.is_acceptable());
-        let rendered = Rendered::with_page(out, &report, &page, summary)?.with_answer(answer);
+        let rendered = Rendered::with_page(out, &report, page, summary)?.with_answer(answer);
         progress.heed().map_err(|failure| kept.failed(failure))?;
         Ok(rendered.shown(self.open_report))
     }

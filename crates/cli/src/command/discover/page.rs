@@ -13,6 +13,7 @@ use voronudge_report::figure::{
     Suspicion,
 };
 use voronudge_report::movie::CellMovie;
+use voronudge_report::page::Page;
 use voronudge_report::{BeforeAfter, DiscoverFigures, DiscoverPage, DiscoverReport, FrameView};
 
 pub(super) fn page(
@@ -21,7 +22,7 @@ pub(super) fn page(
     discovery: &Discovery,
     report: &DiscoverReport,
     movie: Option<CellMovie>,
-) -> Result<String, Failure> {
+) -> Result<Page, Failure> {
     let prepared = found.prepared;
     let drawn = views::drawn(prepared);
     let fits = BeforeAfter { before: &discovery.before.inference, after: &discovery.after.inference };
@@ -59,7 +60,7 @@ pub(super) fn page(
             .collect(),
     };
     let page = DiscoverPage { title, report, frames: &frames, flows: &flows, figures: &figures };
-    Ok(page.render()?)
+    Ok(page.page()?)
 }
 
 /// The cells of all frames, with their residuals before and after.

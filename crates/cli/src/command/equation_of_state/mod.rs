@@ -126,9 +126,9 @@ impl Reporting for Arguments {
         doubts.into_iter().for_each(|doubt| run.warn(doubt));
         let report = request.report(run, points);
         write_arrays(&mut out, &report)?;
-        let page = page::page(&report, &request)?;
+        let page = page::page(&report, &request);
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }
 

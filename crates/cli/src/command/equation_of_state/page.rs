@@ -1,7 +1,6 @@
 //! The equation of state as a page and as a summary.
 
 use super::measure::Request;
-use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::EquationOfStateReport;
@@ -42,7 +41,7 @@ const GUIDE: &[[&str; 2]] = &[
 /// Points of a curve that is a formula.
 const STEPS: usize = 100;
 
-pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Result<String, Failure> {
+pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Page {
     let rate = report.units.powers(0, -1);
     let figure = |symbol: &str,
                   unit: &str,
@@ -97,7 +96,7 @@ pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Result<
         let [value, low, high] = with_interval(own.value, interval(own));
         Card::new(label, value, format!("{low} … {high}"))
     });
-    let page = Page {
+    Page {
         summary: vec![Block::summary(format!(
             "{} cells in each of {} runs for a density; averages over {} {} after {}; p, τ, B and A in {rate}.",
             report.cells,
@@ -113,8 +112,7 @@ pub(super) fn page(report: &EquationOfStateReport, request: &Request) -> Result<
             Section::new("Numbers").with(Block::table(table(report))),
         ],
         ..Page::new("Equation of state", headline(report), &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 fn honeycomb(request: &Request, of: fn(&Honeycomb) -> f64) -> Vec<[f64; 2]> {

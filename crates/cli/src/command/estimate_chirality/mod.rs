@@ -133,9 +133,9 @@ impl Reporting for Arguments {
         }];
         let report = ChiralityReport { run: record, line, intercept_kind };
         let title = self.profiles.display().to_string();
-        let page = page::page(&title, &points, &report, known.units.as_ref())?;
+        let page = page::page(&title, &points, &report, known.units.as_ref());
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }
 

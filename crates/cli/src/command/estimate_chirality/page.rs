@@ -1,6 +1,5 @@
 //! The estimate as a page and as a summary.
 
-use crate::failure::Failure;
 use std::path::Path;
 use voronudge_infer::LinePoint;
 use voronudge_report::chart::AxisScale;
@@ -31,7 +30,7 @@ pub(super) fn page(
     points: &[(f64, LinePoint)],
     report: &ChiralityReport,
     units: Option<&Units>,
-) -> Result<String, Failure> {
+) -> Page {
     let line = &report.line;
     let [from, to] = line.range;
     let counts = |x: f64| from.is_none_or(|from| x >= from) && to.is_none_or(|to| x <= to);
@@ -82,14 +81,13 @@ pub(super) fn page(
         Card::new("α", best(report), alpha_note(report)),
         Card::new("v_y/v_x", significant(line.slope, 3), format!("{low} to {high}")),
     ];
-    let page = Page {
+    Page {
         summary: vec![Block::summary(sentence(report))],
         cards,
         guide: vec![Block::terms(&GUIDE)],
         sections: vec![slope],
         ..Page::new(title, format!("The flow implies α = {}.", best(report)), &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 /// α for the P₀ given, or by the rule of thumb.

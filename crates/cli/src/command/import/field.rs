@@ -132,11 +132,11 @@ impl Reporting for Arguments {
             report.linked,
             out.path().display()
         );
-        Rendered::with_page(out, &report, &page, text)
+        Rendered::with_page(out, &report, page, text)
     }
 }
 
-fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<String, Failure> {
+fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Page, Failure> {
     let data = &import.dataset;
     let snapshot = Snapshot::new(data, 0);
     let tessellation = Tessellation::new(&snapshot.positions, domain(data)?)
@@ -182,5 +182,5 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Strin
         sections: vec![Section::new("The field and its cells").with(Block::pairs([found]))],
         ..Page::new(file.display().to_string(), headline, &report.run)
     };
-    Ok(page.render()?)
+    Ok(page)
 }

@@ -95,7 +95,7 @@ pub(super) fn finish(
         sites,
         notes: records(&import.notes),
     };
-    let page = page(source, import, &compared, &report)?;
+    let page = page(source, import, &compared, &report);
     let length = |x: f64| format!("{} {}", significant(x, 2), data.length_unit);
     let described = format!(
         "sites {} from centroids; outlines {} from the sides of their polygons, {} with centroids",
@@ -118,7 +118,7 @@ pub(super) fn finish(
         significant(all.perimeter_correlation, 3),
         out.path().display()
     );
-    Rendered::with_page(out, &report, &page, text)
+    Rendered::with_page(out, &report, page, text)
 }
 
 fn compare_all(import: &ShapeImport, file: &Path) -> Result<Vec<Compared>, Failure> {
@@ -180,12 +180,7 @@ fn compare(import: &ShapeImport, frame: usize, file: &Path) -> Result<Compared, 
     })
 }
 
-fn page(
-    source: &Source<'_>,
-    import: &ShapeImport,
-    compared: &[Compared],
-    report: &ShapeReport,
-) -> Result<String, Failure> {
+fn page(source: &Source<'_>, import: &ShapeImport, compared: &[Compared], report: &ShapeReport) -> Page {
     let all = &report.all;
     let percent = |share: f64| format!("{} %", significant(100.0 * share, 3));
     let headline = format!(
@@ -279,12 +274,11 @@ fn page(
     let agreement = Section::new("Voronoi polygons against outlines")
         .with(Block::table(Table::new(header.split('|')).rows(rows)))
         .with(Block::pairs(figures));
-    let page = Page {
+    Page {
         summary: summary.into_iter().map(Block::summary).collect(),
         cards,
         guide: vec![Block::terms(GUIDE)],
         sections: vec![agreement],
         ..Page::new(source.file.display().to_string(), headline, &report.run)
-    };
-    Ok(page.render()?)
+    }
 }

@@ -14,6 +14,7 @@ use voronudge_report::figure::FlowMap;
 use voronudge_report::infer_report::{InferReport, MeanRemoved};
 use voronudge_report::movie::CellMovie;
 use voronudge_report::numbers::{as_given, significant};
+use voronudge_report::page::Page;
 use voronudge_report::{FrameView, InferPage};
 
 pub(super) fn page(
@@ -23,7 +24,7 @@ pub(super) fn page(
     report: &InferReport,
     answers: &Answers,
     movie: Option<&CellMovie>,
-) -> Result<String, Failure> {
+) -> Result<Page, Failure> {
     let drawn = views::drawn(prepared);
     let frames: Vec<FrameView> =
         drawn.iter().map(|&index| views::frame_view(prepared, result, index)).collect();
@@ -42,7 +43,7 @@ pub(super) fn page(
         spreads: &spreads::views(prepared, result, &drawn),
         uncertainty: &answers::figures(answers, result, &prepared.scale, &report.units),
     };
-    Ok(page.render()?)
+    Ok(page.page()?)
 }
 
 fn paragraphs(data: &DataSet, prepared: &Problem, report: &InferReport) -> Vec<String> {

@@ -70,6 +70,6 @@ impl Reporting for Arguments {
         let report = report::report(run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
         let page = page::page(&self, &report)?;
         let summary = report::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }

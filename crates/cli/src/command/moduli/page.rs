@@ -34,7 +34,7 @@ const GUIDE: [[&str; 2]; 4] = [
     ],
 ];
 
-pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<String, Failure> {
+pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<Page, Failure> {
     let unit = report.units.powers(0, -1);
     let figure = Figure::new(
         moduli(&report.moduli, &unit),
@@ -60,7 +60,7 @@ pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<Strin
         ],
         ..Page::new(title(arguments), headline(report), &report.run)
     };
-    Ok(page.render()?)
+    Ok(page)
 }
 
 fn cards(report: &ModuliReport, unit: &str) -> Vec<Card> {

@@ -98,9 +98,9 @@ impl Reporting for Arguments {
             &recorded.recording,
             (&curves, &nematic, avalanches.as_ref()),
             &units,
-        )?;
+        );
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }
 

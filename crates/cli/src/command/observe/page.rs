@@ -3,7 +3,6 @@
 use super::avalanches::Found;
 use super::nematic::Measured;
 use crate::command::drawing::{borders, cells_view};
-use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_geometry::Vector;
@@ -61,7 +60,7 @@ pub(super) fn page(
     recording: &Recording,
     (curves, nematic, avalanches): (&[Curve], &Measured, Option<&Found>),
     units: &Units,
-) -> Result<String, Failure> {
+) -> Page {
     let figures = |all: &[Quantity]| -> Vec<Figure> {
         let found = all.iter().filter_map(|of| curves.iter().find(|curve| curve.of == *of));
         found.filter_map(|curve| figure(curve, units)).collect()
@@ -100,14 +99,13 @@ pub(super) fn page(
     });
     let numbers = Table::new(["", "value", "standard error", "unit"]).rows(rows);
     sections.push(Section::new("Numbers").with(Block::table(numbers)));
-    let page = Page {
+    Page {
         summary: vec![Block::summary(said(report))],
         cards: cards(report),
         guide: vec![Block::terms(GUIDE)],
         sections,
         ..Page::new(title, headline(report), &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 fn numbers(report: &ObserveReport) -> impl Iterator<Item = (Quantity, &ObservedNumber)> {

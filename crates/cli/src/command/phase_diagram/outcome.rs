@@ -49,8 +49,8 @@ pub(crate) fn finish(
     let summary = summary(&report, points, &out);
     let rendered = if whole {
         let maps = maps(request, &diagram);
-        let page = page(&headline(&diagram), &report, maps, collapse.figures)?;
-        Rendered::with_page(out, &report, &page, summary)
+        let page = page(&headline(&diagram), &report, maps, collapse.figures);
+        Rendered::with_page(out, &report, page, summary)
     } else {
         Rendered::new(out, &report, summary)
     };

@@ -1,6 +1,5 @@
 //! A diagram as a page.
 
-use crate::failure::Failure;
 use voronudge_report::PhaseReport;
 use voronudge_report::numbers::{NO_VALUE, as_given, significant};
 use voronudge_report::page::{Block, Card, Figure, Page, Section, Table, Text};
@@ -9,17 +8,12 @@ use voronudge_report::phase_report::{CollapseRecord, FailedRun, QuantityRecord};
 const INTRODUCTION: &str = "Every rectangle stands for runs at one preferred perimeter P_0 and one cortical chirality α, from random positions. Lengths are in ℓ_0, \
     the root of the mean cell area, rates in K_P. Velocities and T1 transitions are means over the second half of the run.";
 
-pub(super) fn page(
-    headline: &str,
-    report: &PhaseReport,
-    maps: Vec<Figure>,
-    collapse: Vec<Figure>,
-) -> Result<String, Failure> {
+pub(super) fn page(headline: &str, report: &PhaseReport, maps: Vec<Figure>, collapse: Vec<Figure>) -> Page {
     let header = ["quantity", "least", "P_0", "α", "largest", "P_0", "α", "unknown"];
     let diagram = Section::new("Diagram")
         .with(Block::pairs(maps))
         .with(Block::table(Table::new(header).rows(report.quantities.iter().map(quantity_row))));
-    let page = Page {
+    Page {
         cards: cards(report),
         guide: vec![Block::paragraph(INTRODUCTION), guide(report)],
         sections: vec![
@@ -28,8 +22,7 @@ pub(super) fn page(
             Section::new("Runs that failed").with(Block::facts(report.failed.iter().map(failed_run))),
         ],
         ..Page::new("phase diagram", headline, &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 fn guide(report: &PhaseReport) -> Block {

@@ -142,6 +142,6 @@ impl Reporting for Arguments {
         let title = self.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
         let page = page::page(&title, &report, &found)?;
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn page(
     title: &str,
     report: &PhaseDiffusionReport,
     found: &PhaseDiffusion,
-) -> Result<String, Failure> {
+) -> Result<Page, Failure> {
     let d = &report.diffusivities;
     let rows = named(report).map(|(name, estimate)| {
         let [value, low, high] = with_interval(estimate.value, estimate.ci95);
@@ -109,7 +109,7 @@ pub(super) fn page(
         ],
         ..Page::new(title, headline(report), &report.run)
     };
-    Ok(page.render()?)
+    Ok(page)
 }
 
 fn named(report: &PhaseDiffusionReport) -> [(&'static str, &Diffusivity); 4] {

@@ -135,8 +135,8 @@ impl Reporting for Arguments {
             .collect();
         let against = if self.times.is_empty() { "frame" } else { "time" };
         let report = RheologyReport { run: record, units, cells, seeds, against, fits: fitted };
-        let page = page::page(&report)?;
+        let page = page::page(&report);
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }

@@ -1,6 +1,5 @@
 //! The result as a page and as a summary.
 
-use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::chart::AxisScale;
@@ -34,7 +33,7 @@ const GUIDE: &[[&str; 2]] = &[
     ],
 ];
 
-pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
+pub(super) fn page(report: &RheologyReport) -> Page {
     let unit = report.units.powers(0, -1);
     let last = &report.fits[report.fits.len() - 1];
     let card = |own: &RheologyQuantity| {
@@ -71,7 +70,7 @@ pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
             sections.push(Section::new("Storage and loss moduli").with(Block::pairs(figures)));
         }
     }
-    let page = Page {
+    Page {
         summary: vec![Block::summary(format!(
             "{} cells in each of {} tissues; moduli in {unit}, over the friction of a cell; viscosities in units of it.",
             report.cells,
@@ -81,8 +80,7 @@ pub(super) fn page(report: &RheologyReport) -> Result<String, Failure> {
         guide: vec![Block::terms(GUIDE)],
         sections,
         ..Page::new("Rheology of a fitted tissue", headline(report), &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 fn table(quantities: &[RheologyQuantity]) -> Table {

@@ -117,7 +117,7 @@ pub(super) fn finish(
         );
     }
     text += &format!("written to {}, figures in report.html\n", results.path().display());
-    Rendered::with_page(results, &report, &page, text)
+    Rendered::with_page(results, &report, page, text)
 }
 
 /// Writes the labels of the cells and the parameters in which they differ; those of an earlier run go.

@@ -50,7 +50,7 @@ pub(super) fn page(
     measurements: &Measurements,
     (simulation, differentiated, movie): (&Simulation, Option<&Differentiated>, Option<&CellMovie>),
     units: &Units,
-) -> Result<String, Failure> {
+) -> Result<Page, Failure> {
     let cell_box = cell_box(simulation, &report.request)?;
     let cells = configuration(simulation, &cell_box, movie.is_some(), units);
     let cells = movie.map_or(Ok(cells.clone().into()), |movie| Block::player(movie, &cells))?;
@@ -69,7 +69,7 @@ pub(super) fn page(
         ],
         ..Page::new(format!("{} cells", report.request.cells), headline(report, units), &report.run)
     };
-    Ok(page.render()?)
+    Ok(page)
 }
 
 fn headline(report: &Report, units: &Units) -> String {

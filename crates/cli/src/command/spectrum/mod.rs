@@ -171,6 +171,6 @@ impl Reporting for Arguments {
         };
         let page = page::page(&title, &data, &solved, &report, (waves.as_ref(), strip))?;
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }

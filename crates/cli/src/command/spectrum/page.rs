@@ -25,14 +25,14 @@ pub(super) fn page(
     solved: &[Solved],
     report: &SpectrumReport,
     (waves, strip): (Option<&Waves>, Option<(&EndedLattice, &Bands)>),
-) -> Result<String, Failure> {
+) -> Result<Page, Failure> {
     let (Some(first), Some(frame)) = (solved.first(), report.frames.first()) else {
         return Err(Failure::new("no frame was looked at").with_hint("choose one by --frames"));
     };
     let (units, points, view) = (&report.units, points(first), frame_view(first));
     let maps = drawn_modes(first, frame).into_iter();
     let maps = maps.map(|(mode, caption)| Figure::new(mode_map(&view, &mode, units), &caption));
-    let page = Page {
+    Ok(Page {
         summary: paragraphs(data, first, report).into_iter().map(Block::summary).collect(),
         cards: sections::cards(frame, units),
         guide: vec![Block::paragraph(sections::INTRODUCTION), Block::terms(&sections::GUIDE)],
@@ -45,8 +45,7 @@ pub(super) fn page(
         .chain(report.strip.as_ref().zip(strip).map(|(record, strip)| sections::strip(record, strip, units)))
         .collect(),
         ..Page::new(title, headline(frame, &units.time), &report.run)
-    };
-    Ok(page.render()?)
+    })
 }
 
 /// The answer in a sentence or two.

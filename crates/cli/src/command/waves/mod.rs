@@ -130,9 +130,9 @@ impl Reporting for Arguments {
             linear,
         );
         let title = self.recording.title();
-        let page = page::page(&title, &report, (&found, &beside))?;
+        let page = page::page(&title, &report, (&found, &beside));
         let summary = page::summary(&report, out.path());
-        Rendered::with_page(out, &report, &page, summary)
+        Rendered::with_page(out, &report, page, summary)
     }
 }
 

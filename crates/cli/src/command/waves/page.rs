@@ -2,7 +2,6 @@
 
 use super::beside::Beside;
 use super::figures;
-use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_observables::Fluctuations;
@@ -42,11 +41,7 @@ const GUIDE: &[[&str; 2]] = &[
     ],
 ];
 
-pub(super) fn page(
-    title: &str,
-    report: &WavesReport,
-    (found, beside): (&Fluctuations, &Beside),
-) -> Result<String, Failure> {
+pub(super) fn page(title: &str, report: &WavesReport, (found, beside): (&Fluctuations, &Beside)) -> Page {
     let relaxation = figures::relaxation(found, beside, &report.units);
     let mut sections = vec![Section::new("How waves relax").with(Block::pairs(relaxation))];
     let spectra = figures::spectra(found, beside, &report.units);
@@ -55,14 +50,13 @@ pub(super) fn page(
         sections.push(section.with(Block::paragraph(segments(report))).with(Block::pairs(spectra)));
     }
     sections.push(Section::new("Shells of wave numbers").with(Block::table(table(report))));
-    let page = Page {
+    Page {
         summary: said(report).into_iter().map(Block::summary).collect(),
         cards: cards(report),
         guide: vec![Block::terms(GUIDE)],
         sections,
         ..Page::new(title, headline(report), &report.run)
-    };
-    Ok(page.render()?)
+    }
 }
 
 fn segments(report: &WavesReport) -> String {

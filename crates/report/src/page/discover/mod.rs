@@ -95,16 +95,24 @@ impl DiscoverPage<'_> {
     ///
     /// # Errors
     ///
-    /// [`ReportError::Template`] if the template cannot be filled.
+    /// [`ReportError::Json`] if the movie cannot be written, [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
+        self.page()?.render()
+    }
+
+    /// The page.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if the movie cannot be written.
+    pub fn page(&self) -> Result<Page, ReportError> {
         let Self { report, figures, .. } = *self;
-        let doubts = report.doubts();
         let forecast = report.forecast.as_ref().map(forecast::section);
         let check = report.check.as_ref().map(|own| check::section(own, figures.trails.as_ref()));
         let prospects = report.prospects.iter().filter(|own| !own.quantities.is_empty());
-        let page = Page {
+        Ok(Page {
             summary: self.lead(),
-            doubts: &doubts,
+            doubts: report.doubts(),
             guide: vec![Block::paragraph(INTRODUCTION), Block::terms(&GUIDE)],
             sections: vec![
                 before_after::errors(report),
@@ -124,8 +132,7 @@ impl DiscoverPage<'_> {
                 words::left_out(&report.cells, words::data(report.flow.as_ref())),
             ],
             ..Page::new(self.title, &report.sentence, &report.run)
-        };
-        page.render()
+        })
     }
 
     /// The answer at a glance.

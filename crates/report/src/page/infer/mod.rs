@@ -74,14 +74,23 @@ impl InferPage<'_> {
     ///
     /// # Errors
     ///
-    /// [`ReportError::Template`] if the template cannot be filled.
+    /// [`ReportError::Json`] if the movie cannot be written, [`ReportError::Template`] if the template cannot be filled.
     pub fn render(&self) -> Result<String, ReportError> {
+        self.page()?.render()
+    }
+
+    /// The page.
+    ///
+    /// # Errors
+    ///
+    /// [`ReportError::Json`] if the movie cannot be written.
+    pub fn page(&self) -> Result<Page, ReportError> {
         let report = self.report;
         let rows = parameter_rows(&report.parameters, Some(&report.naive));
         let player = self.movie.map(|movie| Block::player(movie, &Figure::new(movie.still(), CELLS)));
-        let page = Page {
+        Ok(Page {
             summary: self.summary.iter().map(Block::summary).collect(),
-            doubts: &report.fit.doubts,
+            doubts: report.fit.doubts.clone(),
             cards: cards(report, &rows),
             guide: vec![Block::paragraph(INTRODUCTION), Block::terms(&GUIDE)],
             sections: vec![
@@ -97,8 +106,7 @@ impl InferPage<'_> {
                 left_out(&report.cells, data(report.flow.as_ref())),
             ],
             ..Page::new(self.title, &report.verdict.sentence, &report.run)
-        };
-        page.render()
+        })
     }
 
     fn goodness(&self) -> Section {
