@@ -168,7 +168,7 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Page,
         extrema_map(&frame, &field, &report.units),
         "The field in the first frame, with the extrema taken for cells (dots) and their Voronoi polygons.",
     );
-    let page = Page {
+    Ok(Page {
         summary: vec![Block::summary(format!(
             "{} frames; {} extrema were followed from the frame before.",
             report.frames.len(),
@@ -181,6 +181,5 @@ fn page(file: &Path, import: &FieldImport, report: &FieldReport) -> Result<Page,
         guide: vec![Block::terms(GUIDE)],
         sections: vec![Section::new("The field and its cells").with(Block::pairs([found]))],
         ..Page::new(file.display().to_string(), headline, &report.run)
-    };
-    Ok(page)
+    })
 }

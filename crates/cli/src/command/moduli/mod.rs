@@ -68,7 +68,7 @@ impl Reporting for Arguments {
         let measured = measure::replicas(&starts, &models, &protocol, self.common.verbosity())?;
         report::doubts(&measured).into_iter().for_each(|doubt| run.warn(doubt));
         let report = report::report(run, &starts, (&parameters, &spreads, spacing), &protocol, &measured);
-        let page = page::page(&self, &report)?;
+        let page = page::page(&self, &report);
         let summary = report::summary(&report, out.path());
         Rendered::with_page(out, &report, page, summary)
     }

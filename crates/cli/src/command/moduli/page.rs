@@ -3,7 +3,6 @@
 use super::Arguments;
 use super::dynamic;
 use super::report::{headline, title};
-use crate::failure::Failure;
 use voronudge_report::ModuliReport;
 use voronudge_report::figure::moduli;
 use voronudge_report::moduli_report::{
@@ -34,7 +33,7 @@ const GUIDE: [[&str; 2]; 4] = [
     ],
 ];
 
-pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<Page, Failure> {
+pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Page {
     let unit = report.units.powers(0, -1);
     let figure = Figure::new(
         moduli(&report.moduli, &unit),
@@ -49,7 +48,7 @@ pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<Page,
     let prestress = [("measured", Some(report.prestress)), ("honeycomb", report.mean_field_prestress)];
     let prestress = prestress.into_iter().filter_map(|(name, own)| Some([name.into(), stress(own?, &unit)]));
     let replicas = report.replicas.iter().map(replica);
-    let page = Page {
+    Page {
         cards: cards(report, &unit),
         guide: vec![Block::paragraph(INTRODUCTION), Block::terms(&GUIDE)],
         sections: vec![
@@ -59,8 +58,7 @@ pub(super) fn page(arguments: &Arguments, report: &ModuliReport) -> Result<Page,
             Section::new("Replicas").with(Block::facts(replicas)),
         ],
         ..Page::new(title(arguments), headline(report), &report.run)
-    };
-    Ok(page)
+    }
 }
 
 fn cards(report: &ModuliReport, unit: &str) -> Vec<Card> {

@@ -140,7 +140,7 @@ impl Reporting for Arguments {
         }
         let report = report::report(run, &data, &request, &tracked, &frames, &found);
         let title = self.data.dataset.as_ref().map_or(place, |folder| folder.display().to_string());
-        let page = page::page(&title, &report, &found)?;
+        let page = page::page(&title, &report, &found);
         let summary = page::summary(&report, out.path());
         Rendered::with_page(out, &report, page, summary)
     }

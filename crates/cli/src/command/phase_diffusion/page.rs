@@ -1,6 +1,5 @@
 //! The result as a page and as a summary.
 
-use crate::failure::Failure;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_infer::phase_diffusion::PhaseDiffusion;
@@ -36,11 +35,7 @@ const GUIDE: &[[&str; 2]] = &[
     ],
 ];
 
-pub(super) fn page(
-    title: &str,
-    report: &PhaseDiffusionReport,
-    found: &PhaseDiffusion,
-) -> Result<Page, Failure> {
+pub(super) fn page(title: &str, report: &PhaseDiffusionReport, found: &PhaseDiffusion) -> Page {
     let d = &report.diffusivities;
     let rows = named(report).map(|(name, estimate)| {
         let [value, low, high] = with_interval(estimate.value, estimate.ci95);
@@ -91,7 +86,7 @@ pub(super) fn page(
         "Entries of D(q), fitted to each wave vector alone (marks, with one standard error) and to all together (lines). Without \
          chirality those off the diagonal are zero.",
     );
-    let page = Page {
+    Page {
         summary: vec![Block::summary(summary)],
         cards: vec![
             card("D∥", &d.D_parallel),
@@ -108,8 +103,7 @@ pub(super) fn page(
                 .with(Block::table(Table::new(["", "value", "unit"]).rows(modulus_rows))),
         ],
         ..Page::new(title, headline(report), &report.run)
-    };
-    Ok(page)
+    }
 }
 
 fn named(report: &PhaseDiffusionReport) -> [(&'static str, &Diffusivity); 4] {

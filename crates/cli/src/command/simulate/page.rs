@@ -58,7 +58,7 @@ pub(super) fn page(
     let first = Block::group("stack", structure.next());
     let in_time = course(report, measurements, units).into_iter();
     let derivatives = differentiated.map(|own| derivatives(own, report.spacing(), units));
-    let page = Page {
+    Ok(Page {
         summary: paragraphs(report, measurements).into_iter().map(Block::summary).collect(),
         cards: cards(report, units),
         guide: vec![Block::terms(&GUIDE)],
@@ -68,8 +68,7 @@ pub(super) fn page(
             Section::new("Structure").with(Block::pairs(structure)),
         ],
         ..Page::new(format!("{} cells", report.request.cells), headline(report, units), &report.run)
-    };
-    Ok(page)
+    })
 }
 
 fn headline(report: &Report, units: &Units) -> String {

@@ -162,14 +162,11 @@ pub(super) fn summary(report: &SpectrumReport, out: &Path) -> String {
     for frame in &report.frames {
         let _ = writeln!(
             text,
-            "frame {}: {} of {} cells move, {} modes: {} decay, {} grow, {} rest; {} oscillate",
+            "frame {}: {} of {} cells move, {}; {} oscillate",
             frame.frame,
             frame.counted,
             frame.present,
-            frame.modes,
-            frame.decaying,
-            frame.growing,
-            frame.zero,
+            sections::fates(frame),
             frame.oscillating
         );
         for (name, mode) in

@@ -58,19 +58,22 @@ pub(super) fn eigenvalues(report: &SpectrumReport, points: &[SpectrumPoint]) -> 
         .with_all(whole.then(|| Block::pairs(densities(points, &unit))))
 }
 
+/// What becomes of the modes of a frame, in numbers.
+pub(super) fn fates(frame: &FrameSpectrum) -> String {
+    let FrameSpectrum { modes, decaying, growing, zero, .. } = frame;
+    format!("{modes} modes: {decaying} decay, {growing} grow, {zero} rest")
+}
+
 fn frame_facts(frame: &FrameSpectrum, units: &Units) -> Vec<[String; 2]> {
     let neutral = match frame.neutral {
         0 => String::new(),
         count => format!(", {count} only oscillate"),
     };
     let modes = format!(
-        "{} of {} cells move; {} modes: {} decay, {} grow, {} rest{neutral}; {} oscillate",
+        "{} of {} cells move; {}{neutral}; {} oscillate",
         frame.counted,
         frame.present,
-        frame.modes,
-        frame.decaying,
-        frame.growing,
-        frame.zero,
+        fates(frame),
         frame.oscillating
     );
     let square = frame.mean_square_frequency.map(|square| format!("⟨ω²⟩ = {}", significant(square, 4)));
