@@ -1,6 +1,6 @@
 //! The plane, its boundaries and the Voronoi tessellation.
 //!
-//! Topology is decided on `f64` by spade; every formula of the geometry is generic over [`Scalar`], or its [`Arithmetic`], so the same code
+//! Topology is decided on `f64` by triangulation and flips; every formula of the geometry is generic over [`Scalar`], or its [`Arithmetic`], so the same code
 //! gives values on `f64` and exact derivatives on dual numbers, at frozen topology.
 //!
 //! There is no physics here.

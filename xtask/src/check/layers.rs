@@ -32,7 +32,8 @@ const LAYERS: &[(&str, Imports)] = &[
 ];
 
 /// Packages from elsewhere that one crate alone may import.
-const OWNED: &[(&str, &str)] = &[("faer", "linalg"), ("robust", "geometry"), ("spade", "geometry")];
+const OWNED: &[(&str, &str)] =
+    &[("delaunator", "geometry"), ("faer", "linalg"), ("robust", "geometry"), ("spade", "geometry")];
 
 /// Prefix of the package names of our libraries.
 const PREFIX: &str = "voronudge-";

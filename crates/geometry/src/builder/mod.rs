@@ -1,24 +1,26 @@
-//! From positions to the flat arrays of a [`Tessellation`]: ghost images, spade, rings, twins.
+//! From positions to the flat arrays of a [`Tessellation`]: ghost images, a triangulation, rings, twins.
 //!
 //! The Delaunay triangulation of a neighbourhood depends on that neighbourhood only. A large periodic box is therefore
 //! cut into tiles, each triangulated with a strip of surrounding cells; this fits the caches and uses all threads, and a
 //! small box is the case of one tile whose surroundings are its own images.
+//!
+//! A fast triangulation comes first. If the flips cannot prove that it is the Delaunay triangulation, or make it so, an exact one follows.
 
+mod mesh;
 mod rings;
 mod tile;
 
 use crate::moving::Repair;
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector};
+use mesh::{Exact, Fast, Mesh, flushed};
 use rayon::prelude::*;
 pub(crate) use rings::find_twins;
 use rings::{Rings, assemble};
-use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 use tile::Tiling;
 
-/// A point of a triangulation: a cell or a periodic image of one.
+/// What a point of a triangulation is: a cell or a periodic image of one.
 #[derive(Clone, Copy)]
 struct Site {
-    position: Point2<f64>,
     cell: u32,
     image: [i16; 2],
     role: Role,
@@ -29,13 +31,6 @@ struct Site {
 enum Role {
     Own,
     Ghost,
-}
-
-impl HasPosition for Site {
-    type Scalar = f64;
-    fn position(&self) -> Point2<f64> {
-        self.position
-    }
 }
 
 /// Sizes, relative to √(area per cell), of the displacements that break ties between cells on one circle. They move the
@@ -67,16 +62,19 @@ fn open(tessellation: &mut Tessellation, positions: &[Vector<f64>]) -> Result<()
     if cells < 3 {
         return Err(Error::TooFewCells { found: cells, required: 3 });
     }
-    let sites = positions
-        .iter()
-        .enumerate()
-        .map(|(cell, r)| Site { position: point(*r), cell: cell as u32, image: [0, 0], role: Role::Own })
-        .collect();
-    let delaunay = triangulate(sites).ok_or_else(|| duplicate(positions))?;
-    if delaunay.num_inner_faces() == 0 {
+    let sites: Vec<Site> =
+        (0..cells).map(|cell| Site { cell: cell as u32, image: [0, 0], role: Role::Own }).collect();
+    if let Some(fast) = Fast::of(positions)
+        && assemble(tessellation, cells, &[Rings::of_all(&fast, &sites)]).is_ok()
+        && Repair::default().attempt(tessellation, positions).is_some()
+    {
+        return Ok(());
+    }
+    let exact = Exact::of(positions).ok_or_else(|| duplicate(positions))?;
+    if exact.is_flat() {
         return Err(Error::Collinear { cells });
     }
-    assemble(tessellation, cells, &[Rings::of_all(&delaunay)])
+    assemble(tessellation, cells, &[Rings::of_all(&exact, &sites)])
 }
 
 fn periodic(
@@ -92,41 +90,57 @@ fn periodic(
     if let Some(cell) = images.iter().position(|n| n.iter().any(|n| f64::from(*n).abs() > MOST_BOXES)) {
         return Err(Error::Position { cell, x: positions[cell].x, y: positions[cell].y });
     }
-    let spacing = (cell_box.area() / cells as f64).sqrt();
+    // What is proven to be the Delaunay triangulation, or made it by flips, is it, whatever it began with.
+    if of_tiles::<Fast>(tessellation, positions, &images, cell_box, 0.0).is_ok()
+        && Repair::default().attempt(tessellation, positions).is_some()
+    {
+        return Ok(());
+    }
     let mut outcome = Ok(());
     for tie_break in TIE_BREAKS {
-        let wrapped: Vec<Vector<f64>> = positions
-            .iter()
-            .zip(&images)
-            .enumerate()
-            .map(|(cell, (r, n))| match tie_break {
-                0.0 => r - cell_box.translation(*n),
-                size => r - cell_box.translation(*n) + jitter(cell) * (size * spacing),
-            })
-            .collect();
-        let nudged = PeriodicBox::sheared(cell_box.lengths(), cell_box.offset() + tie_break * spacing)?;
-        let tiling = Tiling::new(&wrapped, &nudged);
-        let rings: Option<Vec<Rings>> =
-            (0..tiling.len()).into_par_iter().map(|tile| tiling.rings(tile)).collect();
-        outcome = assemble(tessellation, cells, &rings.ok_or_else(|| duplicate(&wrapped))?);
-        // Where images of one circle of cells were triangulated differently, all may miss its diagonal.
-        if outcome.is_ok() && tessellation.half_edges() != 6 * cells {
-            outcome = Err(Error::Inconsistent { cells, cell: 0 });
-        }
-        if outcome.is_ok() {
-            rings::refer_to_given_positions(tessellation, &images);
-            // Ties were broken by whatever came first; the flips break them by a rule. Nearly flat triangles stay.
-            let _ = Repair::default().attempt(tessellation, positions);
+        outcome = of_tiles::<Exact>(tessellation, positions, &images, cell_box, tie_break);
+        if !matches!(outcome, Err(Error::Inconsistent { .. })) {
             break;
         }
     }
-    outcome
+    outcome?;
+    // Ties were broken by whatever came first; the flips break them by a rule. Nearly flat triangles stay.
+    let _ = Repair::default().attempt(tessellation, positions);
+    Ok(())
 }
 
-fn point(r: Vector<f64>) -> Point2<f64> {
-    // spade refuses magnitudes below 1e-142, which are zero for any unit of length.
-    let flush = |x: f64| if x.abs() < 1e-140 { 0.0 } else { x };
-    Point2::new(flush(r.x), flush(r.y))
+/// Triangulates a box tile by tile, with ties broken by displacements of some size.
+fn of_tiles<M: Mesh>(
+    tessellation: &mut Tessellation,
+    positions: &[Vector<f64>],
+    images: &[[i32; 2]],
+    cell_box: &PeriodicBox,
+    tie_break: f64,
+) -> Result<(), Error> {
+    let cells = positions.len();
+    let spacing = (cell_box.area() / cells as f64).sqrt();
+    let wrapped: Vec<Vector<f64>> = positions
+        .iter()
+        .zip(images)
+        .enumerate()
+        .map(|(cell, (r, n))| match tie_break {
+            0.0 => r - cell_box.translation(*n),
+            size => r - cell_box.translation(*n) + jitter(cell) * (size * spacing),
+        })
+        .collect();
+    let nudged = PeriodicBox::sheared(cell_box.lengths(), cell_box.offset() + tie_break * spacing)?;
+    let tiling = Tiling::new(&wrapped, &nudged);
+    let rings: Option<Vec<Rings>> =
+        (0..tiling.len()).into_par_iter().map(|tile| tiling.rings::<M>(tile)).collect();
+    let rings = rings.ok_or_else(|| duplicate(&wrapped))?;
+    assemble(tessellation, cells, &rings)?;
+    // Where images of one circle of cells were triangulated differently, all may miss its diagonal. Triangles must cover the box once.
+    let area: f64 = rings.iter().map(|rings| rings.area).sum();
+    if tessellation.half_edges() != 6 * cells || (area / cell_box.area() - 1.0).abs() > 1e-6 {
+        return Err(Error::Inconsistent { cells, cell: 0 });
+    }
+    rings::refer_to_given_positions(tessellation, images);
+    Ok(())
 }
 
 /// A fixed pseudo-random displacement in [−1, 1]², the same for all images of a cell.
@@ -140,14 +154,6 @@ fn jitter(cell: usize) -> Vector<f64> {
     Vector::new(unit(1), unit(0x5851_F42D_4C95_7F2D))
 }
 
-/// The Delaunay triangulation, or nothing if two sites coincide.
-fn triangulate(sites: Vec<Site>) -> Option<DelaunayTriangulation<Site>> {
-    let expected = sites.len();
-    DelaunayTriangulation::bulk_load(sites)
-        .ok()
-        .filter(|delaunay: &DelaunayTriangulation<Site>| delaunay.num_vertices() == expected)
-}
-
 /// Names two cells at one point.
 fn duplicate(positions: &[Vector<f64>]) -> Error {
     let mut order: Vec<usize> = (0..positions.len()).collect();
@@ -155,7 +161,7 @@ fn duplicate(positions: &[Vector<f64>]) -> Error {
         let (a, b) = (positions[i], positions[j]);
         a.x.total_cmp(&b.x).then(a.y.total_cmp(&b.y)).then(i.cmp(&j))
     });
-    order.windows(2).find(|w| point(positions[w[0]]) == point(positions[w[1]])).map_or(
+    order.windows(2).find(|w| flushed(positions[w[0]]) == flushed(positions[w[1]])).map_or(
         Error::Inconsistent { cells: positions.len(), cell: 0 },
         |w| Error::DuplicateCells {
             first: w[0].min(w[1]),

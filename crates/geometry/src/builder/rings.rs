@@ -1,97 +1,81 @@
 //! Rings read off a triangulation, and their assembly into a tessellation.
 
+use super::mesh::Mesh;
 use super::tile::Rectangle;
 use super::{Role, Site};
-use crate::{Error, Tessellation, Vector, circumcentre};
-use spade::{DelaunayTriangulation, Triangulation};
+use crate::{Error, Tessellation, Vector, circumcentre, cross};
 
 /// The rings of some cells.
+#[derive(Default)]
 pub(super) struct Rings {
     /// Cell, number of sides, and whether it is on the hull.
     cells: Vec<(u32, u32, bool)>,
     /// Neighbour and image of every side of these cells.
     sides: Vec<(u32, [i16; 2])>,
+    /// Area of the triangles around these cells, a third for each of their corners; for tiles only.
+    pub area: f64,
 }
 
 impl Rings {
     /// The rings of all sites; cells on the hull have open ones.
-    pub fn of_all(delaunay: &DelaunayTriangulation<Site>) -> Self {
-        let (mut rings, mut scratch) = (Self::with_capacity(delaunay.num_vertices()), Scratch::default());
-        for vertex in delaunay.vertices() {
-            scratch.read(vertex);
-            rings.push(vertex.data().cell, &mut scratch);
+    pub fn of_all<M: Mesh>(mesh: &M, sites: &[Site]) -> Self {
+        let mut rings = Self::with_capacity(sites.len());
+        let mut neighbours = Vec::new();
+        for site in 0..sites.len() {
+            let closed = mesh.ring(site, &mut neighbours);
+            rings.push(sites, site, &neighbours, closed);
         }
         rings
     }
 
-    /// The rings of the tile's own sites, or nothing if a cell outside `surroundings` could change one of them.
-    pub fn of_own(delaunay: &DelaunayTriangulation<Site>, surroundings: &Rectangle) -> Option<Self> {
-        let (mut rings, mut scratch) = (Self::with_capacity(delaunay.num_vertices()), Scratch::default());
-        for vertex in delaunay.vertices() {
-            let site = vertex.data();
-            if site.role == Role::Ghost {
-                continue;
-            }
-            scratch.read(vertex);
-            let origin = Vector::new(site.position.x, site.position.y);
-            let sides = scratch.displacements.len();
-            let complete = scratch.gap.is_none()
-                && (0..sides).all(|m| {
-                    let (a, b) = (scratch.displacements[m], scratch.displacements[(m + 1) % sides]);
-                    let c = circumcentre(a, b);
-                    surroundings.contains_circle(origin + c, c.norm())
-                });
-            if !complete {
+    /// The rings of the tile's own sites at `points`, or nothing if a cell outside `surroundings` could change one of them.
+    pub fn of_own<M: Mesh>(
+        mesh: &M,
+        points: &[Vector<f64>],
+        sites: &[Site],
+        surroundings: &Rectangle,
+    ) -> Option<Self> {
+        let mut rings = Self::with_capacity(sites.len());
+        let mut neighbours = Vec::new();
+        for (site, _) in sites.iter().enumerate().filter(|(_, site)| site.role == Role::Own) {
+            if !mesh.ring(site, &mut neighbours) {
                 return None;
             }
-            rings.push(site.cell, &mut scratch);
+            let own_before = |other: usize| other < site && sites[other].role == Role::Own;
+            let mut previous = neighbours[neighbours.len() - 1] as usize;
+            for &next in &neighbours {
+                let next = next as usize;
+                let (a, b) = (points[previous] - points[site], points[next] - points[site]);
+                rings.area += cross(a, b) / 6.0;
+                // The circle of a triangle is looked at once.
+                if !own_before(previous) && !own_before(next) {
+                    let centre = circumcentre(a, b);
+                    if !surroundings.contains_circle(points[site] + centre, centre.norm()) {
+                        return None;
+                    }
+                }
+                previous = next;
+            }
+            rings.push(sites, site, &neighbours, true);
         }
         Some(rings)
     }
 
     fn with_capacity(cells: usize) -> Self {
-        Self { cells: Vec::with_capacity(cells), sides: Vec::with_capacity(cells * 6) }
+        Self { cells: Vec::with_capacity(cells), sides: Vec::with_capacity(cells * 6), area: 0.0 }
     }
 
     /// Adds a ring that starts at its lowest neighbour, or after the gap of a cell on the hull, so that it does not
     /// depend on the order of construction.
-    fn push(&mut self, cell: u32, scratch: &mut Scratch) {
-        let sides = &mut scratch.sides;
-        let first = match scratch.gap {
-            Some(gap) => gap % sides.len(),
-            None => (0..sides.len()).min_by_key(|&m| sides[m]).unwrap_or(0),
+    fn push(&mut self, sites: &[Site], site: usize, neighbours: &[u32], closed: bool) {
+        let side = |m: usize| {
+            let other = &sites[neighbours[m] as usize];
+            (other.cell, other.image)
         };
-        self.sides.extend_from_slice(&sides[first..]);
-        self.sides.extend_from_slice(&sides[..first]);
-        self.cells.push((cell, sides.len() as u32, scratch.gap.is_some()));
-    }
-}
-
-/// One ring while it is read.
-#[derive(Default)]
-struct Scratch {
-    sides: Vec<(u32, [i16; 2])>,
-    displacements: Vec<Vector<f64>>,
-    /// Number of sides before the gap of an open ring.
-    gap: Option<usize>,
-}
-
-impl Scratch {
-    fn read(&mut self, vertex: spade::handles::VertexHandle<'_, Site>) {
-        self.sides.clear();
-        self.displacements.clear();
-        self.gap = None;
-        let origin = vertex.data().position;
-        for edge in vertex.out_edges() {
-            let to = edge.to();
-            let site = to.data();
-            self.sides.push((site.cell, site.image));
-            self.displacements.push(Vector::new(site.position.x - origin.x, site.position.y - origin.y));
-            // The face to the left of an edge is the corner between it and the next edge.
-            if edge.is_outer_edge() {
-                self.gap = Some(self.sides.len());
-            }
-        }
+        let count = neighbours.len();
+        let first = if closed { (0..count).min_by_key(|&m| side(m)).unwrap_or(0) } else { 0 };
+        self.sides.extend((first..count).chain(0..first).map(side));
+        self.cells.push((sites[site].cell, count as u32, !closed));
     }
 }
 

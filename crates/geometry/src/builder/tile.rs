@@ -1,15 +1,16 @@
 //! A periodic box cut into tiles, each triangulated with its surroundings.
 
+use super::mesh::Mesh;
 use super::rings::Rings;
-use super::{Role, Site, point, triangulate};
+use super::{Role, Site};
 use crate::{PeriodicBox, Vector};
 
 /// Cells per tile: large enough that the strip around it is a small part, small enough for the caches.
-const CELLS_PER_TILE: f64 = 700.0;
+const CELLS_PER_TILE: f64 = 1000.0;
 
-/// First width of the strip around a tile, in units of √(area per cell). The circumcircles of a tissue fit; where one
-/// does not, the strip of that tile is widened until it does.
-const STRIP: f64 = 1.6;
+/// First width of the strip around a tile, in units of √(area per cell). The circumcircles of a tissue fit, and nearly all of random points; where
+/// one does not, the strip of that tile is widened until it does, and all of the tile is triangulated again.
+const STRIP: f64 = 2.0;
 
 /// A rectangle `[low, high)`.
 #[derive(Clone, Copy)]
@@ -54,7 +55,7 @@ impl<'a> Tiling<'a> {
         };
         let tiles = along(CELLS_PER_TILE.sqrt());
         // Half as wide as the strip, so that little is gathered in vain.
-        let bins = along(STRIP);
+        let bins = along(STRIP / 2.0);
         let mut tiling = Self {
             wrapped,
             cell_box,
@@ -85,13 +86,13 @@ impl<'a> Tiling<'a> {
     }
 
     /// The rings of a tile's own cells, or nothing if two sites coincide.
-    pub fn rings(&self, tile: usize) -> Option<Rings> {
+    pub fn rings<M: Mesh>(&self, tile: usize) -> Option<Rings> {
         let region = self.region(tile);
         let mut strip = STRIP * self.spacing;
         loop {
             let surroundings = region.grown(strip);
-            let delaunay = triangulate(self.gather(&region, &surroundings))?;
-            if let Some(rings) = Rings::of_own(&delaunay, &surroundings) {
+            let (points, sites) = self.gather(&region, &surroundings);
+            if let Some(rings) = Rings::of_own(&M::of(&points)?, &points, &sites, &surroundings) {
                 return Some(rings);
             }
             strip *= 1.5;
@@ -121,12 +122,13 @@ impl<'a> Tiling<'a> {
     }
 
     /// All cells and images within the surroundings; those of the tile itself are its own.
-    fn gather(&self, region: &Rectangle, surroundings: &Rectangle) -> Vec<Site> {
+    fn gather(&self, region: &Rectangle, surroundings: &Rectangle) -> (Vec<Vector<f64>>, Vec<Site>) {
         let lengths = self.cell_box.lengths();
         let expected = (surroundings.high[0] - surroundings.low[0])
             * (surroundings.high[1] - surroundings.low[1])
             / (self.spacing * self.spacing);
-        let mut sites = Vec::with_capacity((expected * 1.1) as usize + 16);
+        let expected = (expected * 1.1) as usize + 16;
+        let (mut points, mut sites) = (Vec::with_capacity(expected), Vec::with_capacity(expected));
         // Images whose box overlaps the surroundings.
         let overlap = |axis: usize, shift: f64| {
             let first = ((surroundings.low[axis] - shift) / lengths[axis] - 1e-6).floor() as i32;
@@ -151,8 +153,8 @@ impl<'a> Tiling<'a> {
                         let r = self.wrapped[cell as usize] + shift;
                         if surroundings.contains(r) {
                             let own = (row, column) == (0, 0) && region.contains(r);
+                            points.push(r);
                             sites.push(Site {
-                                position: point(r),
                                 cell,
                                 image: [column as i16, row as i16],
                                 role: if own { Role::Own } else { Role::Ghost },
@@ -162,6 +164,6 @@ impl<'a> Tiling<'a> {
                 }
             }
         }
-        sites
+        (points, sites)
     }
 }

@@ -1,7 +1,7 @@
 //! Topology: twins, triangles, the Delaunay property.
 
 use crate::samples::{honeycomb, periodic, random, sheared, squares};
-use voronudge_geometry::{Domain, Error, Tessellation, Vector, circumcentre};
+use voronudge_geometry::{Domain, Error, PeriodicBox, Tessellation, Vector, circumcentre};
 
 type Tissue = (Vec<Vector<f64>>, Domain);
 
@@ -114,6 +114,36 @@ fn renewed_is_new() -> Result<(), Error> {
             tessellation.renew(&positions)?;
             assert_eq!(tessellation, Tessellation::new(&positions, domain)?);
         }
+    }
+    Ok(())
+}
+
+/// In a tiny unit the fast triangulation takes all cells for one, so that the exact one is used: both must end at the same neighbours.
+#[test]
+fn neighbours_do_not_depend_on_the_unit() -> Result<(), Error> {
+    let unit = 2f64.powi(-80);
+    let mut lattices = Vec::new();
+    for size in [1e-15, 1e-13, 1e-11, 1e-6] {
+        let positions: Vec<_> = (squares(40, 40).into_iter().zip(random(1600, [size, size], 36)))
+            .map(|(r, shift)| r + shift)
+            .collect();
+        // Below, cells of an open field lie on a circle exactly, and the library decides.
+        if size > 1e-14 {
+            lattices.push((positions.clone(), Domain::Open));
+        }
+        lattices.push((positions, periodic([40.0, 40.0])?));
+    }
+    let many = (random(5000, [70.0, 70.0], 37), sheared([70.0, 70.0], 13.0)?);
+    for (positions, domain) in tissues()?.into_iter().chain(lattices).chain([many]) {
+        let small = match domain {
+            Domain::Periodic(cell_box) => Domain::Periodic(PeriodicBox::sheared(
+                cell_box.lengths().map(|l| l * unit),
+                cell_box.offset() * unit,
+            )?),
+            Domain::Open => Domain::Open,
+        };
+        let shrunk: Vec<_> = positions.iter().map(|r| r * unit).collect();
+        assert!(Tessellation::new(&positions, domain)?.edges() == Tessellation::new(&shrunk, small)?.edges());
     }
     Ok(())
 }
