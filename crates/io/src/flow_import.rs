@@ -10,9 +10,10 @@ use std::path::{Path, PathBuf};
 use ndarray::{Array4, ArrayView4, Axis, concatenate};
 
 use crate::array::parse_field;
-use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::dataset::{Boundary, DataSet};
 use crate::error::{Error, GridFault, SettingFault};
 use crate::flow::{FlowField, FlowNames, check_values, grid_error};
+use crate::image_scale::ImageScale;
 use crate::input::read_input;
 use crate::note::Note;
 use crate::output::OutputDirectory;
@@ -31,19 +32,12 @@ use units::take_units;
 pub struct FlowOptions {
     /// Columns of tables that are not to be recognised automatically.
     pub columns: FlowColumnNames,
-    /// Length of a pixel; default 1. Coordinates and displacements are multiplied by it.
-    pub pixel_size: Option<f64>,
+    /// Length of a pixel, by which coordinates and displacements are multiplied, time between frames, by which displacements are divided, and so
+    /// on. Units of tables that are not scaled are those of their headers.
+    pub scale: ImageScale,
     /// Side of the squares that displacements of pixels are averaged over, in the unit of length;
     /// default: one pixel, that is, no averaging.
     pub grid_spacing: Option<f64>,
-    /// Name of the unit of length after scaling; default that of a table that is not scaled, else `length`.
-    pub length_unit: Option<String>,
-    /// Name of the unit of time; default that of a table that is not scaled, else `frame` where no interval is given, else `time`.
-    pub time_unit: Option<String>,
-    /// Time between frames, by which displacements are divided; default 1.
-    pub frame_interval: Option<f64>,
-    /// The y direction of the files; default down, as images have it.
-    pub y_axis: Option<YAxis>,
     /// What is around the cells; default open.
     pub boundary: Option<Boundary>,
     /// Positions of the cells, `.npy`, in the unit of length and with y in the direction of
@@ -95,16 +89,17 @@ pub struct FlowSummary {
 /// line, for files that are not what they should be; [`Error::Grid`] for a field or a grid that
 /// cannot be used; [`Error::Setting`] for options out of range; [`Error::Value`] for positions.
 pub fn import_flow(files: &[PathBuf], options: &FlowOptions) -> Result<FlowImport, Error> {
-    let pixel = options.pixel_size.unwrap_or(1.0);
+    let scale = &options.scale;
+    let pixel = scale.pixel_size.unwrap_or(1.0);
     validate::positive("pixel_size", pixel).map_err(Error::Setting)?;
     let side = options.grid_spacing.unwrap_or(pixel);
     validate::positive("grid_spacing", side).map_err(Error::Setting)?;
     let mut dataset = describe(
         options.boundary.unwrap_or(Boundary::Open),
-        options.frame_interval,
-        options.y_axis,
-        options.length_unit.as_deref(),
-        options.time_unit.as_deref(),
+        scale.frame_interval,
+        scale.y_axis,
+        scale.length_unit.as_deref(),
+        scale.time_unit.as_deref(),
     );
     dataset.check_settings().map_err(Error::Setting)?;
 

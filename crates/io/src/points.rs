@@ -36,7 +36,7 @@ pub fn import_points(
     options: &ImportOptions,
     linking: PlaceLinking,
 ) -> Result<PointImport, Error> {
-    options.scale().begin(Boundary::Open)?;
+    options.scale.begin(Boundary::Open)?;
     if let PlaceLinking::Nearest { limit: Some(limit) } = linking {
         validate::positive("link_limit", limit).map_err(Error::Setting)?;
     }
@@ -50,7 +50,7 @@ pub fn import_points(
         frame_span(table.spots.iter().map(|spot| spot.frame)).map_err(|fault| table_error(path, fault))?;
     table.stated.is_still = frames == 1;
     let mut notes = Vec::new();
-    let pixel = table.stated.settle(&options.scale(), &mut notes).pixel_size.unwrap_or(1.0);
+    let pixel = table.stated.settle(&options.scale, &mut notes).pixel_size.unwrap_or(1.0);
     let domain = match options.boundary {
         Some(Boundary::Periodic { lengths }) => {
             let fault =

@@ -34,33 +34,12 @@ const EMPTY: u64 = 100_000_000;
 pub struct ImportOptions {
     /// Columns that are not to be recognised automatically.
     pub columns: ColumnNames,
-    /// Length of one unit of the table (one pixel); coordinates are multiplied by it.
-    pub pixel_size: Option<f64>,
-    /// Name of the unit of length after that; default: without `pixel_size` the unit that
-    /// TrackMate's header rows name, else `length`.
-    pub length_unit: Option<String>,
-    /// Name of the unit of time; default `frame` where no interval is given, else `time`.
-    pub time_unit: Option<String>,
-    /// Time between frames; default 1.
-    pub frame_interval: Option<f64>,
-    /// The y direction of the table; default down, as images have it.
-    pub y_axis: Option<YAxis>,
+    /// Length of one unit of the table (one pixel) and so on. Without `pixel_size` the unit of length is that of TrackMate's header rows.
+    pub scale: ImageScale,
     /// What is around the cells; default open.
     pub boundary: Option<Boundary>,
     /// Width and height of the image, in units of the table: the field of view.
     pub image_size: Option<[f64; 2]>,
-}
-
-impl ImportOptions {
-    pub(crate) fn scale(&self) -> ImageScale {
-        ImageScale {
-            pixel_size: self.pixel_size,
-            length_unit: self.length_unit.clone(),
-            time_unit: self.time_unit.clone(),
-            frame_interval: self.frame_interval,
-            y_axis: self.y_axis,
-        }
-    }
 }
 
 /// An imported data set and what became of the rows.
@@ -122,7 +101,7 @@ pub fn import_tracks(path: &Path, options: &ImportOptions) -> Result<Import, Err
 }
 
 fn import(path: &Path, options: &ImportOptions, layout: Layout) -> Result<Import, Error> {
-    options.scale().begin(Boundary::Open)?;
+    options.scale.begin(Boundary::Open)?;
     if is_zarr(path) {
         let (table, record) = read_geff(path)?;
         return finish(path, options, record, (table, Layout::Tracks));
@@ -140,7 +119,7 @@ pub(crate) fn finish(
     (table, layout): (SpotTable, Layout),
 ) -> Result<Import, Error> {
     let mut notes = table.notes.clone();
-    let scale = table.stated.settle(&options.scale(), &mut notes);
+    let scale = table.stated.settle(&options.scale, &mut notes);
     let boundary = options.boundary.unwrap_or(Boundary::Open);
     let mut dataset = describe(
         boundary,

@@ -10,7 +10,7 @@ use crate::table::VectorTable;
 pub(super) fn take_units(table: &VectorTable, options: &FlowOptions, dataset: &mut DataSet) -> Vec<Note> {
     let mut notes = vec![Note::guessed(format!("of the {}", table.columns))];
     notes.extend(table.notes.iter().cloned());
-    let is_scaled = options.pixel_size.is_some() || options.frame_interval.is_some();
+    let is_scaled = options.scale.pixel_size.is_some() || options.scale.frame_interval.is_some();
     let (Some(place), false) = (table.place_unit.as_deref(), is_scaled) else { return notes };
     let (length, time) = match table.unit.as_deref().and_then(|unit| unit.split_once('/')) {
         Some((length, time)) => (length.trim(), Some(time.trim())),
@@ -21,10 +21,10 @@ pub(super) fn take_units(table: &VectorTable, options: &FlowOptions, dataset: &m
             "places are in {place}, but displacements in {length}: the flow comes out by the ratio of the two too small or too large"
         )));
     }
-    if options.length_unit.is_none() {
+    if options.scale.length_unit.is_none() {
         place.clone_into(&mut dataset.length_unit);
     }
-    if let (Some(time), None) = (time, &options.time_unit) {
+    if let (Some(time), None) = (time, &options.scale.time_unit) {
         time.clone_into(&mut dataset.time_unit);
     }
     notes.push(Note::read(format!(

@@ -4,8 +4,8 @@ use std::path::PathBuf;
 
 use ndarray::{Array3, Array4, array};
 use voronudge_io::{
-    Boundary, Error, FlowColumnNames, FlowField, FlowImport, FlowOptions, OutputDirectory, Source, YAxis,
-    import_flow,
+    Boundary, Error, FlowColumnNames, FlowField, FlowImport, FlowOptions, ImageScale, OutputDirectory,
+    Source, YAxis, import_flow,
 };
 
 use crate::{Scratch, assert_told};
@@ -18,7 +18,10 @@ fn dense() -> Array3<f64> {
 }
 
 fn up() -> FlowOptions {
-    FlowOptions { y_axis: Some(YAxis::Up), ..FlowOptions::default() }
+    FlowOptions {
+        scale: ImageScale { y_axis: Some(YAxis::Up), ..ImageScale::default() },
+        ..FlowOptions::default()
+    }
 }
 
 fn import(field: &Array3<f64>, options: &FlowOptions) -> Result<FlowImport, Error> {
@@ -32,7 +35,10 @@ fn field(import: FlowImport) -> FlowField {
 
 #[test]
 fn without_averaging_every_pixel_is_a_grid_point_at_its_centre() {
-    let options = FlowOptions { pixel_size: Some(0.5), frame_interval: Some(4.0), ..up() };
+    let options = FlowOptions {
+        scale: ImageScale { pixel_size: Some(0.5), frame_interval: Some(4.0), ..up().scale },
+        ..up()
+    };
     let import = import(&dense(), &options).unwrap();
     assert!(!import.is_complete());
     assert_eq!((import.summary.frames, import.summary.rows, import.summary.columns), (1, 6, 4));
@@ -78,7 +84,11 @@ fn squares_need_not_be_whole_pixels_and_the_rest_is_left_out() {
     // 16.25 / 0.65 is 25 pixels but for rounding: 100 pixels make four squares, 101 too.
     for pixels in [100, 101] {
         let dense = Array3::zeros((pixels, 100, 2));
-        let options = FlowOptions { pixel_size: Some(0.65), grid_spacing: Some(16.25), ..up() };
+        let options = FlowOptions {
+            scale: ImageScale { pixel_size: Some(0.65), ..up().scale },
+            grid_spacing: Some(16.25),
+            ..up()
+        };
         assert_eq!(import(&dense, &options).unwrap().summary.rows, 4);
     }
 }
@@ -147,10 +157,13 @@ fn what_is_saved_is_loaded_again() {
     let flow = scratch.write_array("flow.npy", &dense());
     let positions = scratch.write_array("cells.npy", &array![[1.0, 2.0], [3.0, 4.0]]);
     let options = FlowOptions {
-        pixel_size: Some(0.65),
-        frame_interval: Some(10.0),
-        length_unit: Some("um".into()),
-        time_unit: Some("min".into()),
+        scale: ImageScale {
+            pixel_size: Some(0.65),
+            frame_interval: Some(10.0),
+            length_unit: Some("um".into()),
+            time_unit: Some("min".into()),
+            ..ImageScale::default()
+        },
         ..FlowOptions::default()
     };
     for (positions, complete) in [(None, false), (Some(positions.clone()), true)] {
@@ -220,9 +233,13 @@ fn options_that_cannot_be_meant_are_told() {
         "smaller",
     );
     assert_told(with(FlowOptions { grid_spacing: Some(NAN), ..up() }), &["grid_spacing is NaN"], "positive");
-    assert_told(with(FlowOptions { pixel_size: Some(0.0), ..up() }), &["pixel_size is 0"], "positive");
     assert_told(
-        with(FlowOptions { frame_interval: Some(-1.0), ..up() }),
+        with(FlowOptions { scale: ImageScale { pixel_size: Some(0.0), ..up().scale }, ..up() }),
+        &["pixel_size is 0"],
+        "positive",
+    );
+    assert_told(
+        with(FlowOptions { scale: ImageScale { frame_interval: Some(-1.0), ..up().scale }, ..up() }),
         &["frame_interval is -1"],
         "positive",
     );

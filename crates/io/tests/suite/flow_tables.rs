@@ -6,14 +6,19 @@ use std::path::PathBuf;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
-use voronudge_io::{Error, FlowColumnNames, FlowField, FlowImport, FlowOptions, YAxis, import_flow};
+use voronudge_io::{
+    Error, FlowColumnNames, FlowField, FlowImport, FlowOptions, ImageScale, YAxis, import_flow,
+};
 
 use crate::{Scratch, assert_told};
 
 const NAN: f64 = f64::NAN;
 
 fn up() -> FlowOptions {
-    FlowOptions { y_axis: Some(YAxis::Up), ..FlowOptions::default() }
+    FlowOptions {
+        scale: ImageScale { y_axis: Some(YAxis::Up), ..ImageScale::default() },
+        ..FlowOptions::default()
+    }
 }
 
 fn import(text: impl AsRef<[u8]>) -> Result<FlowImport, Error> {
@@ -178,7 +183,10 @@ fn digits_that_were_not_printed_do_no_harm() {
 fn lengths_are_scaled_and_y_is_turned() {
     let scratch = Scratch::new();
     let table = scratch.write("piv.txt", lines(&ROWS, " "));
-    let options = FlowOptions { pixel_size: Some(0.5), frame_interval: Some(2.0), ..FlowOptions::default() };
+    let options = FlowOptions {
+        scale: ImageScale { pixel_size: Some(0.5), frame_interval: Some(2.0), ..ImageScale::default() },
+        ..FlowOptions::default()
+    };
     let flow: FlowField = import_flow(&[table], &options).unwrap().dataset.flow.unwrap();
     assert_eq!((flow.x, flow.y), (vec![8.0, 16.0, 24.0], vec![-6.0, -10.0]));
     // (6, -6) pixels per frame at (48, 12).

@@ -1,13 +1,16 @@
 //! Tables of tracks as other programs write them: encodings, separators, names of columns.
 
 use ndarray::Array3;
-use voronudge_io::{Error, Import, ImportOptions, NoteKind, YAxis, import_tracks};
+use voronudge_io::{Error, ImageScale, Import, ImportOptions, NoteKind, YAxis, import_tracks};
 
 use crate::{Scratch, assert_told};
 
 fn tracks(text: impl AsRef<[u8]>) -> Result<Import, Error> {
     let scratch = Scratch::new();
-    let options = ImportOptions { y_axis: Some(YAxis::Up), ..ImportOptions::default() };
+    let options = ImportOptions {
+        scale: ImageScale { y_axis: Some(YAxis::Up), ..ImageScale::default() },
+        ..ImportOptions::default()
+    };
     import_tracks(&scratch.write("tracks.csv", text), &options)
 }
 

@@ -1,6 +1,6 @@
 //! Imports of TrackMate's own files.
 
-use voronudge_io::{Error, Import, ImportOptions, NoteKind, import_trackmate, import_tracks};
+use voronudge_io::{Error, ImageScale, Import, ImportOptions, NoteKind, import_trackmate, import_tracks};
 
 use crate::{Scratch, assert_told};
 
@@ -91,7 +91,10 @@ fn a_model_is_read_as_its_filters_leave_it() {
 fn options_that_contradict_the_file_are_told() {
     let doubts = |interval, unit: &str| {
         let time_unit = Some(unit.to_owned());
-        let options = ImportOptions { frame_interval: Some(interval), time_unit, ..ImportOptions::default() };
+        let options = ImportOptions {
+            scale: ImageScale { frame_interval: Some(interval), time_unit, ..ImageScale::default() },
+            ..ImportOptions::default()
+        };
         let import = read_with(MODEL, &options).unwrap();
         assert_eq!(import.dataset.frame_interval, interval);
         import

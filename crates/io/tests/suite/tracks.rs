@@ -6,7 +6,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use ndarray::array;
 use voronudge_io::{
-    Boundary, ColumnNames, Error, Import, ImportOptions, ImportSummary, YAxis, import_trackmate,
+    Boundary, ColumnNames, Error, ImageScale, Import, ImportOptions, ImportSummary, YAxis, import_trackmate,
     import_tracks,
 };
 
@@ -29,7 +29,11 @@ fn tracks(text: impl AsRef<[u8]>) -> Result<Import, Error> {
 
 fn tracks_with(text: impl AsRef<[u8]>, columns: ColumnNames) -> Result<Import, Error> {
     let scratch = Scratch::new();
-    let options = ImportOptions { columns, y_axis: Some(YAxis::Up), ..ImportOptions::default() };
+    let options = ImportOptions {
+        scale: ImageScale { y_axis: Some(YAxis::Up), ..ImageScale::default() },
+        columns,
+        ..ImportOptions::default()
+    };
     import_tracks(&scratch.write("tracks.csv", text), &options)
 }
 
@@ -97,11 +101,13 @@ fn short_column_names_without_extra_rows_are_read() {
 #[test]
 fn options_say_what_the_table_does_not() {
     let options = ImportOptions {
-        pixel_size: Some(0.5),
-        length_unit: Some("µm".into()),
-        time_unit: Some("min".into()),
-        frame_interval: Some(10.0),
-        y_axis: Some(YAxis::Up),
+        scale: ImageScale {
+            pixel_size: Some(0.5),
+            length_unit: Some("µm".into()),
+            time_unit: Some("min".into()),
+            frame_interval: Some(10.0),
+            y_axis: Some(YAxis::Up),
+        },
         boundary: Some(Boundary::Periodic { lengths: [100.0, 100.0] }),
         ..ImportOptions::default()
     };
@@ -112,8 +118,10 @@ fn options_say_what_the_table_does_not() {
     assert_eq!((data.frame_interval, data.y_axis), (10.0, YAxis::Up));
     assert_eq!(Some(data.boundary), options.boundary);
     // After scaling, the unit of the table is no longer the unit of the data.
-    let options =
-        ImportOptions { pixel_size: Some(0.5), frame_interval: Some(2.0), ..ImportOptions::default() };
+    let options = ImportOptions {
+        scale: ImageScale { pixel_size: Some(0.5), frame_interval: Some(2.0), ..ImageScale::default() },
+        ..ImportOptions::default()
+    };
     let data = trackmate_with(EXPORT, &options).unwrap().dataset;
     assert_eq!((data.length_unit.as_str(), data.time_unit.as_str()), ("length", "time"));
 }
@@ -125,7 +133,10 @@ fn impossible_options_are_told() {
         (Some(NAN), None, "pixel_size is NaN"),
         (None, Some(-1.0), "frame_interval is -1"),
     ] {
-        let options = ImportOptions { pixel_size, frame_interval: interval, ..ImportOptions::default() };
+        let options = ImportOptions {
+            scale: ImageScale { pixel_size, frame_interval: interval, ..ImageScale::default() },
+            ..ImportOptions::default()
+        };
         let facts = [fact, "finite and above zero"];
         assert_told(trackmate_with(EXPORT, &options), &facts, "positive number");
     }

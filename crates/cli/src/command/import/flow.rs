@@ -99,12 +99,8 @@ impl Reporting for Arguments {
                 mask: self.mask_column,
             },
             boundary: scale.boundary(),
-            pixel_size: scale.image.pixel_size,
+            scale: scale.image.scale(),
             grid_spacing: self.grid_spacing,
-            length_unit: scale.image.length_unit,
-            time_unit: scale.image.time_unit,
-            frame_interval: scale.image.frame_interval,
-            y_axis: scale.image.y_axis,
             positions: self.positions,
         };
         let import = import_flow(&self.files, &options)?;

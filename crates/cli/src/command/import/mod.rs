@@ -102,30 +102,19 @@ struct SpotArguments {
 impl SpotArguments {
     /// With the name of the column of tracks, where there is one.
     fn options(self, track: Option<String>) -> ImportOptions {
-        let ImageScale { pixel_size, length_unit, time_unit, frame_interval, y_axis } =
-            self.scale.image.scale();
         ImportOptions {
             boundary: self.scale.boundary(),
             columns: ColumnNames { track, frame: self.frame_column, x: self.x_column, y: self.y_column },
-            pixel_size,
-            length_unit,
-            time_unit,
-            frame_interval,
-            y_axis,
+            scale: self.scale.image.scale(),
             image_size: self.image_size.map(|size| [size[0], size[1]]),
         }
     }
 }
 
 impl ImageArguments {
-    fn scale(&self) -> ImageScale {
-        ImageScale {
-            pixel_size: self.pixel_size,
-            length_unit: self.length_unit.clone(),
-            time_unit: self.time_unit.clone(),
-            frame_interval: self.frame_interval,
-            y_axis: self.y_axis,
-        }
+    fn scale(self) -> ImageScale {
+        let Self { pixel_size, length_unit, time_unit, frame_interval, y_axis } = self;
+        ImageScale { pixel_size, length_unit, time_unit, frame_interval, y_axis }
     }
 }
 
