@@ -3,6 +3,7 @@
 mod book;
 mod check;
 mod fuzz;
+mod size;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use std::error::Error;
@@ -30,6 +31,8 @@ enum Command {
     },
     /// Feed readers of files with inputs that are changed by a fuzzer.
     Fuzz(fuzz::Arguments),
+    /// Count lines and types of the source of every crate, without tests.
+    Size(size::Arguments),
 }
 
 fn main() -> ExitCode {
@@ -50,6 +53,7 @@ fn run() -> Result<ExitCode, Box<dyn Error>> {
         Command::Book => book::run(&root)?,
         Command::Check { only } => check::run(&root, &only)?,
         Command::Fuzz(arguments) => fuzz::run(&root, &arguments)?,
+        Command::Size(arguments) => size::run(&root, &arguments)?,
     }
     Ok(ExitCode::SUCCESS)
 }
