@@ -1,6 +1,5 @@
 //! Where cells live: a periodic box (also sheared, for Lees–Edwards boundaries) or an open field of view.
 
-use crate::builder::MOST_BOXES;
 use crate::{Error, Scalar, Vector};
 use std::ops::RangeInclusive;
 
@@ -27,6 +26,9 @@ const SIDES: RangeInclusive<f64> = 1e-100..=1e100;
 
 /// Largest shear of a box, in its widths: the offset is then known to 10⁻⁷ widths.
 const MOST_WIDTHS: f64 = 1e9;
+
+/// Largest distance of a position from the origin, in boxes: images are counted in 16 bits.
+pub(crate) const MOST_BOXES: f64 = 8192.0;
 
 /// Widths of the box that its shear, and cells along it, may run on. Images of cells that went up a few boxes stay countable until the next offset is taken.
 const RUNNING_ON: f64 = 0.25 * MOST_BOXES;

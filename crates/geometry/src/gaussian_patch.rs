@@ -1,7 +1,7 @@
 //! Voronoi cells in Gaussian patches: integrals of a Gaussian over polygons and along their sides.
 
-use crate::overlap::{Side, bounds, by_square, sides};
-use crate::{BySquare, CellPolygon, Grid, Overlap, Tessellation, Vector, cross};
+use crate::by_square::{BySquare, Overlap, Side, bounds, by_square, sides};
+use crate::{CellPolygon, Grid, Tessellation, Vector, cross};
 use rayon::prelude::*;
 
 /// Nodes and weights of Gauss and Legendre's rule of five points on (0, 1).

@@ -27,6 +27,7 @@
 
 mod builder;
 mod by_sides;
+mod by_square;
 mod centroid;
 mod domain;
 mod error;
@@ -50,6 +51,7 @@ mod tessellation;
 mod transition;
 
 pub use by_sides::{Batch, BySides};
+pub use by_square::{BySquare, Overlap};
 pub use centroid::centroid_slopes;
 pub use domain::{Domain, PeriodicBox};
 pub use error::Error;
@@ -59,7 +61,7 @@ pub use honeycomb::honeycomb;
 pub use interface::Interface;
 pub use lanes::Lanes;
 pub use moving::{MovingTessellation, Renewal};
-pub use overlap::{BySquare, Overlap, SidePiece, overlaps, side_pieces};
+pub use overlap::{SidePiece, overlaps, side_pieces};
 pub use places::Places;
 pub use plane::{
     Corner, Outer, Vector, circumcentre, cross, dot, quarter_turn, side_direction, side_direction_slope,

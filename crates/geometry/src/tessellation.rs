@@ -1,6 +1,6 @@
 //! The topology of a Voronoi tessellation: who is whose neighbour, across which image.
 
-use crate::{Domain, Error, Scalar, Vector, builder};
+use crate::{Domain, Scalar, Vector};
 use rayon::prelude::*;
 
 /// Which cells are neighbours, as flat arrays over *half-edges*.
@@ -33,36 +33,6 @@ pub struct Triangle {
 impl Tessellation {
     /// Number of cells that any tessellation can hold: half-edges are numbered by 32 bits.
     pub const CELL_LIMIT: usize = (u32::MAX / 8) as usize;
-
-    /// Tessellates cell centres at `positions` (N, in any unit).
-    ///
-    /// Periodic positions need not be inside the box. Cells on a common circle (a square lattice, say) get one of the
-    /// equivalent triangulations, in a periodic box a fan from the lowest of them; the Voronoi edge between the others then
-    /// has length zero.
-    ///
-    /// # Errors
-    /// [`Error`] if a position is not finite, two cells coincide, or there are too few cells (three, not on a line, for
-    /// an open field; one for a periodic box).
-    pub fn new(positions: &[Vector<f64>], domain: Domain) -> Result<Self, Error> {
-        let mut tessellation = Self {
-            domain,
-            start: Vec::new(),
-            neighbour: Vec::new(),
-            image: Vec::new(),
-            twin_place: Vec::new(),
-            on_hull: Vec::new(),
-        };
-        builder::rebuild(&mut tessellation, positions)?;
-        Ok(tessellation)
-    }
-
-    /// Replaces the topology by that of new positions in the same domain, reusing the arrays.
-    ///
-    /// # Errors
-    /// As [`Tessellation::new`]; the old topology is then lost.
-    pub fn renew(&mut self, positions: &[Vector<f64>]) -> Result<(), Error> {
-        builder::rebuild(self, positions)
-    }
 
     /// The boundary condition.
     pub fn domain(&self) -> Domain {

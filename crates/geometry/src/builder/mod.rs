@@ -7,53 +7,66 @@
 //! A fast triangulation comes first. If the flips cannot prove that it is the Delaunay triangulation, or make it so, an exact one follows.
 
 mod mesh;
+mod rectangle;
 mod rings;
+mod site;
 mod tile;
 
-use crate::moving::Repair;
+use crate::domain::MOST_BOXES;
+use crate::moving::repair::Repair;
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector};
 use mesh::{Exact, Fast, Mesh, flushed};
 use rayon::prelude::*;
 pub(crate) use rings::find_twins;
 use rings::{Rings, assemble};
+use site::{Role, Site};
 use tile::Tiling;
-
-/// What a point of a triangulation is: a cell or a periodic image of one.
-#[derive(Clone, Copy)]
-struct Site {
-    cell: u32,
-    image: [i16; 2],
-    role: Role,
-}
-
-/// Whether a site's ring is wanted, or only its presence.
-#[derive(Clone, Copy, PartialEq)]
-enum Role {
-    Own,
-    Ghost,
-}
 
 /// Sizes, relative to √(area per cell), of the displacements that break ties between cells on one circle. They move the
 /// question of who is a neighbour, not the cells. The box is sheared by as much, for ties among images of one cell.
 const TIE_BREAKS: [f64; 4] = [0.0, 1e-11, 1e-9, 1e-7];
 
-/// Largest distance of a position from the origin, in boxes: images are counted in 16 bits.
-pub(crate) const MOST_BOXES: f64 = 8192.0;
+impl Tessellation {
+    /// Tessellates cell centres at `positions` (N, in any unit).
+    ///
+    /// Periodic positions need not be inside the box. Cells on a common circle (a square lattice, say) get one of the
+    /// equivalent triangulations, in a periodic box a fan from the lowest of them; the Voronoi edge between the others then
+    /// has length zero.
+    ///
+    /// # Errors
+    /// [`Error`] if a position is not finite, two cells coincide, or there are too few cells (three, not on a line, for
+    /// an open field; one for a periodic box).
+    pub fn new(positions: &[Vector<f64>], domain: Domain) -> Result<Self, Error> {
+        let mut tessellation = Self {
+            domain,
+            start: Vec::new(),
+            neighbour: Vec::new(),
+            image: Vec::new(),
+            twin_place: Vec::new(),
+            on_hull: Vec::new(),
+        };
+        tessellation.renew(positions)?;
+        Ok(tessellation)
+    }
 
-/// Replaces the topology of `tessellation` by that of `positions`.
-pub(crate) fn rebuild(tessellation: &mut Tessellation, positions: &[Vector<f64>]) -> Result<(), Error> {
-    let cells = positions.len();
-    if cells > Tessellation::CELL_LIMIT {
-        return Err(Error::TooManyCells { cells, limit: Tessellation::CELL_LIMIT });
-    }
-    for (cell, r) in positions.iter().enumerate() {
-        if !(r.x.abs() < 1e100 && r.y.abs() < 1e100) {
-            return Err(Error::Position { cell, x: r.x, y: r.y });
+    /// Replaces the topology by that of new positions in the same domain, reusing the arrays.
+    ///
+    /// # Errors
+    /// As [`Tessellation::new`]; the old topology is then lost.
+    pub fn renew(&mut self, positions: &[Vector<f64>]) -> Result<(), Error> {
+        let cells = positions.len();
+        if cells > Self::CELL_LIMIT {
+            return Err(Error::TooManyCells { cells, limit: Self::CELL_LIMIT });
         }
-    }
-    match tessellation.domain() {
-        Domain::Periodic(cell_box) => periodic(tessellation, positions, &cell_box),
-        Domain::Open => open(tessellation, positions),
+        for (cell, r) in positions.iter().enumerate() {
+            if !(r.x.abs() < 1e100 && r.y.abs() < 1e100) {
+                return Err(Error::Position { cell, x: r.x, y: r.y });
+            }
+        }
+        match self.domain() {
+            Domain::Periodic(cell_box) => periodic(self, positions, &cell_box),
+            Domain::Open => open(self, positions),
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! Rings read off a triangulation, and their assembly into a tessellation.
 
 use super::mesh::Mesh;
-use super::tile::Rectangle;
-use super::{Role, Site};
+use super::rectangle::Rectangle;
+use super::site::{Role, Site};
 use crate::{Error, Tessellation, Vector, circumcentre, cross};
 
 /// The rings of some cells.

@@ -1,8 +1,9 @@
 //! A periodic box cut into tiles, each triangulated with its surroundings.
 
 use super::mesh::Mesh;
+use super::rectangle::Rectangle;
 use super::rings::Rings;
-use super::{Role, Site};
+use super::site::{Role, Site};
 use crate::{PeriodicBox, Vector};
 
 /// Cells per tile: large enough that the strip around it is a small part, small enough for the caches.
@@ -11,30 +12,6 @@ const CELLS_PER_TILE: f64 = 1000.0;
 /// First width of the strip around a tile, in units of √(area per cell). The circumcircles of a tissue fit, and nearly all of random points; where
 /// one does not, the strip of that tile is widened until it does, and all of the tile is triangulated again.
 const STRIP: f64 = 2.0;
-
-/// A rectangle `[low, high)`.
-#[derive(Clone, Copy)]
-pub(super) struct Rectangle {
-    pub low: [f64; 2],
-    pub high: [f64; 2],
-}
-
-impl Rectangle {
-    fn grown(&self, width: f64) -> Self {
-        Self { low: self.low.map(|x| x - width), high: self.high.map(|x| x + width) }
-    }
-
-    pub fn contains(&self, r: Vector<f64>) -> bool {
-        r.x >= self.low[0] && r.x < self.high[0] && r.y >= self.low[1] && r.y < self.high[1]
-    }
-
-    pub fn contains_circle(&self, centre: Vector<f64>, radius: f64) -> bool {
-        centre.x - radius >= self.low[0]
-            && centre.x + radius < self.high[0]
-            && centre.y - radius >= self.low[1]
-            && centre.y + radius < self.high[1]
-    }
-}
 
 /// Wrapped cells, sorted into bins, and the grid of tiles over them.
 pub(super) struct Tiling<'a> {

@@ -3,7 +3,8 @@
 use super::lawson::Lawson;
 use super::splice::Spare;
 use super::{MovingTessellation, Renewal};
-use crate::builder::{MOST_BOXES, find_twins};
+use crate::builder::find_twins;
+use crate::domain::MOST_BOXES;
 use crate::{Domain, Error, PeriodicBox, Tessellation, Vector};
 use std::collections::HashMap;
 

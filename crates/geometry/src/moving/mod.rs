@@ -4,16 +4,15 @@ mod diagonal;
 mod exchange;
 mod hull;
 mod lawson;
+pub(crate) mod repair;
 mod scan;
 mod splice;
 mod split;
 mod vertices;
 
-use crate::{Domain, Error, PeriodicBox, Tessellation, Vector, builder};
-use lawson::Lawson;
+use crate::{Domain, Error, PeriodicBox, Tessellation, Vector};
 use rayon::prelude::*;
-use scan::{Finding, scan};
-use splice::Spare;
+use repair::Repair;
 use split::CHUNK;
 
 /// Into how many parts a displacement is cut if it turns triangles over.
@@ -59,13 +58,6 @@ pub enum Renewal {
     Flipped(usize),
     /// Anew.
     Rebuilt,
-}
-
-/// The work space of repairs.
-#[derive(Debug, Clone, Default)]
-pub(crate) struct Repair {
-    lawson: Lawson,
-    spare: Spare,
 }
 
 impl MovingTessellation {
@@ -126,7 +118,7 @@ impl MovingTessellation {
             }
         }
         self.tessellation.set_domain(domain);
-        builder::rebuild(&mut self.tessellation, positions)?;
+        self.tessellation.renew(positions)?;
         Ok(Renewal::Rebuilt)
     }
 
@@ -153,21 +145,6 @@ impl MovingTessellation {
             self.tessellation.set_domain(Domain::Periodic(here));
             flips += self.repair.attempt(&mut self.tessellation, &between)?;
         }
-        Some(flips)
-    }
-}
-
-impl Repair {
-    /// Makes a tessellation that of the positions by flips, and counts them. If that fails it stays as it was.
-    pub fn attempt(&mut self, tessellation: &mut Tessellation, positions: &[Vector<f64>]) -> Option<usize> {
-        let Finding::Suspects(suspects) = scan(tessellation, positions) else {
-            return None;
-        };
-        if suspects.is_empty() {
-            return Some(0);
-        }
-        let flips = self.lawson.settle(tessellation, positions, &suspects).ok()?;
-        self.spare.splice(tessellation, &self.lawson);
         Some(flips)
     }
 }

@@ -3,7 +3,7 @@
 use super::diagonal::Site;
 use super::hull::turns_once;
 use super::split::CHUNK;
-use crate::builder::MOST_BOXES;
+use crate::domain::MOST_BOXES;
 use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector, cross, dot};
 use pulp::{Arch, Simd, WithSimd};
 use rayon::prelude::*;
