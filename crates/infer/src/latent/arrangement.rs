@@ -89,9 +89,9 @@ pub(super) fn rearranged(
     index: usize,
     evidence: &Evidence<'_>,
 ) -> Result<Option<Vec<Change>>, Error> {
-    let Some(centre) = single(&scene.changes[index]) else { return Ok(None) };
+    let Some(centre) = scene.changes[index].insertion() else { return Ok(None) };
     let place =
-        |change: usize| single(&scene.changes[change]).map(|place| centre + scene.between(centre, place));
+        |change: usize| scene.changes[change].insertion().map(|at| centre + scene.between(centre, at));
     let near = (0..scene.changes.len())
         .filter(|other| *other != index && place(*other).is_some_and(|at| (at - centre).norm() < TOGETHER));
     let groups = std::iter::once(vec![index]).chain(near.map(|other| vec![index, other]));
@@ -151,9 +151,4 @@ pub(super) fn rearranged(
         });
         kept.map(|(_, change)| change.clone()).chain(added).collect()
     }))
-}
-
-/// The place of a cell that was put in where none was detected.
-fn single(change: &Change) -> Option<Vector<f64>> {
-    change.added.first().copied().filter(|_| change.kind == ChangeKind::Inserted)
 }

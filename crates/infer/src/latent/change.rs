@@ -37,3 +37,10 @@ pub struct Change {
     /// faults.
     pub evidence: f64,
 }
+
+impl Change {
+    /// The place of a cell that is put in where none was detected.
+    pub(super) fn insertion(&self) -> Option<Vector<f64>> {
+        self.added.first().copied().filter(|_| self.kind == ChangeKind::Inserted)
+    }
+}

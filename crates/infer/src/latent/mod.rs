@@ -31,7 +31,7 @@ use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Progress, Request
 use arrangement::rearranged;
 use law::{Law, coefficients};
 use polygons::Polygons;
-use proposal::{Evidence, Stage, assess, proposals, reassess};
+use proposal::{Evidence, Stage, assess, proposals, reassess, split_between};
 use rayon::prelude::*;
 use scene::Scene;
 use std::ops::ControlFlow;
@@ -337,8 +337,17 @@ impl Search<'_> {
                 scene.explain(&evidence.law);
                 let mut index = 0;
                 while index < scene.changes.len() {
-                    let again = reassess(scene, index, stage, &evidence)?;
                     let mut changes = scene.changes.clone();
+                    if stage != Stage::Additions
+                        && let Some((other, split)) = split_between(scene, index, &evidence)?
+                    {
+                        changes[index] = split;
+                        changes.remove(other);
+                        index -= usize::from(other < index);
+                        scene.change(changes)?;
+                        continue;
+                    }
+                    let again = reassess(scene, index, stage, &evidence)?;
                     if again.evidence < LEAST_EVIDENCE {
                         changes.remove(index);
                     } else {

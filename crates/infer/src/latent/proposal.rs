@@ -38,6 +38,11 @@ const SHARES: [(ChangeKind, usize, usize); 4] = [
     (ChangeKind::Merged, 40, 4),
 ];
 
+/// Distances, in ℓ₀, of two cells that were put in from the detection between them, and of their midpoint, within which the two may be what was
+/// detected as one.
+const BESIDE: f64 = 0.9;
+const BETWEEN: f64 = 0.25;
+
 /// Evidence that a split needs beyond that of a cell beside the detection.
 const SPLIT_AHEAD: f64 = 6.0;
 
@@ -160,14 +165,7 @@ pub(super) fn reassess(
             change.added.iter().map(|place| proposal(ChangeKind::Inserted, *place, Vec::new())).collect()
         }
         ChangeKind::Inserted if stage != Stage::Additions => {
-            let distance = |cell: usize| scene.between(centre, scene.measured.positions[cell]).norm();
-            let detections = scene.origins.iter().filter_map(|origin| match origin {
-                Origin::Detected(cell) => Some(*cell),
-                Origin::Added(..) => None,
-            });
-            let nearest = detections.min_by(|a, b| distance(*a).total_cmp(&distance(*b)));
-            let split = |cell: usize| proposal(ChangeKind::Split, scene.measured.positions[cell], vec![cell]);
-            nearest.map(split).into_iter().collect()
+            nearest_detection(scene, centre).map(|cell| split(scene, cell)).into_iter().collect()
         }
         _ => Vec::new(),
     };
@@ -180,6 +178,57 @@ pub(super) fn reassess(
         }
     }
     Ok(best)
+}
+
+/// For two cells that were put in on either side of a detection: this split into the two, if that has more evidence than both, with the number of
+/// the other change. A detection in the middle of two cells keeps them apart, wherever its own velocity is believed.
+pub(super) fn split_between(
+    scene: &Scene<'_>,
+    index: usize,
+    evidence: &Evidence<'_>,
+) -> Result<Option<(usize, Change)>, Error> {
+    let insertion = |index: usize| scene.changes[index].insertion();
+    let Some((own, detection)) = insertion(index).and_then(|own| Some((own, nearest_detection(scene, own)?)))
+    else {
+        return Ok(None);
+    };
+    let middle = scene.measured.positions[detection];
+    let arm = scene.between(middle, own);
+    let opposite = (0..scene.changes.len())
+        .filter(|other| *other != index)
+        .filter_map(|other| Some((other, insertion(other)?)))
+        .find(|(_, place)| {
+            let across = scene.between(middle, *place);
+            arm.norm().max(across.norm()) < BESIDE && 0.5 * (arm + across).norm() < BETWEEN
+        });
+    let Some((other, place)) = opposite else { return Ok(None) };
+    let inserted = |at: Vector<f64>| Proposal {
+        kind: ChangeKind::Inserted,
+        centre: at,
+        removed: Vec::new(),
+        promise: 0.0,
+    };
+    let first = judge(scene, &inserted(own), &[index], &[own], evidence)?;
+    let second = judge(scene, &inserted(place), &[index, other], &[place], evidence)?;
+    let split = judge(scene, &split(scene, detection), &[index, other], &[], evidence)?;
+    let ahead = split.evidence > first.evidence + second.evidence;
+    Ok(ahead.then_some((other, split)))
+}
+
+/// A detection to be split.
+fn split(scene: &Scene<'_>, cell: usize) -> Proposal {
+    let centre = scene.measured.positions[cell];
+    Proposal { kind: ChangeKind::Split, centre, removed: vec![cell], promise: 0.0 }
+}
+
+/// The detection that is nearest to a place, of those that stand.
+fn nearest_detection(scene: &Scene<'_>, place: Vector<f64>) -> Option<usize> {
+    let distance = |cell: usize| scene.between(place, scene.measured.positions[cell]).norm();
+    let detections = scene.origins.iter().filter_map(|origin| match origin {
+        Origin::Detected(cell) => Some(*cell),
+        Origin::Added(..) => None,
+    });
+    detections.min_by(|a, b| distance(*a).total_cmp(&distance(*b)))
 }
 
 /// What speaks for a proposal once some of the changes are undone, from some places or those that are usual.
