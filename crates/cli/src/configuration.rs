@@ -1,7 +1,6 @@
 //! Options from a file: its entries become words of the command line, before those that were typed.
 
 use crate::failure::Failure;
-use crate::program::description;
 use clap::error::ErrorKind;
 use clap::{Arg, ArgAction, Command};
 use std::ffi::OsString;
@@ -12,8 +11,11 @@ use toml::{Table, Value};
 const OPTION: &str = "--config";
 
 /// Puts the options of the file that --config names in the place of that option. One that was typed, or contradicts one that was
-/// typed, is left out.
-pub(crate) fn insert(words: &mut Vec<OsString>) -> Result<(), Failure> {
+/// typed, is left out. `description` makes the program with its commands.
+pub(crate) fn insert(
+    words: &mut Vec<OsString>,
+    description: impl FnOnce() -> Command,
+) -> Result<(), Failure> {
     let Some((file, typed)) = without_option(words) else { return Ok(()) };
     let mut program = description().disable_help_subcommand(true);
     program.build();

@@ -62,6 +62,8 @@ mod browser;
 #[cfg(feature = "cli")]
 mod command;
 #[cfg(feature = "cli")]
+mod command_line;
+#[cfg(feature = "cli")]
 mod configuration;
 #[cfg(feature = "cli")]
 mod failure;

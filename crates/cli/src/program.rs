@@ -2,12 +2,11 @@
 
 use crate::failure::Failure;
 use crate::reporting::{Answer, Command, Described};
-use crate::{command, configuration, terminal};
+use crate::{command, command_line, configuration, terminal};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, Parser, Subcommand};
 use serde_json::json;
 use std::ffi::OsString;
-use std::sync::OnceLock;
 
 /// Which forces move these cells, and what does the model of them miss?
 #[derive(Debug, Parser)]
@@ -65,25 +64,17 @@ commands! {
     Man: man,
 }
 
-/// The words of the command line that runs, those of a file of --config among them.
-static TYPED: OnceLock<Vec<String>> = OnceLock::new();
-
-/// The words of the command line, the name of the program first.
-pub(crate) fn typed() -> &'static [String] {
-    TYPED.get().map_or(&[], Vec::as_slice)
-}
-
 /// Runs the program as if it had been called with these arguments, of which the first is its own name. Returns the exit
 /// code: 0, 1 if it ran but found no acceptable fit or a check failed, 2 for a fault that was told on stderr, 130 after Ctrl-C.
 ///
 /// Once in a process: a command takes over SIGINT and SIGTERM, and sets the number of threads.
 pub fn run(arguments: impl IntoIterator<Item = OsString>) -> u8 {
     let mut words: Vec<OsString> = arguments.into_iter().collect();
-    let configured = configuration::insert(&mut words);
-    TYPED.get_or_init(|| words.iter().map(|word| word.to_string_lossy().into_owned()).collect());
+    let configured = configuration::insert(&mut words, description);
+    command_line::keep(&words);
     let failed = |failure: Failure| {
         terminal::note(&failure.to_string());
-        if wants_json(typed()) {
+        if wants_json(command_line::typed()) {
             let fault =
                 json!({"error": failure.message(), "hint": failure.hint(), "exit_code": failure.exit_code()});
             // Nothing more can be told when stdout is gone.

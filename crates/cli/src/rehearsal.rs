@@ -3,8 +3,9 @@
 use crate::arguments::Format;
 use crate::command::phase_diagram::points;
 use crate::command::replicates;
+use crate::command_line::typed;
 use crate::failure::Failure;
-use crate::program::{description, typed};
+use crate::program::description;
 use serde_json::json;
 use std::fmt::Write as _;
 use std::fs;

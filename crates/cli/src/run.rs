@@ -114,5 +114,5 @@ impl Run {
 
 /// The command line as typed; what is not text is replaced.
 fn command_line() -> String {
-    crate::program::typed().join(" ")
+    crate::command_line::typed().join(" ")
 }

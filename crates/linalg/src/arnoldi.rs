@@ -1,8 +1,8 @@
 //! A few eigenvalues of a large operator: Arnoldi's method, restarted with the best Ritz vectors (Krylov–Schur).
 
 use crate::Error;
-use crate::dense_eigen::small_eigen;
 use crate::eigenpairs::{norm, orthonormal};
+use crate::small_matrix::small_eigen;
 use faer::linalg::matmul::matmul;
 use faer::{Accum, Mat, Par};
 use num_complex::Complex64;

@@ -5,7 +5,7 @@ use crate::{Eigenpairs, Error};
 use faer::diag::DiagMut;
 use faer::dyn_stack::{MemBuffer, MemStack};
 use faer::linalg::evd::{ComputeEigenvectors, evd_cplx, evd_real, evd_scratch};
-use faer::{Mat, MatMut, MatRef, Par};
+use faer::{MatMut, MatRef, Par};
 use num_complex::Complex64;
 
 /// Which vectors are computed with the eigenvalues.
@@ -140,23 +140,4 @@ fn places(values: &[Complex64], sign: f64) -> Vec<(usize, Option<(usize, f64)>)>
         }
     }
     place
-}
-
-/// Eigenvalues and right vectors (columns) of a small complex matrix.
-pub(crate) fn small_eigen(matrix: MatRef<'_, Complex64>) -> Result<(Vec<Complex64>, Mat<Complex64>), Error> {
-    let order = matrix.nrows();
-    let pairs = matrix.to_owned().eigen().map_err(|_| Error::NoConvergence { order })?;
-    let values = pairs.S().column_vector();
-    Ok(((0..order).map(|i| values[i]).collect(), pairs.U().to_owned()))
-}
-
-/// Smallest singular value of a small complex matrix; `None` if an entry is not finite.
-pub(crate) fn smallest_singular_value(
-    rows: usize,
-    columns: usize,
-    entry: impl Fn(usize, usize) -> Complex64,
-) -> Option<f64> {
-    let matrix = Mat::from_fn(rows, columns, entry);
-    let values = matrix.singular_values().ok()?;
-    values.last().copied()
 }

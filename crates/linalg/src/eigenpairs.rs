@@ -1,6 +1,6 @@
 //! Eigenvalues with their vectors.
 
-use crate::dense_eigen::smallest_singular_value;
+use crate::small_matrix::smallest_singular_value;
 use num_complex::Complex64;
 
 /// Vectors that belong to eigenvalues, real ones stored as such and conjugate pairs once.

@@ -27,6 +27,7 @@ mod partial_eigen;
 mod room;
 mod selected_inverse;
 mod separator;
+mod small_matrix;
 mod sparse_lu;
 mod symmetric_matrix;
 

@@ -1,8 +1,8 @@
 //! What moves cells besides the model: shear of the box, self-propulsion, noise.
 
 use crate::Error;
+use crate::headings::Headings;
 use crate::scaled::times;
-use crate::turning::Headings;
 use rand::{Rng, SeedableRng};
 use rand_distr::StandardNormal;
 use rand_pcg::Pcg64;

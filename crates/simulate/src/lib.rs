@@ -37,6 +37,7 @@ mod channel_run;
 pub mod collapse;
 mod driving;
 mod error;
+mod headings;
 mod heterogeneity;
 mod honeycomb;
 pub mod measure;

@@ -12,8 +12,8 @@ pub use derivatives::{Direction, derivatives};
 use state::Stage;
 pub use state::State;
 
+use crate::headings::Headings;
 use crate::scaled::{real, without_derivatives, zero};
-use crate::turning::Headings;
 use crate::walls::{self, Mirrored};
 use crate::{Driving, Error, Method, Shear, Walls};
 use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Scalar, Tessellation, Vector};

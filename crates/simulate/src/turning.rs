@@ -2,6 +2,7 @@
 
 use crate::Driving;
 use crate::driving::{CHUNK, stream};
+use crate::headings::Headings;
 use crate::scaled::{times, zero};
 use rand::Rng;
 use rand_distr::StandardNormal;
@@ -9,35 +10,6 @@ use rayon::prelude::*;
 use std::sync::Arc;
 use voronudge_geometry::{Scalar, Tessellation, Vector};
 use voronudge_model::{Environment, Model, VelocityAssembly, effect::away_from_contacts};
-
-/// Polarities of cells, `p = v₀ s (cos θ, sin θ)`.
-#[derive(Debug, Clone)]
-pub(crate) struct Headings<S: Scalar> {
-    /// θ (N, radians); empty if nothing propels itself.
-    pub angles: Vec<S>,
-    /// s (N); empty if it is one.
-    pub speeds: Vec<S>,
-}
-
-impl<S: Scalar> Default for Headings<S> {
-    fn default() -> Self {
-        Self { angles: Vec::new(), speeds: Vec::new() }
-    }
-}
-
-impl<S: Scalar> Headings<S> {
-    /// The polarity of a cell over v₀.
-    pub fn of(&self, cell: usize) -> Vector<S> {
-        let angle = self.angles.get(cell).copied().unwrap_or(S::constant(0.0));
-        Vector::new(angle.cos(), angle.sin()) * self.speeds.get(cell).copied().unwrap_or(S::constant(1.0))
-    }
-
-    /// Puts polarities over v₀ in place of those that are there.
-    fn set(&mut self, polarities: Vec<Vector<S>>) {
-        self.angles = polarities.iter().map(|p| p.y.atan2(p.x)).collect();
-        self.speeds = polarities.iter().map(|p| (p.x * p.x + p.y * p.y).sqrt()).collect();
-    }
-}
 
 impl Driving {
     /// Random polarities; none if nothing propels itself.

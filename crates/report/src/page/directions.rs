@@ -1,7 +1,7 @@
 //! The table of what the data determine.
 
 use super::parameter_table::symbol_of;
-use super::uncertainty::printed;
+use super::words::printed;
 use super::{Block, Cell, Row, Table};
 use crate::colour::diverging;
 use crate::infer_report::EigenDirection;

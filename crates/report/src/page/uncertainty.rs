@@ -1,6 +1,7 @@
 //! The figures and sentences that say how well the parameters are known.
 
 use super::directions::directions;
+use super::words::printed;
 use super::{Block, Figure, Section};
 use crate::figure::{
     BootstrapHistogram, Landscape, ParameterRow, ProfileCurve, bootstrap_histogram, landscape,
@@ -75,11 +76,6 @@ fn bootstrapped(own: &BootstrapResult) -> String {
          upright line mean that the fit is biased.",
         own.replicates
     )
-}
-
-/// A sentence with the symbols of the page.
-pub(super) fn printed(words: &str) -> String {
-    words.replace("alpha", "α")
 }
 
 fn profile_figure(curve: &ProfileCurve) -> Figure {

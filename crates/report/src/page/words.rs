@@ -46,6 +46,11 @@ pub(super) fn left_out(cells: &CellCounts, data: &str) -> Section {
     })
 }
 
+/// A sentence with the symbols of the page.
+pub(super) fn printed(words: &str) -> String {
+    words.replace("alpha", "α")
+}
+
 /// The name of an effect as it is printed.
 pub(super) fn effect_name(effect: &str) -> String {
     effect.replace('_', " ")

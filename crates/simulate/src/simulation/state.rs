@@ -1,6 +1,6 @@
 //! What a simulation is made of from step to step.
 
-use crate::turning::Headings;
+use crate::headings::Headings;
 use serde::{Deserialize, Serialize};
 use voronudge_geometry::{Scalar, Vector};
 

@@ -2,9 +2,9 @@
 
 use super::{Simulation, Stage};
 use crate::Error;
+use crate::headings::Headings;
 use crate::method::{THIRD_ORDER, change_of_step, largest_error};
 use crate::scaled::{real, times, zero};
-use crate::turning::Headings;
 use rayon::prelude::*;
 use voronudge_geometry::{Scalar, Vector};
 

@@ -2,7 +2,7 @@
 
 use super::count::Count;
 use super::latent::{self, Place};
-use super::trial::{Program, Run};
+use super::program::{Program, Run};
 use crate::Outcome;
 use ndarray::{Array3, Axis, Slice};
 use rand::seq::SliceRandom;

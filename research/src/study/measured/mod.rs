@@ -4,6 +4,7 @@ mod count;
 mod figure;
 mod hiding;
 mod latent;
+mod program;
 mod record;
 mod summary;
 #[cfg(test)]
@@ -14,9 +15,9 @@ use super::seeds::on_cores;
 use crate::Outcome;
 use claims::measured::{CLASSES, Class};
 use clap::Args;
+pub(crate) use program::Program;
 use record::Records;
 use std::path::PathBuf;
-pub(crate) use trial::Program;
 
 /// How the study of data as they are measured is made.
 #[derive(Debug, Args)]

@@ -1,7 +1,7 @@
 //! What came of each set, one line of JSON each.
 
 use super::count::Count;
-use super::trial::Program;
+use super::program::Program;
 use crate::Outcome;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

@@ -1,7 +1,8 @@
 //! Small sets of every class through the program.
 
+use super::program::Program;
 use super::record::{Fit, Record};
-use super::trial::{self, Program};
+use super::trial;
 use claims::measured::{CLASSES, Class};
 use rayon::prelude::*;
 

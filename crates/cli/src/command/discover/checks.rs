@@ -4,7 +4,7 @@ use super::Asked;
 use super::forecasts::Coming;
 use super::material::Searched;
 use super::onward::{self, Rivals};
-use super::sentences::probability;
+use super::phrases::probability;
 use crate::command::fit::measured::measured;
 use crate::command::fit::with_location;
 use crate::failure::Failure;

@@ -1,6 +1,7 @@
 //! Effects as the report tells them.
 
-use super::sentences::{listed, percent, probability, told_apart_by};
+use super::phrases::{listed, percent, probability};
+use super::sentences::told_apart_by;
 use crate::command::fit::prospects::Coefficient;
 use crate::problem::Problem;
 use voronudge_infer::Estimate;

@@ -1,6 +1,6 @@
 //! What was found out about the measurement before the search: it stands beside what the tissue may do, and goes first.
 
-use super::sentences::{listed, percent};
+use super::phrases::{listed, percent};
 use crate::problem::Problem;
 use voronudge_infer::discover::Fitted;
 use voronudge_infer::{ChangeKind, NoiseSource};

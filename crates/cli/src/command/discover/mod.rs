@@ -9,6 +9,7 @@ mod material;
 mod measured;
 mod onward;
 mod page;
+mod phrases;
 mod predictions;
 mod report;
 mod sentences;

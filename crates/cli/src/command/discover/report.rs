@@ -2,7 +2,7 @@
 
 use super::checks::Compared;
 use super::measured::{Findings, PositionNoise};
-use super::sentences::probability;
+use super::phrases::probability;
 use super::{effects, sentences};
 use crate::command::fit::flow::described;
 use crate::command::fit::{Stated, outcome, prospects};

@@ -2,6 +2,7 @@
 
 use super::history::has_memory;
 use super::measured::Findings;
+use super::phrases::{listed, percent};
 use crate::problem::Problem;
 use voronudge_infer::NoiseSource;
 use voronudge_infer::discover::{Discovery, Fate, HeldOutUnit, Ranked, Search, Selected, Verdict};
@@ -17,24 +18,6 @@ const LEAST_REST: f64 = 0.0005;
 
 /// The largest share that is said to be explained where something is left.
 const NEARLY_ALL: f64 = 0.99;
-
-/// Names of effects as a list, with a word before the last.
-pub(super) fn listed(names: &[&str], joint: &str) -> String {
-    match names {
-        [others @ .., last] if !others.is_empty() => format!("{} {joint} {last}", others.join(", ")),
-        _ => names.concat(),
-    }
-}
-
-/// A share in percent.
-pub(super) fn percent(share: f64) -> String {
-    format!("{} %", significant(100.0 * share, 2))
-}
-
-/// A probability; the very small ones are not told apart.
-pub(super) fn probability(p: f64) -> String {
-    if (0.0..1e-4).contains(&p) { "<0.0001".into() } else { significant(p, 2) }
-}
 
 /// The measurement that tells two effects apart.
 pub(super) fn told_apart_by(effect: &Effect, other: &Effect) -> String {

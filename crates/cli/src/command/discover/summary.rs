@@ -1,6 +1,6 @@
 //! The result of `discover` as a summary on stdout.
 
-use super::sentences::probability;
+use super::phrases::probability;
 use std::fmt::Write as _;
 use std::path::Path;
 use voronudge_report::DiscoverReport;

@@ -2,7 +2,7 @@
 
 use crate::arguments::{Verbosity, named};
 use crate::command::drawing::units_of_model;
-use crate::command::moduli::report::over_replicas;
+use crate::command::moduli::replicas::over_replicas;
 use crate::command::spectrum::mean_field;
 use crate::failure::Failure;
 use crate::progress::{Looks, Progress};

@@ -1,6 +1,7 @@
 //! Storage and loss moduli over replicas, and the media nearest to them.
 
-use super::report::NAMES;
+use super::names::NAMES;
+use super::replicas::over_replicas;
 use voronudge_report::chart::AxisScale;
 use voronudge_report::colour::{BLUE, VERMILLION};
 use voronudge_report::figure::{
@@ -21,7 +22,7 @@ pub(super) fn records(replicas: &[&[Dynamic]]) -> Vec<DynamicRecord> {
             let measured: Vec<_> = replicas.iter().filter_map(|own| own[k].moduli[which]).collect();
             let estimate = |value: fn(&DynamicModulus) -> f64, error: fn(&DynamicModulus) -> f64| {
                 let [values, errors] = [value, error].map(|of| measured.iter().map(of).collect::<Vec<_>>());
-                let (value, error) = super::report::over_replicas(&values, &errors);
+                let (value, error) = over_replicas(&values, &errors);
                 Estimate { value, error, replicas: values }
             };
             (!measured.is_empty()).then(|| DynamicModulusRecord {

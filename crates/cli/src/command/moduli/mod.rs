@@ -2,9 +2,11 @@
 
 mod dynamic;
 pub(crate) mod measure;
+pub(crate) mod names;
 mod page;
 pub(crate) mod protocol;
-pub(crate) mod report;
+pub(crate) mod replicas;
+mod report;
 
 use crate::arguments::{CellArguments, CommonArguments, ParameterArguments, SpreadArguments};
 use crate::command::simulate::StartArguments;

@@ -2,7 +2,9 @@
 
 use super::Arguments;
 use super::measure::Measured;
+use super::names::{NAMES, VISCOSITY_NAMES};
 use super::protocol::Protocol;
+use super::replicas::over_replicas;
 use crate::arguments::{Spreads, named};
 use crate::command::drawing::units_of_model;
 use crate::command::simulate::Start;
@@ -18,14 +20,6 @@ use voronudge_simulate::moduli::{Moduli, Motion, Viscosity};
 
 /// A nonlinearity above this share of the largest modulus means that contacts changed.
 const LINEAR: f64 = 0.02;
-
-/// Moduli in the order of [`Moduli::to_array`], by name and symbol.
-pub(crate) const NAMES: [(&str, &str); 4] =
-    [("bulk", "B"), ("odd_bulk", "A"), ("shear", "μ"), ("odd_shear", "Kᵒ")];
-
-/// Viscosities, by name and symbol.
-pub(crate) const VISCOSITY_NAMES: [(&str, &str); 2] =
-    [("shear_viscosity", "η"), ("odd_shear_viscosity", "ηᵒ")];
 
 pub(super) fn report(
     run: &Run,
@@ -98,17 +92,6 @@ pub(super) fn report(
             })
             .collect(),
     }
-}
-
-/// Mean and standard error over replicas; of a single one its own.
-pub(crate) fn over_replicas(values: &[f64], errors: &[f64]) -> (f64, f64) {
-    let count = values.len() as f64;
-    let value = values.iter().sum::<f64>() / count;
-    let error = match errors {
-        [own] => *own,
-        _ => (values.iter().map(|x| (x - value).powi(2)).sum::<f64>() / (count * (count - 1.0))).sqrt(),
-    };
-    (value, error)
 }
 
 fn record(name: &'static str, symbol: &'static str, values: Vec<f64>, errors: Vec<f64>) -> ModulusRecord {

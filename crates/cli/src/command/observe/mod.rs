@@ -1,6 +1,7 @@
 //! `voronudge observe`: what can be measured on the cells of a data set, whatever moves them.
 
 mod avalanches;
+mod curves;
 mod nematic;
 mod page;
 mod report;

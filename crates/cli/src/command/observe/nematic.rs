@@ -1,6 +1,6 @@
 //! Shapes of cells as a nematic: what is asked of them, arrays, and the section of the page.
 
-use super::page::figure;
+use super::curves::figure;
 use crate::arguments::{ParameterArguments, named};
 use crate::command::drawing::{borders, cells_view};
 use crate::command::recorded::Recorded;

@@ -23,7 +23,7 @@ pub(crate) struct CommandLine(Vec<String>);
 impl CommandLine {
     /// As it was typed.
     pub fn typed() -> Self {
-        Self(crate::program::typed().iter().skip(1).cloned().collect())
+        Self(crate::command_line::typed().iter().skip(1).cloned().collect())
     }
 
     /// The words, the name of the program first.

@@ -2,8 +2,8 @@
 
 use super::posterior::{Posterior, Scaled};
 use crate::command::moduli::measure::{Measured, one};
+use crate::command::moduli::names::{NAMES, VISCOSITY_NAMES};
 use crate::command::moduli::protocol::{Protocol, ProtocolArguments};
-use crate::command::moduli::report::{NAMES, VISCOSITY_NAMES};
 use crate::command::simulate::Start;
 use crate::failure::Failure;
 use crate::progress::Progress;

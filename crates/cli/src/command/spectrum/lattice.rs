@@ -1,5 +1,6 @@
 //! A honeycomb as data, and its waves beside the theory.
 
+use super::theory::mean_field;
 use crate::arguments::{ChosenEffects, environment};
 use crate::failure::Failure;
 use ndarray::{Array2, Array3};
@@ -65,7 +66,7 @@ impl Lattice {
         let surroundings = environment(tessellation, positions, &view)?;
         let base = Model::chiral_voronoi(parameters);
         let model = effects.add_to(base, surroundings, tessellation.domain())?;
-        let theory = if effects.is_empty() { super::report::mean_field(parameters, 1.0) } else { None };
+        let theory = if effects.is_empty() { mean_field(parameters, 1.0) } else { None };
         let jacobian = self.honeycomb.jacobian(&model);
         let orientation = Orientation::NeighbourAlongY;
         let path = symmetry_path(orientation, STEPS);

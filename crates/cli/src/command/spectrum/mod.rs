@@ -11,6 +11,7 @@ mod sections;
 mod strip;
 mod strip_figures;
 mod strip_page;
+mod theory;
 mod tissue;
 mod view;
 
@@ -25,9 +26,9 @@ use crate::run::Run;
 use clap::Args;
 use frame::Solved;
 use lattice::Lattice;
-pub(crate) use report::mean_field;
 use request::SelectionArguments;
 use strip::{Bands, EndedLattice, EndsName};
+pub(crate) use theory::mean_field;
 use voronudge_io::FrameSelection;
 use voronudge_report::SpectrumReport;
 

@@ -4,6 +4,7 @@ use super::frame::Solved;
 use super::lattice::Waves;
 use super::request::ModeRequest;
 use super::strip::{Bands, EndedLattice};
+use super::theory::mean_field;
 use crate::arguments::{ChosenEffects, OfCells, named};
 use crate::run::Run;
 use voronudge_io::DataSet;
@@ -14,7 +15,7 @@ use voronudge_report::spectrum_report::{
 };
 use voronudge_simulate::Walls;
 use voronudge_spectrum::Scope;
-use voronudge_theory::{MeanField, Phase, hexagon_perimeter};
+use voronudge_theory::{Phase, hexagon_perimeter};
 
 /// Wave vectors along each direction for averages over the Brillouin zone.
 const MESH: usize = 60;
@@ -54,17 +55,6 @@ pub(super) fn report(
         }),
         strip: strip.map(|(ended, bands)| bands.record(ended)),
     }
-}
-
-/// The theory at these parameters for cells of a size, if it has any.
-pub(crate) fn mean_field(parameters: &Parameters<f64>, length: f64) -> Option<MeanField> {
-    MeanField::new(voronudge_theory::Parameters {
-        area_elasticity: parameters.area_elasticity * length * length,
-        perimeter_elasticity: parameters.perimeter_elasticity,
-        preferred_perimeter: parameters.preferred_perimeter / length,
-        chirality: parameters.chirality,
-    })
-    .ok()
 }
 
 fn frame(solved: &Solved, k_p: f64) -> FrameSpectrum {
