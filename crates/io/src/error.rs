@@ -145,6 +145,16 @@ impl Error {
     }
 }
 
+/// An image that cannot be used.
+pub(crate) fn image_error(path: &Path, fault: ImageFault) -> Error {
+    Error::Image { path: path.to_path_buf(), fault }
+}
+
+/// A table that cannot be used, at no line in particular.
+pub(crate) fn table_error(path: &Path, fault: TableFault) -> Error {
+    Error::Table { path: path.to_path_buf(), line: None, fault }
+}
+
 /// A file and, where known, a line in it.
 struct Place<'a>(&'a Path, Option<u64>);
 

@@ -7,8 +7,8 @@ use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_segmentation::{Edge, ExtremumKind, ExtremumSearch, extrema, smooth};
 
 use crate::dataset::{Boundary, DataSet};
-use crate::error::{Error, ImageFault, SettingFault};
-use crate::image::{image_error, parse_field_images};
+use crate::error::{Error, ImageFault, SettingFault, image_error};
+use crate::image::parse_field_images;
 use crate::image_scale::ImageScale;
 use crate::linking::{Follower, Place, PlaceLinking};
 use crate::note::Note;

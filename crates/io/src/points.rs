@@ -5,13 +5,13 @@ use std::path::Path;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 
 use crate::dataset::Boundary;
-use crate::error::{Error, SettingFault};
+use crate::error::{Error, SettingFault, table_error};
 use crate::input::read_input;
 use crate::linking::{Follower, Place, PlaceLinking, default_limit};
 use crate::napari;
 use crate::note::Note;
 use crate::table::{Layout, decompressed, read_spots};
-use crate::tracks::{Import, ImportOptions, finish, frame_span, table_error};
+use crate::tracks::{Import, ImportOptions, finish, frame_span};
 use crate::validate;
 
 /// Points that were followed from frame to frame.

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use ndarray::{Array3, Axis, concatenate};
 
-use crate::error::{Error, FileFault, ImageFault, ShapeFault};
-use crate::image::{Described, Images, check_total, image_error};
+use crate::error::{Error, FileFault, ImageFault, ShapeFault, image_error};
+use crate::image::{Described, Images, check_total};
 use crate::input::{InputFile, file_fault, is_zarr, read_input};
 use crate::note::Note;
 use crate::stated::Stated;

@@ -11,8 +11,7 @@ use super::metadata::Layout;
 use crate::digest::sha256;
 use crate::error::{Error, FileFault};
 use crate::input::InputFile;
-use crate::memory::machine_memory;
-use crate::tracks::SIZE_LIMIT;
+use crate::memory::{SIZE_LIMIT, machine_memory};
 
 /// The most chunks of an array.
 const MOST_CHUNKS: usize = 1_000_000;
