@@ -2,6 +2,7 @@
 
 pub(crate) mod commit;
 pub(crate) mod folder;
+mod held;
 pub(crate) mod run;
 
 use std::fs::{self, File};
