@@ -7,7 +7,7 @@ use std::path::{Component, Path, PathBuf};
 use serde_json::Value;
 
 use super::Fault;
-use super::metadata::Layout;
+use super::layout::Layout;
 use crate::digest::sha256;
 use crate::error::{Error, FileFault};
 use crate::input::InputFile;
