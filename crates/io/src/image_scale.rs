@@ -2,9 +2,11 @@
 
 use ndarray::Array3;
 
-use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::Error;
-use crate::validate;
+use crate::positive::positive;
+use crate::y_axis::YAxis;
 
 /// Units and directions of an image. The default leaves everything open.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -25,7 +27,7 @@ impl ImageScale {
     /// The size of a pixel, and a data set that is empty so far.
     pub(crate) fn begin(&self, boundary: Boundary) -> Result<(f64, DataSet), Error> {
         let pixel = self.pixel_size.unwrap_or(1.0);
-        validate::positive("pixel_size", pixel).map_err(Error::Setting)?;
+        positive("pixel_size", pixel).map_err(Error::Setting)?;
         let unit = self.length_unit.as_deref().or(self.pixel_size.is_none().then_some("px"));
         let dataset = describe(boundary, self.frame_interval, self.y_axis, unit, self.time_unit.as_deref());
         dataset.check_settings().map_err(Error::Setting)?;

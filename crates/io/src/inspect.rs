@@ -9,7 +9,8 @@ use std::path::{Path, PathBuf};
 
 use ndarray::Axis;
 
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, ImageFault};
 use crate::image::{is_image, parse_field_images, parse_labels};
 use crate::image_scale::ImageScale;

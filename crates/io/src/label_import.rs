@@ -7,7 +7,7 @@ use ndarray::Axis;
 use voronudge_geometry::Vector;
 use voronudge_segmentation::{Mask, link_overlapping};
 
-use crate::dataset::Boundary;
+use crate::boundary::Boundary;
 use crate::error::{Error, ImageFault, ShapeFault, image_error};
 use crate::image::parse_labels;
 use crate::image_scale::ImageScale;

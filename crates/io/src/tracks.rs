@@ -5,7 +5,8 @@ use std::path::Path;
 
 use ndarray::Array3;
 
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, TableFault, table_error};
 use crate::field_of_view::SeenArea;
 use crate::image_scale::{ImageScale, describe};

@@ -5,7 +5,8 @@ use std::str::FromStr;
 
 use ndarray::Array3;
 
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, SettingFault};
 
 /// How a velocity is made from positions r(t) at frame interval Δt.
