@@ -10,6 +10,8 @@ mod tables;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::difference::Difference;
+
 pub use arrays::{FormatFault, ShapeFault, ValueFault};
 pub use files::{FileFault, OutputFault};
 pub use grids::GridFault;
@@ -106,7 +108,7 @@ pub enum Error {
     #[error("{difference} differences need {needed} frames, the data set has {found}")]
     TooFewFrames {
         /// The kind of difference asked for.
-        difference: crate::Difference,
+        difference: Difference,
         /// Frames needed.
         needed: usize,
         /// Frames present.

@@ -9,12 +9,12 @@ use voronudge_segmentation::{Edge, ExtremumKind, ExtremumSearch, extrema, smooth
 use crate::boundary::Boundary;
 use crate::dataset::DataSet;
 use crate::error::{Error, ImageFault, SettingFault, image_error};
-use crate::image::parse_field_images;
+use crate::image::{Wanted, parse_field_images};
 use crate::image_scale::ImageScale;
 use crate::linking::{Follower, Place, PlaceLinking};
 use crate::note::Note;
 use crate::positive::positive;
-use crate::series::{Wanted, read_images};
+use crate::series::read_images;
 use crate::shapes::check_size;
 use crate::validate::ArrayNames;
 

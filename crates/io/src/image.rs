@@ -21,6 +21,13 @@ use crate::note::Note;
 /// Memory that an image takes while it is read and searched, in 8 bytes for each pixel.
 const COPIES: u64 = 6;
 
+/// What is looked for in a folder that holds both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    Labels,
+    Field,
+}
+
 /// The frames of a file (frames, rows, columns), and what it says of them.
 pub(crate) struct Images<T> {
     pub(crate) pixels: Array3<T>,

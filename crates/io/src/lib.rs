@@ -38,6 +38,7 @@ mod array;
 mod boundary;
 mod cellpose;
 mod dataset;
+mod difference;
 mod digest;
 mod error;
 mod export;
@@ -85,6 +86,7 @@ mod zarr;
 pub use array::{read_integers, read_reals, read_vectors};
 pub use boundary::Boundary;
 pub use dataset::DataSet;
+pub use difference::Difference;
 pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,
@@ -114,6 +116,6 @@ pub use snapshot::{NO_LABEL, Snapshot};
 pub use source::Source;
 pub use table::{ColumnNames, FlowColumnNames, FlowProfile, read_flow_profile};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};
-pub use velocity::{Difference, derive_velocities};
+pub use velocity::derive_velocities;
 pub use walled_sides::WalledSides;
 pub use y_axis::YAxis;
