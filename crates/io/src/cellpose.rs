@@ -5,8 +5,7 @@ use std::path::Path;
 use ndarray::ArrayD;
 
 use crate::array::integers_of;
-use crate::error::{Error, ImageFault, excerpt};
-use crate::image::image_error;
+use crate::error::{Error, ImageFault, excerpt, image_error};
 use crate::pickle::{Id, Node, Pickle};
 
 /// The masks of a `_seg.npy`, from the bytes that follow the header of the array; `path` only names the place.

@@ -1,18 +1,15 @@
 //! The data set in memory.
 
-use std::fmt;
-use std::path::Path;
-use std::str::FromStr;
+use ndarray::{Array2, Array3};
 
-use ndarray::{Array, Array2, Array3, Axis, RemoveAxis};
-
-use crate::error::{Error, SettingFault};
+use crate::boundary::Boundary;
 use crate::field_of_view::SeenArea;
-use crate::flow::{FlowField, FlowNames};
+use crate::flow::FlowField;
 use crate::input::InputFile;
 use crate::measurement::{DeclaredWindow, PositionsAre};
 use crate::noise::Noise;
-use crate::validate;
+use crate::walled_sides::WalledSides;
+use crate::y_axis::YAxis;
 
 /// Tracked cells: positions, perhaps velocities, a flow field and labels, and what their numbers mean.
 ///
@@ -60,37 +57,6 @@ pub struct DataSet {
     pub inputs: Vec<InputFile>,
 }
 
-/// What is around the cells.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Boundary {
-    /// A rectangular box that repeats.
-    Periodic {
-        /// Box lengths along x and y in the unit of length.
-        lengths: [f64; 2],
-    },
-    /// A field of view whose surroundings are not seen.
-    Open,
-}
-
-/// Sides of a periodic box that are walls.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum WalledSides {
-    /// The left and the right one: a channel.
-    X,
-    /// All four.
-    Both,
-}
-
-/// The direction of the stored y coordinate.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum YAxis {
-    /// Larger y is further up, as in mathematics.
-    #[default]
-    Up,
-    /// Larger y is further down, as in images.
-    Down,
-}
-
 impl DataSet {
     /// Positions (frames, cells, 2), y up, and nothing else: one time unit between frames, lengths and times without units.
     #[must_use]
@@ -130,129 +96,11 @@ impl DataSet {
         self.positions.dim().1
     }
 
-    /// Checks every rule that a loaded data set obeys.
-    ///
-    /// # Errors
-    /// [`Error::Shape`] for no frames, no cells or arrays that disagree; [`Error::Value`] for
-    /// infinities, half-absent cells, two cells in one place, a box that cannot be right;
-    /// [`Error::Grid`] for a flow field or a grid that cannot be used; [`Error::Setting`] for
-    /// lengths, intervals and noise out of range. Arrays are named as in a folder:
-    /// `positions.npy`, `velocities.npy`, `labels.npy`, `position_errors.npy`, `flow.npy`, `flow_x.npy`, `flow_y.npy`.
-    pub fn check(&self) -> Result<(), Error> {
-        self.check_settings().map_err(Error::Setting)?;
-        self.check_arrays(&validate::ArrayNames {
-            positions: Path::new("positions.npy"),
-            velocities: Path::new("velocities.npy"),
-            labels: Path::new("labels.npy"),
-            position_errors: Path::new("position_errors.npy"),
-            flow: FlowNames::in_folder(),
-        })
-    }
-
-    pub(crate) fn check_settings(&self) -> Result<(), SettingFault> {
-        self.boundary.check()?;
-        validate::positive("frame_interval", self.frame_interval)?;
-        self.window.check(self.boundary)?;
-        let name = if self.walls.is_some() { "walls" } else { "box_offset" };
-        if self.boundary == Boundary::Open && (self.box_offset.is_some() || self.walls.is_some()) {
-            return Err(SettingFault::NeedsBox { key: name });
-        }
-        if let Some(area) = &self.field_of_view {
-            area.check(self.boundary)?;
-        }
-        if let Some(&value) = self.box_offset.iter().flatten().find(|offset| !offset.is_finite()) {
-            return Err(SettingFault::NotFinite { key: "box_offset", value });
-        }
-        for (key, noise) in [("position_noise", self.position_noise), ("velocity_noise", self.velocity_noise)]
-        {
-            if let Some(noise) = noise {
-                noise.check(key)?;
-            }
-        }
-        Ok(())
-    }
-}
-
-impl Boundary {
-    pub(crate) fn check(&self) -> Result<(), SettingFault> {
-        match self {
-            Self::Open => Ok(()),
-            Self::Periodic { lengths } => {
-                lengths.iter().try_for_each(|&length| validate::positive("box length", length))
-            }
-        }
-    }
-}
-
-impl WalledSides {
-    pub(crate) fn parse(text: &str) -> Result<Self, SettingFault> {
-        match text {
-            "x" => Ok(Self::X),
-            "both" => Ok(Self::Both),
-            _ => Err(SettingFault::Unknown {
-                key: "walls",
-                found: text.to_owned(),
-                expected: "\"x\" or \"both\"",
-            }),
-        }
-    }
-}
-
-impl fmt::Display for WalledSides {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::X => "x",
-            Self::Both => "both",
-        })
-    }
-}
-
-impl YAxis {
-    /// Turns offsets of the box of a file into those of y up or back: a mirror reverses the shear.
-    pub(crate) fn turn_offsets(self, offsets: &mut [f64]) {
-        if self == Self::Down {
-            offsets.iter_mut().for_each(|offset| *offset = 0.0 - *offset);
-        }
-    }
-
-    /// Turns stored vectors into y-up vectors or back; the two directions are the same.
-    ///
-    /// The last axis holds x, y.
-    pub(crate) fn turn<D: RemoveAxis>(self, vectors: &mut Array<f64, D>) {
-        if self == Self::Down {
-            let last = Axis(vectors.ndim() - 1);
-            // 0 − y rather than −y, so that no negative zero appears.
-            let mut y = vectors.index_axis_mut(last, 1);
-            y.mapv_inplace(|value| 0.0 - value);
-        }
-    }
-
-    pub(crate) fn parse(text: &str) -> Result<Self, SettingFault> {
-        match text {
-            "up" => Ok(Self::Up),
-            "down" => Ok(Self::Down),
-            _ => Err(SettingFault::Unknown {
-                key: "y_axis",
-                found: text.to_owned(),
-                expected: "\"up\" or \"down\"",
-            }),
-        }
-    }
-}
-
-impl FromStr for YAxis {
-    type Err = Error;
-
-    fn from_str(text: &str) -> Result<Self, Error> {
-        Self::parse(text).map_err(Error::Setting)
-    }
-}
-
-impl fmt::Display for YAxis {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Up => "up",
-            Self::Down => "down",
-        })
+    /// Takes an image, its size in units of length, for the field of view if that holds all cells. Positions are turned
+    /// already.
+    pub(crate) fn see_within_image(&mut self, size: [f64; 2]) {
+        let area = SeenArea::image(size, self.y_axis);
+        let fits = self.boundary == Boundary::Open && area.first_outside(&self.positions).is_none();
+        self.field_of_view = fits.then_some(area);
     }
 }

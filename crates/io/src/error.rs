@@ -10,6 +10,8 @@ mod tables;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
+use crate::difference::Difference;
+
 pub use arrays::{FormatFault, ShapeFault, ValueFault};
 pub use files::{FileFault, OutputFault};
 pub use grids::GridFault;
@@ -106,7 +108,7 @@ pub enum Error {
     #[error("{difference} differences need {needed} frames, the data set has {found}")]
     TooFewFrames {
         /// The kind of difference asked for.
-        difference: crate::Difference,
+        difference: Difference,
         /// Frames needed.
         needed: usize,
         /// Frames present.
@@ -143,6 +145,16 @@ impl Error {
             Self::Output { fault, .. } => fault.hint(),
         }
     }
+}
+
+/// An image that cannot be used.
+pub(crate) fn image_error(path: &Path, fault: ImageFault) -> Error {
+    Error::Image { path: path.to_path_buf(), fault }
+}
+
+/// A table that cannot be used, at no line in particular.
+pub(crate) fn table_error(path: &Path, fault: TableFault) -> Error {
+    Error::Table { path: path.to_path_buf(), line: None, fault }
 }
 
 /// A file and, where known, a line in it.

@@ -6,15 +6,17 @@ use ndarray::{Array2, Array3, ArrayView2, Axis};
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_segmentation::{Edge, ExtremumKind, ExtremumSearch, extrema, smooth};
 
-use crate::dataset::{Boundary, DataSet};
-use crate::error::{Error, ImageFault, SettingFault};
-use crate::image::{image_error, parse_field_images};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
+use crate::error::{Error, ImageFault, SettingFault, image_error};
+use crate::image::{Wanted, parse_field_images};
 use crate::image_scale::ImageScale;
 use crate::linking::{Follower, Place, PlaceLinking};
 use crate::note::Note;
-use crate::series::{Wanted, read_images};
+use crate::positive::positive;
+use crate::series::read_images;
 use crate::shapes::check_size;
-use crate::validate::{self, ArrayNames};
+use crate::validate::ArrayNames;
 
 /// Prominence asked for by default, as a share of the range of the smoothed field.
 const PROMINENCE: f64 = 0.1;
@@ -101,14 +103,14 @@ pub fn import_field(path: &Path, options: &FieldOptions) -> Result<FieldImport, 
 pub fn import_field_series(paths: &[PathBuf], options: &FieldOptions) -> Result<FieldImport, Error> {
     for (key, value) in [("smoothing", options.smoothing), ("distance", options.distance)] {
         if value != 0.0 {
-            validate::positive(key, value).map_err(Error::Setting)?;
+            positive(key, value).map_err(Error::Setting)?;
         }
     }
     if let Some(prominence) = options.prominence {
-        validate::positive("prominence", prominence).map_err(Error::Setting)?;
+        positive("prominence", prominence).map_err(Error::Setting)?;
     }
     if let PlaceLinking::Nearest { limit: Some(limit) } = options.linking {
-        validate::positive("link_limit", limit).map_err(Error::Setting)?;
+        positive("link_limit", limit).map_err(Error::Setting)?;
     }
     options.scale.begin(Boundary::Open)?;
     let stack = read_images(paths, Wanted::Field, parse_field_images)?;

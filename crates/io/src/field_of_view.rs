@@ -4,9 +4,10 @@ use ndarray::Array3;
 use toml::de::DeValue;
 use voronudge_geometry::{Region, Vector};
 
-use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::boundary::Boundary;
 use crate::error::{SettingFault, TomlFault};
-use crate::settings::{kind, number};
+use crate::toml_value::{kind, number};
+use crate::y_axis::YAxis;
 
 /// The part of the plane where every cell would have been seen, in the unit of length.
 #[derive(Debug, Clone, PartialEq)]
@@ -118,15 +119,5 @@ impl SeenArea {
                 format!("[{}]", corners.join(", "))
             }
         }
-    }
-}
-
-impl DataSet {
-    /// Takes an image, its size in units of length, for the field of view if that holds all cells. Positions are turned
-    /// already.
-    pub(crate) fn see_within_image(&mut self, size: [f64; 2]) {
-        let area = SeenArea::image(size, self.y_axis);
-        let fits = self.boundary == Boundary::Open && area.first_outside(&self.positions).is_none();
-        self.field_of_view = fits.then_some(area);
     }
 }

@@ -4,8 +4,9 @@ use std::path::Path;
 
 use ndarray::{Array4, Axis};
 
-use crate::dataset::{Boundary, YAxis};
+use crate::boundary::Boundary;
 use crate::error::{Error, GridFault, ShapeFault};
+use crate::y_axis::YAxis;
 
 /// How far a coordinate may be from an even grid, in spacings.
 const UNEVENNESS: f64 = 1e-4;

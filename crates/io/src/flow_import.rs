@@ -10,19 +10,20 @@ use std::path::{Path, PathBuf};
 use ndarray::{Array4, ArrayView4, Axis, concatenate};
 
 use crate::array::parse_field;
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, GridFault, SettingFault};
 use crate::flow::{FlowField, FlowNames, check_values, grid_error};
-use crate::image_scale::ImageScale;
+use crate::image_scale::{ImageScale, describe};
 use crate::input::read_input;
 use crate::note::Note;
 use crate::output::OutputDirectory;
+use crate::positive::positive;
 use crate::save::write_flow;
 use crate::settings::render;
 use crate::source::read_vectors;
 use crate::table::{FlowColumnNames, VectorTable, read_table};
-use crate::tracks::describe;
-use crate::validate::{self, ArrayNames};
+use crate::validate::ArrayNames;
 use nodes::arrange;
 use pixels::{Squares, average};
 use units::take_units;
@@ -91,9 +92,9 @@ pub struct FlowSummary {
 pub fn import_flow(files: &[PathBuf], options: &FlowOptions) -> Result<FlowImport, Error> {
     let scale = &options.scale;
     let pixel = scale.pixel_size.unwrap_or(1.0);
-    validate::positive("pixel_size", pixel).map_err(Error::Setting)?;
+    positive("pixel_size", pixel).map_err(Error::Setting)?;
     let side = options.grid_spacing.unwrap_or(pixel);
-    validate::positive("grid_spacing", side).map_err(Error::Setting)?;
+    positive("grid_spacing", side).map_err(Error::Setting)?;
     let mut dataset = describe(
         options.boundary.unwrap_or(Boundary::Open),
         scale.frame_interval,

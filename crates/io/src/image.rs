@@ -14,13 +14,19 @@ use self::png::{Indices, parse_png};
 use self::tiff::{integers, parse_tiff, reals};
 use crate::array::{parse_integers, parse_reals, pickled};
 use crate::cellpose::read_masks;
-use crate::error::{Error, FormatFault, ImageFault, ShapeFault};
-use crate::memory::machine_memory;
+use crate::error::{Error, FormatFault, ImageFault, ShapeFault, image_error};
+use crate::memory::{SIZE_LIMIT, machine_memory};
 use crate::note::Note;
-use crate::tracks::SIZE_LIMIT;
 
 /// Memory that an image takes while it is read and searched, in 8 bytes for each pixel.
 const COPIES: u64 = 6;
+
+/// What is looked for in a folder that holds both.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Wanted {
+    Labels,
+    Field,
+}
 
 /// The frames of a file (frames, rows, columns), and what it says of them.
 pub(crate) struct Images<T> {
@@ -76,10 +82,6 @@ pub(crate) fn parse_field_images(path: &Path, bytes: &[u8]) -> Result<Images<f64
         }
         None => Ok(field),
     }
-}
-
-pub(crate) fn image_error(path: &Path, fault: ImageFault) -> Error {
-    Error::Image { path: path.to_path_buf(), fault }
 }
 
 /// Whether a file begins like a TIFF or a PNG image.

@@ -1,9 +1,12 @@
 //! What images do not say about themselves.
 
-use crate::dataset::{Boundary, DataSet, YAxis};
+use ndarray::Array3;
+
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::Error;
-use crate::tracks::describe;
-use crate::validate;
+use crate::positive::positive;
+use crate::y_axis::YAxis;
 
 /// Units and directions of an image. The default leaves everything open.
 #[derive(Debug, Clone, Default, PartialEq)]
@@ -24,10 +27,31 @@ impl ImageScale {
     /// The size of a pixel, and a data set that is empty so far.
     pub(crate) fn begin(&self, boundary: Boundary) -> Result<(f64, DataSet), Error> {
         let pixel = self.pixel_size.unwrap_or(1.0);
-        validate::positive("pixel_size", pixel).map_err(Error::Setting)?;
+        positive("pixel_size", pixel).map_err(Error::Setting)?;
         let unit = self.length_unit.as_deref().or(self.pixel_size.is_none().then_some("px"));
         let dataset = describe(boundary, self.frame_interval, self.y_axis, unit, self.time_unit.as_deref());
         dataset.check_settings().map_err(Error::Setting)?;
         Ok((pixel, dataset))
+    }
+}
+
+/// The data set as far as the options know it.
+pub(crate) fn describe(
+    boundary: Boundary,
+    frame_interval: Option<f64>,
+    y_axis: Option<YAxis>,
+    length_unit: Option<&str>,
+    time_unit: Option<&str>,
+) -> DataSet {
+    let default_time = match frame_interval {
+        Some(_) => "time",
+        None => "frame",
+    };
+    DataSet {
+        frame_interval: frame_interval.unwrap_or(1.0),
+        length_unit: length_unit.unwrap_or("length").to_owned(),
+        time_unit: time_unit.unwrap_or(default_time).to_owned(),
+        y_axis: y_axis.unwrap_or(YAxis::Down),
+        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary)
     }
 }

@@ -9,14 +9,15 @@ use std::path::{Path, PathBuf};
 
 use ndarray::Axis;
 
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, ImageFault};
-use crate::image::{is_image, parse_field_images, parse_labels};
+use crate::image::{Wanted, is_image, parse_field_images, parse_labels};
 use crate::image_scale::ImageScale;
 use crate::input::read_input;
 use crate::napari;
 use crate::note::Note;
-use crate::series::{Stack, Wanted, read_images};
+use crate::series::{Stack, read_images};
 use crate::source::Source;
 use crate::tracks::{ImportOptions, import_tracks};
 use crate::zarr::is_geff;

@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 
 use crate::digest::sha256;
 use crate::error::{Error, OutputFault};
-use crate::output::run::{self, JOURNAL, RUN, RunFolder, remove};
+use crate::output::run::{self, JOURNAL, RUN, remove};
+use crate::output::run_folder::RunFolder;
 use crate::output::{OutputDirectory, OutputFolder, output_error};
 
 /// Digits of the checksum before a line.

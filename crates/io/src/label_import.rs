@@ -7,11 +7,11 @@ use ndarray::Axis;
 use voronudge_geometry::Vector;
 use voronudge_segmentation::{Mask, link_overlapping};
 
-use crate::dataset::Boundary;
-use crate::error::{Error, ImageFault, ShapeFault};
-use crate::image::{image_error, parse_labels};
+use crate::boundary::Boundary;
+use crate::error::{Error, ImageFault, ShapeFault, image_error};
+use crate::image::{Wanted, parse_labels};
 use crate::image_scale::ImageScale;
-use crate::series::{Wanted, read_images};
+use crate::series::read_images;
 use crate::shapes::{SeenCell, SeenFrame, ShapeImport, ShapeSummary, assemble};
 
 /// How cells of different frames are taken for one.

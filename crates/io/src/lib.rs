@@ -35,8 +35,10 @@
 //! [`Error::hint`] adds what to do about it.
 
 mod array;
+mod boundary;
 mod cellpose;
 mod dataset;
+mod difference;
 mod digest;
 mod error;
 mod export;
@@ -62,6 +64,7 @@ mod outline_import;
 mod output;
 mod pickle;
 mod points;
+mod positive;
 mod recording;
 mod save;
 mod series;
@@ -71,14 +74,19 @@ mod snapshot;
 mod source;
 mod stated;
 mod table;
+mod toml_value;
 mod trackmate_xml;
 mod tracks;
 mod validate;
 mod velocity;
+mod walled_sides;
+mod y_axis;
 mod zarr;
 
 pub use array::{read_integers, read_reals, read_vectors};
-pub use dataset::{Boundary, DataSet, WalledSides, YAxis};
+pub use boundary::Boundary;
+pub use dataset::DataSet;
+pub use difference::Difference;
 pub use error::{
     Error, FileFault, FormatFault, GridFault, ImageFault, OutputFault, SelectionFault, SettingFault,
     ShapeFault, TableFault, TomlFault, ValueFault,
@@ -108,4 +116,6 @@ pub use snapshot::{NO_LABEL, Snapshot};
 pub use source::Source;
 pub use table::{ColumnNames, FlowColumnNames, FlowProfile, read_flow_profile};
 pub use tracks::{Import, ImportOptions, ImportSummary, import_trackmate, import_tracks};
-pub use velocity::{Difference, derive_velocities};
+pub use velocity::derive_velocities;
+pub use walled_sides::WalledSides;
+pub use y_axis::YAxis;

@@ -3,9 +3,9 @@
 use std::fmt;
 use std::str::FromStr;
 
-use crate::dataset::Boundary;
+use crate::boundary::Boundary;
 use crate::error::{Error, SettingFault};
-use crate::validate;
+use crate::positive::positive;
 
 /// What of a cell a position is: its Voronoi site r, the centroid of its polygon, or a point `r + c (centroid − r)` on the way.
 ///
@@ -141,7 +141,7 @@ impl DeclaredWindow {
         let Some(width) = self.width else {
             return Ok(());
         };
-        validate::positive("window_width", width)?;
+        positive("window_width", width)?;
         if self.kind.is_none() {
             return Err(SettingFault::WidthOfNoWindow);
         }

@@ -1,8 +1,11 @@
-//! How much memory there is.
+//! How much memory there is, and how much of it an array may take.
 
 use std::sync::LazyLock;
 
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
+
+/// The most bytes that an array made from a table may take.
+pub(crate) const SIZE_LIMIT: u64 = 2_000_000_000;
 
 /// Memory of the machine in bytes, or of the part of it that this process may use; `None` where that is not known.
 pub fn machine_memory() -> Option<u64> {

@@ -6,11 +6,10 @@ use std::path::Path;
 use ndarray::{ArrayView1, Axis, Ix2};
 
 use crate::array::parse_reals;
-use crate::error::{Error, ShapeFault, TableFault};
+use crate::error::{Error, ShapeFault, TableFault, table_error};
 use crate::note::Note;
 use crate::stated::Stated;
 use crate::table::{Depths, Layout, Spot, SpotTable};
-use crate::tracks::table_error;
 
 /// How a `.npy` file begins.
 pub(crate) const SIGNATURE: &[u8] = b"\x93NUMPY";

@@ -6,9 +6,8 @@ use std::path::Path;
 use voronudge_geometry::Vector;
 use voronudge_segmentation::{Outline, outline_contacts, outline_interfaces};
 
-use crate::dataset::Boundary;
-use crate::error::{Error, ImageFault};
-use crate::image::image_error;
+use crate::boundary::Boundary;
+use crate::error::{Error, ImageFault, image_error};
 use crate::image_scale::ImageScale;
 use crate::input::read_input;
 use crate::shapes::{SeenCell, SeenFrame, ShapeImport, ShapeSummary, assemble};

@@ -2,7 +2,9 @@
 
 pub(crate) mod commit;
 pub(crate) mod folder;
+mod held;
 pub(crate) mod run;
+pub(crate) mod run_folder;
 
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -16,7 +18,7 @@ use crate::array::write_npy;
 use crate::error::{Error, OutputFault};
 use commit::Ends;
 pub use folder::OutputFolder;
-use run::RunFolder;
+use run_folder::RunFolder;
 
 /// How names of hidden folders begin.
 const STAGING: &str = ".voronudge-";

@@ -4,15 +4,15 @@ use std::path::Path;
 
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 
-use crate::dataset::Boundary;
-use crate::error::{Error, SettingFault};
+use crate::boundary::Boundary;
+use crate::error::{Error, SettingFault, table_error};
 use crate::input::read_input;
 use crate::linking::{Follower, Place, PlaceLinking, default_limit};
 use crate::napari;
 use crate::note::Note;
+use crate::positive::positive;
 use crate::table::{Layout, decompressed, read_spots};
-use crate::tracks::{Import, ImportOptions, finish, frame_span, table_error};
-use crate::validate;
+use crate::tracks::{Import, ImportOptions, finish, frame_span};
 
 /// Points that were followed from frame to frame.
 #[derive(Debug, Clone, PartialEq)]
@@ -38,7 +38,7 @@ pub fn import_points(
 ) -> Result<PointImport, Error> {
     options.scale.begin(Boundary::Open)?;
     if let PlaceLinking::Nearest { limit: Some(limit) } = linking {
-        validate::positive("link_limit", limit).map_err(Error::Setting)?;
+        positive("link_limit", limit).map_err(Error::Setting)?;
     }
     let (bytes, record) = read_input(path)?;
     let unfolded = decompressed(&bytes).map_err(|fault| table_error(path, fault))?;

@@ -8,7 +8,8 @@ use sha2::{Digest, Sha256};
 
 use crate::digest::{hexadecimal, sha256};
 use crate::error::{Error, OutputFault};
-use crate::output::run::{self, CHECKPOINT, RUN, RunFolder, remove};
+use crate::output::run::{self, CHECKPOINT, RUN, remove};
+use crate::output::run_folder::RunFolder;
 use crate::output::{OutputDirectory, OutputFolder, output_error};
 
 /// An unfinished run inside its output directory: arrays of frames on disk, and a checkpoint.

@@ -2,11 +2,12 @@
 
 use ndarray::{Array, Array1, ArrayView, RemoveAxis};
 
-use crate::dataset::{DataSet, YAxis};
+use crate::dataset::DataSet;
 use crate::error::Error;
 use crate::flow::FlowField;
 use crate::output::OutputDirectory;
 use crate::settings::render;
+use crate::y_axis::YAxis;
 
 impl DataSet {
     /// Stages `positions.npy`; `velocities.npy`, `flow.npy` with `flow_x.npy` and `flow_y.npy`, and

@@ -7,8 +7,8 @@ use std::path::{Path, PathBuf};
 
 use ndarray::{Array3, Axis, concatenate};
 
-use crate::error::{Error, FileFault, ImageFault, ShapeFault};
-use crate::image::{Described, Images, check_total, image_error};
+use crate::error::{Error, FileFault, ImageFault, ShapeFault, image_error};
+use crate::image::{Described, Images, Wanted, check_total};
 use crate::input::{InputFile, file_fault, is_zarr, read_input};
 use crate::note::Note;
 use crate::stated::Stated;
@@ -18,13 +18,6 @@ use crate::zarr::read_ome;
 const KINDS: [&str; 4] = ["tif", "tiff", "png", "npy"];
 /// How the names of masks end that stand beside images: those of Cellpose.
 const MASKS: [&str; 2] = ["_cp_masks", "_seg"];
-
-/// What is looked for in a folder that holds both.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Wanted {
-    Labels,
-    Field,
-}
 
 /// The frames of all files, one after the other.
 pub(crate) struct Stack<T> {

@@ -5,12 +5,16 @@ use std::path::{Path, PathBuf};
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
 
-use crate::dataset::{Boundary, DataSet, WalledSides, YAxis};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, SettingFault, TomlFault};
 use crate::field_of_view::SeenArea;
 use crate::measurement::{DeclaredWindow, PositionsAre, WindowKind};
 use crate::noise::Noise;
-use crate::validate;
+use crate::positive;
+use crate::toml_value::{kind, number, text, truth};
+use crate::walled_sides::WalledSides;
+use crate::y_axis::YAxis;
 
 const KEYS: &[&str] = &[
     "boundary",
@@ -85,8 +89,7 @@ impl Settings {
             "box" => self.lengths = Some((lengths(value)?, line)),
             "box_offset" => self.box_offset = Some(offsets(value)?),
             "walls" => {
-                let walls = WalledSides::parse(text("walls", value)?);
-                self.walls = Some(walls.map_err(TomlFault::Setting)?);
+                self.walls = Some(walls(value)?);
             }
             "frame_interval" => {
                 let interval = positive("frame_interval", value, "a number such as 10.0")?;
@@ -246,6 +249,18 @@ fn boundary(value: &DeValue<'_>) -> Result<BoundaryName, TomlFault> {
     }
 }
 
+fn walls(value: &DeValue<'_>) -> Result<WalledSides, TomlFault> {
+    match text("walls", value)? {
+        "x" => Ok(WalledSides::X),
+        "both" => Ok(WalledSides::Both),
+        found => Err(TomlFault::Setting(SettingFault::Unknown {
+            key: "walls",
+            found: found.to_owned(),
+            expected: "\"x\" or \"both\"",
+        })),
+    }
+}
+
 fn lengths(value: &DeValue<'_>) -> Result<[f64; 2], TomlFault> {
     let wrong =
         |found| TomlFault::WrongType { key: "box", found, expected: "two lengths such as [20.0, 20.0]" };
@@ -280,7 +295,7 @@ fn offsets(value: &DeValue<'_>) -> Result<Vec<f64>, TomlFault> {
 fn positive(key: &'static str, value: &DeValue<'_>, expected: &'static str) -> Result<f64, TomlFault> {
     let wrong = || TomlFault::WrongType { key, found: kind(value), expected };
     let number = number(value).ok_or_else(wrong)?;
-    validate::positive(key, number).map_err(TomlFault::Setting)?;
+    positive::positive(key, number).map_err(TomlFault::Setting)?;
     Ok(number)
 }
 
@@ -311,41 +326,6 @@ fn noise(key: &'static str, value: &DeValue<'_>) -> Result<Noise, TomlFault> {
         }
     };
     noise.map_err(TomlFault::Setting)
-}
-
-fn text<'a>(key: &'static str, value: &'a DeValue<'_>) -> Result<&'a str, TomlFault> {
-    match value {
-        DeValue::String(text) => Ok(text),
-        other => Err(TomlFault::WrongType { key, found: kind(other), expected: "a text in quotation marks" }),
-    }
-}
-
-fn truth(key: &'static str, value: &DeValue<'_>) -> Result<bool, TomlFault> {
-    match value {
-        DeValue::Boolean(truth) => Ok(*truth),
-        other => Err(TomlFault::WrongType { key, found: kind(other), expected: "true or false" }),
-    }
-}
-
-pub(crate) fn number(value: &DeValue<'_>) -> Option<f64> {
-    match value {
-        DeValue::Float(float) => float.as_str().parse().ok(),
-        DeValue::Integer(integer) => {
-            i64::from_str_radix(integer.as_str(), integer.radix()).ok().map(|whole| whole as f64)
-        }
-        _ => None,
-    }
-}
-
-pub(crate) fn kind(value: &DeValue<'_>) -> &'static str {
-    match value {
-        DeValue::String(_) => "a text",
-        DeValue::Integer(_) | DeValue::Float(_) => "a number",
-        DeValue::Boolean(_) => "true or false",
-        DeValue::Datetime(_) => "a date",
-        DeValue::Array(_) => "an array",
-        DeValue::Table(_) => "a table",
-    }
 }
 
 /// The line, counted from 1, of a byte offset.

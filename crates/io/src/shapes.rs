@@ -8,11 +8,10 @@ use ndarray::{Array2, Array3};
 use voronudge_geometry::{Interface, Vector};
 
 use crate::dataset::DataSet;
-use crate::error::{Error, ImageFault};
-use crate::image::image_error;
+use crate::error::{Error, ImageFault, image_error};
+use crate::memory::SIZE_LIMIT;
 use crate::note::Note;
 use crate::output::OutputDirectory;
-use crate::tracks::SIZE_LIMIT;
 use crate::validate::ArrayNames;
 
 /// The fewest cells with a tessellation.

@@ -3,9 +3,11 @@
 use ndarray::{Array, Array3, ArrayD, ArrayView2, Axis, Ix2, RemoveAxis};
 use voronudge_geometry::{Domain, FieldOfView, PeriodicBox, Seen, Vector};
 
-use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, SettingFault};
 use crate::noise::Noise;
+use crate::y_axis::YAxis;
 
 /// Standard deviations of the positions by which circumdisks stay away from the border of a field of view.
 const MARGIN: f64 = 3.0;

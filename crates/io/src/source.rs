@@ -6,7 +6,8 @@ use std::path::{Path, PathBuf};
 use ndarray::{Array2, ArrayD, Axis, Ix2};
 
 use crate::array::{parse_field, parse_integers, parse_reals, parse_row, parse_vectors};
-use crate::dataset::{Boundary, DataSet, YAxis};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, FileFault, GridFault, SettingFault, ShapeFault};
 use crate::field_of_view::SeenArea;
 use crate::flow::{FlowField, FlowNames, grid_error};
@@ -16,6 +17,7 @@ use crate::noise::Noise;
 use crate::output::OutputFolder;
 use crate::settings::Settings;
 use crate::validate::ArrayNames;
+use crate::y_axis::YAxis;
 
 /// Where a data set comes from. A field that is set wins over the folder and its `dataset.toml`.
 ///

@@ -1,10 +1,13 @@
 //! Reading the spots or the vectors of a table, compressed or not.
 
 mod columns;
+mod header;
 mod known;
 mod pivlab;
 mod profile;
+mod spot;
 mod text;
+mod vector_table;
 mod vectors;
 
 use std::borrow::Cow;
@@ -17,12 +20,14 @@ use crate::note::Note;
 use crate::stated::Stated;
 pub use columns::ColumnNames;
 use columns::Columns;
-pub(crate) use columns::{Layout, Spot};
+
 pub use profile::{FlowProfile, read_flow_profile};
+pub(crate) use spot::{Layout, Spot};
 pub(crate) use text::{decompressed, text_in_utf8};
 use text::{delimiter, tabbed, text_of, with_points};
-pub use vectors::FlowColumnNames;
-pub(crate) use vectors::{Vector, VectorTable, read_table};
+pub use vector_table::FlowColumnNames;
+pub(crate) use vector_table::{Vector, VectorTable};
+pub(crate) use vectors::read_table;
 
 /// The most rows of a table.
 pub(crate) const ROW_LIMIT: usize = 20_000_000;

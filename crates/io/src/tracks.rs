@@ -5,11 +5,13 @@ use std::path::Path;
 
 use ndarray::Array3;
 
-use crate::dataset::{Boundary, DataSet, YAxis};
-use crate::error::{Error, TableFault};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
+use crate::error::{Error, TableFault, table_error};
 use crate::field_of_view::SeenArea;
-use crate::image_scale::ImageScale;
+use crate::image_scale::{ImageScale, describe};
 use crate::input::{InputFile, is_zarr, read_input};
+use crate::memory::SIZE_LIMIT;
 use crate::napari;
 use crate::note::Note;
 use crate::table::{ColumnNames, Layout, SpotTable, decompressed, read_spots};
@@ -19,9 +21,6 @@ use crate::zarr::read_geff;
 
 /// The most frames between the first and the last spot.
 const FRAME_LIMIT: usize = 100_000;
-
-/// The most bytes that an array made from a table may take.
-pub(crate) const SIZE_LIMIT: u64 = 2_000_000_000;
 
 /// The most bytes of an array for each spot that is put into it, beyond [`EMPTY`]: one place in ten thousand is taken.
 const BYTES_OF_SPOT: u64 = 160_000;
@@ -162,31 +161,6 @@ fn read_any(
         _ => read_spots(path, &unfolded, layout, columns)?,
     };
     Ok((table, layout))
-}
-
-pub(crate) fn table_error(path: &Path, fault: TableFault) -> Error {
-    Error::Table { path: path.to_path_buf(), line: None, fault }
-}
-
-/// The data set as far as the options know it.
-pub(crate) fn describe(
-    boundary: Boundary,
-    frame_interval: Option<f64>,
-    y_axis: Option<YAxis>,
-    length_unit: Option<&str>,
-    time_unit: Option<&str>,
-) -> DataSet {
-    let default_time = match frame_interval {
-        Some(_) => "time",
-        None => "frame",
-    };
-    DataSet {
-        frame_interval: frame_interval.unwrap_or(1.0),
-        length_unit: length_unit.unwrap_or("length").to_owned(),
-        time_unit: time_unit.unwrap_or(default_time).to_owned(),
-        y_axis: y_axis.unwrap_or(YAxis::Down),
-        ..DataSet::new(Array3::zeros((0, 0, 2)), boundary)
-    }
 }
 
 /// Spots arranged as (frames, tracks, 2), in the coordinates of the table.

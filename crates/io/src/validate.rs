@@ -1,12 +1,14 @@
-//! The rules that the arrays of a data set obey.
+//! The rules that a data set obeys.
 
 use std::path::Path;
 
 use ndarray::{Array2, Array3, ArrayView2, Axis};
 
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
 use crate::error::{Error, GridFault, SettingFault, ShapeFault, ValueFault};
 use crate::flow::{FlowNames, grid_error};
+use crate::positive::positive;
 
 /// How far positions that were not unwrapped may reach, in box lengths.
 ///
@@ -32,6 +34,48 @@ impl<'a> ArrayNames<'a> {
 }
 
 impl DataSet {
+    /// Checks every rule that a loaded data set obeys.
+    ///
+    /// # Errors
+    /// [`Error::Shape`] for no frames, no cells or arrays that disagree; [`Error::Value`] for
+    /// infinities, half-absent cells, two cells in one place, a box that cannot be right;
+    /// [`Error::Grid`] for a flow field or a grid that cannot be used; [`Error::Setting`] for
+    /// lengths, intervals and noise out of range. Arrays are named as in a folder:
+    /// `positions.npy`, `velocities.npy`, `labels.npy`, `position_errors.npy`, `flow.npy`, `flow_x.npy`, `flow_y.npy`.
+    pub fn check(&self) -> Result<(), Error> {
+        self.check_settings().map_err(Error::Setting)?;
+        self.check_arrays(&ArrayNames {
+            positions: Path::new("positions.npy"),
+            velocities: Path::new("velocities.npy"),
+            labels: Path::new("labels.npy"),
+            position_errors: Path::new("position_errors.npy"),
+            flow: FlowNames::in_folder(),
+        })
+    }
+
+    pub(crate) fn check_settings(&self) -> Result<(), SettingFault> {
+        self.boundary.check()?;
+        positive("frame_interval", self.frame_interval)?;
+        self.window.check(self.boundary)?;
+        let name = if self.walls.is_some() { "walls" } else { "box_offset" };
+        if self.boundary == Boundary::Open && (self.box_offset.is_some() || self.walls.is_some()) {
+            return Err(SettingFault::NeedsBox { key: name });
+        }
+        if let Some(area) = &self.field_of_view {
+            area.check(self.boundary)?;
+        }
+        if let Some(&value) = self.box_offset.iter().flatten().find(|offset| !offset.is_finite()) {
+            return Err(SettingFault::NotFinite { key: "box_offset", value });
+        }
+        for (key, noise) in [("position_noise", self.position_noise), ("velocity_noise", self.velocity_noise)]
+        {
+            if let Some(noise) = noise {
+                noise.check(key)?;
+            }
+        }
+        Ok(())
+    }
+
     pub(crate) fn check_arrays(&self, names: &ArrayNames<'_>) -> Result<(), Error> {
         check_shape(names.positions, &self.positions)?;
         check_vectors(names.positions, &self.positions)?;
@@ -68,11 +112,6 @@ impl DataSet {
             None => Ok(()),
         }
     }
-}
-
-/// A setting that must be finite and above zero.
-pub(crate) fn positive(key: &'static str, value: f64) -> Result<(), SettingFault> {
-    if value.is_finite() && value > 0.0 { Ok(()) } else { Err(SettingFault::NotPositive { key, value }) }
 }
 
 fn check_shape(path: &Path, positions: &Array3<f64>) -> Result<(), Error> {

@@ -1,35 +1,13 @@
 //! Velocities from tracked positions.
 
-use std::fmt;
 use std::str::FromStr;
 
 use ndarray::Array3;
 
-use crate::dataset::{Boundary, DataSet};
+use crate::boundary::Boundary;
+use crate::dataset::DataSet;
+use crate::difference::Difference;
 use crate::error::{Error, SettingFault};
-
-/// How a velocity is made from positions r(t) at frame interval Δt.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum Difference {
-    /// (r(t+1) − r(t−1)) / 2Δt. Does not share localisation noise with r(t).
-    #[default]
-    Central,
-    /// (r(t+1) − r(t)) / Δt. Noise in r(t) looks like a restoring force.
-    Forward,
-    /// (r(t) − r(t−1)) / Δt. Noise in r(t) looks like a repelling force.
-    Backward,
-}
-
-impl Difference {
-    /// Frames that a data set must have.
-    #[must_use]
-    pub fn frames_needed(self) -> usize {
-        match self {
-            Self::Central => 3,
-            Self::Forward | Self::Backward => 2,
-        }
-    }
-}
 
 /// Velocities from tracked positions, (frames, cells, 2), in `length_unit` per `time_unit`.
 ///
@@ -76,16 +54,6 @@ pub fn derive_velocities(data: &DataSet, difference: Difference) -> Result<Array
 /// The image of a displacement nearest to zero.
 fn shortest(displacement: f64, length: f64) -> f64 {
     displacement - length * (displacement / length).round()
-}
-
-impl fmt::Display for Difference {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(match self {
-            Self::Central => "central",
-            Self::Forward => "forward",
-            Self::Backward => "backward",
-        })
-    }
 }
 
 impl FromStr for Difference {

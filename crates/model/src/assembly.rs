@@ -4,35 +4,16 @@
 //! about it, in the order of its ring. No two threads write to one place and no sum depends on their number. Where only sums are asked for,
 //! what cells of a chunk write for each other stays in the cache, and what goes from chunk to chunk passes through memory.
 
+use crate::chunk::{CHUNK, split_by_cells};
+use crate::element::elements_of;
 use crate::element_lanes::{elements_in_lanes, fit_lanes};
-use crate::mirrored_jacobian::signs_of;
-use crate::response::respond;
-use crate::{CellElement, Environment, Model, RingForces, Term, VertexForces, WeightedTerm};
+use crate::mirrors::signs_of;
+use crate::{Environment, Model, Term};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::slice::from_ref;
 use std::sync::Arc;
-use voronudge_geometry::{BySides, CellPolygon, Domain, Elementary, Scalar, Tessellation, Vector};
-
-/// Cells per task.
-pub(crate) const CHUNK: usize = BySides::MOST_CELLS;
-
-/// Cuts an array of per-cell stretches into tasks of [`CHUNK`] cells; `start` gives the first entry of a cell.
-fn split_by_cells<T>(
-    array: &mut [T],
-    cells: usize,
-    start: impl Fn(usize) -> usize,
-) -> Vec<(Range<usize>, &mut [T])> {
-    let mut rest = array;
-    let mut tasks = Vec::with_capacity(cells.div_ceil(CHUNK));
-    for first in (0..cells).step_by(CHUNK) {
-        let last = (first + CHUNK).min(cells);
-        let (own, after) = rest.split_at_mut(start(last) - start(first));
-        rest = after;
-        tasks.push((first..last, own));
-    }
-    tasks
-}
+use voronudge_geometry::{CellPolygon, Scalar, Tessellation, Vector};
 
 /// The work space of velocities. Reusable from call to call.
 #[derive(Debug, Clone)]
@@ -66,20 +47,6 @@ impl<S> Default for Passing<S> {
 }
 
 impl<S: Scalar> VelocityAssembly<S> {
-    /// Evaluates all elements, sums them into velocities (N) and lets the responses act on these.
-    pub fn evaluate(
-        &mut self,
-        tessellation: &Tessellation,
-        positions: &[Vector<S>],
-        model: &Model<S>,
-        velocities: &mut Vec<Vector<S>>,
-    ) {
-        self.evaluate_terms(tessellation, positions, model, velocities);
-        if !model.responses.is_empty() {
-            respond(tessellation, positions, model, velocities);
-        }
-    }
-
     /// The velocities of the terms alone.
     pub(crate) fn evaluate_terms(
         &mut self,
@@ -165,21 +132,6 @@ impl<S: Scalar> Default for HalfEdgeForces<S> {
 }
 
 impl<S: Scalar> HalfEdgeForces<S> {
-    /// As [`VelocityAssembly::evaluate`], and keeps the forces. Those of a cell whose polygon is not closed are NaN. Responses add no forces.
-    pub fn evaluate(
-        &mut self,
-        tessellation: &Tessellation,
-        positions: &[Vector<S>],
-        model: &Model<S>,
-        velocities: &mut Vec<Vector<S>>,
-    ) {
-        velocities.resize(tessellation.len(), zero());
-        self.evaluate_with_images(tessellation, positions, model, &[], velocities);
-        if !model.responses.is_empty() {
-            respond(tessellation, positions, model, velocities);
-        }
-    }
-
     /// Velocities of the first cells of a tessellation, as many as `velocities` has, of which the others are mirror images: as many
     /// again behind one mirror, or three times as many behind two mirrors and behind both. Component `k` of a vector is reversed by
     /// mirror `k` of `mirrors`.
@@ -288,75 +240,6 @@ fn elements<S: Scalar>(
         rest = after;
         elements_of(cell, tessellation, positions, models, &mut polygon, own, on_cell);
     }
-}
-
-/// The elements of one cell under some models.
-pub(crate) fn elements_of<S: Scalar>(
-    cell: usize,
-    tessellation: &Tessellation,
-    positions: &[Vector<S>],
-    models: &[Model<S>],
-    polygon: &mut CellPolygon<S>,
-    forces: &mut [Vector<S>],
-    on_cell: &mut [Vector<S>],
-) {
-    if !tessellation.is_closed(cell) {
-        let nan = S::constant(f64::NAN);
-        on_cell.fill(Vector::new(nan, nan));
-        forces.fill(Vector::new(nan, nan));
-        return;
-    }
-    let (neighbours, domain) = (tessellation.neighbours(cell), tessellation.domain());
-    polygon.fill(tessellation, positions, cell);
-    let of_models = on_cell.iter_mut().zip(forces.chunks_exact_mut(neighbours.len()));
-    for (model, (on_cell, on_ring)) in models.iter().zip(of_models) {
-        *on_cell = element(model, cell, neighbours, positions[cell], domain, polygon, on_ring);
-    }
-}
-
-/// One element: writes the forces on the ring and returns that on the cell itself.
-#[inline]
-pub(crate) fn element<S: Scalar>(
-    model: &Model<S>,
-    cell: usize,
-    neighbours: &[u32],
-    position: Vector<S>,
-    domain: Domain,
-    polygon: &CellPolygon<S>,
-    on_ring: &mut [Vector<S>],
-) -> Vector<S> {
-    let site = model.site(cell, neighbours.len(), position);
-    let mut on_cell = VertexForces::of_cell(model, site, polygon.shape()).on_ring(polygon, on_ring);
-    if model.has_ring_terms() {
-        let element =
-            CellElement { cell, neighbours, polygon, position, domain, environment: &model.environment };
-        ring_terms(&model.terms, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
-    }
-    on_cell
-}
-
-/// Adds the forces of those terms that are ring terms, for one cell.
-pub(crate) fn ring_terms<S: Elementary>(
-    terms: &[WeightedTerm<S>],
-    element: &CellElement<'_, S>,
-    forces: &mut RingForces<'_, S>,
-) {
-    for weighted in terms {
-        weighted.term.act_on_ring(element, weighted.coefficient, forces);
-    }
-}
-
-/// Velocities of all cells (N) under a model.
-///
-/// In an open field of view the velocity is NaN for cells that have an open polygon or such a neighbour.
-pub fn velocities<S: Scalar>(
-    tessellation: &Tessellation,
-    positions: &[Vector<S>],
-    model: &Model<S>,
-) -> Vec<Vector<S>> {
-    let mut v = Vec::new();
-    VelocityAssembly::default().evaluate(tessellation, positions, model, &mut v);
-    v
 }
 
 /// The velocity field of each term for a coefficient of one: velocities are linear in the coefficients. Polygons are made once for all terms.

@@ -1,6 +1,6 @@
 //! Parameters that differ from cell to cell, as multiples of those of the model.
 
-use crate::assembly::element;
+use crate::element::element;
 use crate::environment::picked;
 use crate::{AreaElasticity, Environment, EnvironmentError, Model, Term, WeightedTerm};
 use std::sync::Arc;

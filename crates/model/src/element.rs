@@ -1,7 +1,9 @@
 //! One cell's element: forces on its vertices, handed on to the centres of its neighbours.
 
-use crate::{Model, Site, WeightedTerm};
-use voronudge_geometry::{Arithmetic, CellPolygon, Elementary, Shape, Vector, quarter_turn};
+use crate::{CellElement, Model, RingForces, Site, WeightedTerm};
+use voronudge_geometry::{
+    Arithmetic, CellPolygon, Domain, Elementary, Scalar, Shape, Tessellation, Vector, quarter_turn,
+};
 
 /// The forces that a cell exerts on its vertices, as multiples of the gradients of its area and perimeter.
 #[derive(Debug, Clone, Copy)]
@@ -101,5 +103,61 @@ impl<S: Arithmetic> VertexForces<S> {
             *first += carried;
         }
         on_cell
+    }
+}
+
+/// The elements of one cell under some models.
+pub(crate) fn elements_of<S: Scalar>(
+    cell: usize,
+    tessellation: &Tessellation,
+    positions: &[Vector<S>],
+    models: &[Model<S>],
+    polygon: &mut CellPolygon<S>,
+    forces: &mut [Vector<S>],
+    on_cell: &mut [Vector<S>],
+) {
+    if !tessellation.is_closed(cell) {
+        let nan = S::constant(f64::NAN);
+        on_cell.fill(Vector::new(nan, nan));
+        forces.fill(Vector::new(nan, nan));
+        return;
+    }
+    let (neighbours, domain) = (tessellation.neighbours(cell), tessellation.domain());
+    polygon.fill(tessellation, positions, cell);
+    let of_models = on_cell.iter_mut().zip(forces.chunks_exact_mut(neighbours.len()));
+    for (model, (on_cell, on_ring)) in models.iter().zip(of_models) {
+        *on_cell = element(model, cell, neighbours, positions[cell], domain, polygon, on_ring);
+    }
+}
+
+/// One element: writes the forces on the ring and returns that on the cell itself.
+#[inline]
+pub(crate) fn element<S: Scalar>(
+    model: &Model<S>,
+    cell: usize,
+    neighbours: &[u32],
+    position: Vector<S>,
+    domain: Domain,
+    polygon: &CellPolygon<S>,
+    on_ring: &mut [Vector<S>],
+) -> Vector<S> {
+    let site = model.site(cell, neighbours.len(), position);
+    let mut on_cell = VertexForces::of_cell(model, site, polygon.shape()).on_ring(polygon, on_ring);
+    if model.has_ring_terms() {
+        let element =
+            CellElement { cell, neighbours, polygon, position, domain, environment: &model.environment };
+        ring_terms(&model.terms, &element, &mut RingForces { on_ring, on_cell: &mut on_cell });
+    }
+    on_cell
+}
+
+/// Adds the forces of those terms that are ring terms, for one cell.
+pub(crate) fn ring_terms<S: Elementary>(
+    terms: &[WeightedTerm<S>],
+    element: &CellElement<'_, S>,
+    forces: &mut RingForces<'_, S>,
+) {
+    for weighted in terms {
+        weighted.term.act_on_ring(element, weighted.coefficient, forces);
     }
 }

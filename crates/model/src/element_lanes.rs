@@ -3,7 +3,7 @@
 //! Cells with one number of sides go through the same operations, so they share them, a lane each. Forces are those of one
 //! cell after another, to the last bit; derivatives to rounding.
 
-use crate::assembly::elements_of;
+use crate::element::elements_of;
 use crate::{Model, VertexForces, WeightedTerm};
 use num_dual::Dual64;
 use pulp::{Arch, Simd, WithSimd};

@@ -31,6 +31,7 @@ mod axis;
 mod block_matrix;
 mod cell_element;
 mod cell_parameters;
+mod chunk;
 pub mod effect;
 mod element;
 mod element_blocks;
@@ -38,8 +39,10 @@ mod element_jacobian;
 mod element_lanes;
 mod environment;
 pub mod gradient_check;
+mod has_velocity;
 mod jacobian;
 mod mirrored_jacobian;
+mod mirrors;
 mod parameters;
 mod products;
 mod response;
@@ -48,9 +51,11 @@ mod row_assembly;
 mod stress;
 mod structure;
 mod term;
+mod term_jacobian;
 mod transition;
+mod velocities;
 
-pub use assembly::{HalfEdgeForces, VelocityAssembly, columns, velocities};
+pub use assembly::{HalfEdgeForces, VelocityAssembly, columns};
 pub use axis::Axis;
 pub use block_matrix::BlockMatrix;
 pub use cell_element::{CellElement, RingForces, Site};
@@ -58,8 +63,9 @@ pub use cell_parameters::{CellDerivatives, CellFactors, CellParameter, cell_deri
 pub use effect::{Column, Effect, EffectError};
 pub use element::VertexForces;
 pub use environment::{Environment, EnvironmentError, VectorMap};
-pub use jacobian::{JacobianBuilder, jacobian};
-pub use mirrored_jacobian::{jacobian_with_images, signs_of};
+pub use jacobian::jacobian;
+pub use mirrored_jacobian::jacobian_with_images;
+pub use mirrors::signs_of;
 pub use parameters::{PARAMETER_NAMES, Parameters, parameter_derivatives};
 pub use products::{jvp, vjp};
 pub use response::{Exactness, Flow, FlowResponse, Linearisation, Response, Rows, Stage};
@@ -70,4 +76,6 @@ pub use term::{
     Adhesion, AreaElasticity, Contractility, CorticalChirality, ForceTerm, ModulatedTerm, Parity, Reach,
     RingTerm, ShapeTerm, Term,
 };
+pub use term_jacobian::JacobianBuilder;
 pub use transition::{Exchange, JumpSlopes};
+pub use velocities::velocities;

@@ -1,8 +1,9 @@
 //! The Jacobian of cells in front of mirrors, whose images move with them.
 
-use crate::assembly::CHUNK;
 use crate::block_matrix::Block;
+use crate::chunk::CHUNK;
 use crate::element_blocks::ElementBlocks;
+use crate::mirrors::signs_of;
 use crate::{BlockMatrix, Model};
 use voronudge_geometry::{Tessellation, Vector};
 
@@ -56,17 +57,6 @@ pub fn jacobian_with_images(
         end
     }));
     matrix
-}
-
-/// What an image does to the components of a vector: bit `k` of its number among the images says that mirror `k` reverses it.
-pub fn signs_of(image: usize, mirrors: &[usize]) -> [f64; 2] {
-    let mut signs = [1.0; 2];
-    for (bit, &axis) in mirrors.iter().enumerate() {
-        if image >> bit & 1 == 1 {
-            signs[axis] = -1.0;
-        }
-    }
-    signs
 }
 
 /// Rows are short: about forty blocks.

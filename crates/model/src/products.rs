@@ -2,7 +2,7 @@
 
 use crate::assembly::VelocityAssembly;
 use crate::element_jacobian::{ByShape, held, seeded, turn};
-use crate::jacobian::has_velocity;
+use crate::has_velocity::has_velocity;
 use crate::{Model, VertexForces, WeightedTerm, jacobian};
 use num_dual::Dual64;
 use pulp::{Arch, Simd, WithSimd};

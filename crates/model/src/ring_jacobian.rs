@@ -4,8 +4,8 @@
 //! displacements of the ring, or by the position of the cell with the ring held, as far as its [`Reach`] says that they matter. Neither
 //! momentum nor translation is taken for granted.
 
-use crate::assembly::ring_terms;
 use crate::block_matrix::Block;
+use crate::element::ring_terms;
 use crate::{CellElement, Environment, Model, Reach, RingForces, WeightedTerm};
 use std::sync::Arc;
 use voronudge_geometry::{Arithmetic, CellPolygon, Tangent, Tessellation, Vector};

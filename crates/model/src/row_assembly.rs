@@ -1,7 +1,7 @@
 //! Sparse matrices of blocks, row by row from sums of blocks.
 
 use crate::BlockMatrix;
-use crate::assembly::CHUNK;
+use crate::chunk::CHUNK;
 use crate::element_jacobian::product;
 use rayon::prelude::*;
 

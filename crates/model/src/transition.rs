@@ -3,8 +3,8 @@
 //! The forces along the gradients of perimeters depend on the directions of the sides that end at a vertex, also of one that has no length.
 //! Where a side vanishes and another appears, the velocities of the four cells there jump; all others are continuous.
 
-use crate::assembly::element;
 use crate::block_matrix::Block;
+use crate::element::element;
 use crate::element_jacobian::{ElementJacobian, seeded};
 use crate::{Model, VertexForces};
 use voronudge_geometry::{CellPolygon, Tangent, Tessellation, Vector};

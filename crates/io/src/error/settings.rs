@@ -1,6 +1,6 @@
 //! Faults of settings, of `dataset.toml`, and of frame selections.
 
-use crate::dataset::WalledSides;
+use crate::walled_sides::WalledSides;
 use std::path::PathBuf;
 
 /// Why a setting is not acceptable, wherever it was given.

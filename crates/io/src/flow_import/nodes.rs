@@ -6,8 +6,9 @@ use ndarray::Array4;
 
 use crate::error::{Error, GridFault, TableFault};
 use crate::flow::{FlowField, grid_error};
+use crate::memory::SIZE_LIMIT;
 use crate::table::{Vector, VectorTable};
-use crate::tracks::{SIZE_LIMIT, frame_span};
+use crate::tracks::frame_span;
 
 /// How far a row may be from its grid point, in spacings: what the digits of a printed
 /// coordinate may leave.

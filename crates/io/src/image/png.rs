@@ -6,8 +6,8 @@ use std::path::Path;
 use ndarray::Array3;
 use png::{BitDepth, ColorType, Decoder, DecodingError};
 
-use super::{check_size, image_error};
-use crate::error::{Error, ImageFault};
+use super::check_size;
+use crate::error::{Error, ImageFault, image_error};
 
 /// What the pixels of an image with a palette are.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

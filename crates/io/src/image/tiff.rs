@@ -10,9 +10,9 @@ use tiff::tags::Tag;
 use tiff::{ColorType, TiffError, TiffUnsupportedError};
 
 use super::description::{Tags, describe, has_frames_as_planes};
-use super::{Images, check_size, image_error};
-use crate::error::{Error, ImageFault};
-use crate::tracks::SIZE_LIMIT;
+use super::{Images, check_size};
+use crate::error::{Error, ImageFault, image_error};
+use crate::memory::SIZE_LIMIT;
 
 /// The pages of a TIFF file, each a frame.
 pub(super) fn parse_tiff<T: Clone>(

@@ -5,8 +5,7 @@ use std::io::Read;
 
 use ruzstd::decoding::StreamingDecoder;
 
-use crate::memory::machine_memory;
-use crate::tracks::SIZE_LIMIT;
+use crate::memory::{SIZE_LIMIT, machine_memory};
 
 /// The numbers of the method, of today and of earlier drafts.
 const METHODS: [u64; 2] = [50000, 34926];

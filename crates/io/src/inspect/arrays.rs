@@ -7,10 +7,11 @@ use ndarray::{ArrayD, Axis};
 use super::{InputKind, Inspection, of_stack};
 use crate::array::{parse_integers, parse_reals, pickled};
 use crate::error::{Error, FormatFault, ShapeFault};
+use crate::image::{Wanted, parse_field_images};
 use crate::linking::PlaceLinking;
 use crate::note::Note;
 use crate::points::import_points;
-use crate::series::{Wanted, read_images};
+use crate::series::read_images;
 use crate::tracks::{ImportOptions, import_tracks};
 
 /// What an array of numbers is; `None` for one of labels, which is an image like others.
@@ -60,7 +61,7 @@ fn of_reals(path: &Path, array: ArrayD<f64>) -> Result<Inspection, Error> {
             Ok(Inspection { frames: Some(*frames), ..vectors(InputKind::FlowArray, axes) })
         }
         [_, _] | [_, _, _] => {
-            let stack = read_images(&[path.to_path_buf()], Wanted::Field, crate::image::parse_field_images)?;
+            let stack = read_images(&[path.to_path_buf()], Wanted::Field, parse_field_images)?;
             of_stack(InputKind::Field, &stack)
         }
         _ => {

@@ -4,7 +4,7 @@ use std::collections::BTreeSet;
 use std::path::Path;
 
 use super::{InputKind, Inspection};
-use crate::error::{Error, TableFault};
+use crate::error::{Error, TableFault, table_error};
 use crate::linking::PlaceLinking;
 use crate::note::Note;
 use crate::outline_import::{OutlineOptions, import_outlines};
@@ -12,7 +12,7 @@ use crate::points::import_points;
 use crate::shapes::ShapeImport;
 use crate::table::{FlowColumnNames, decompressed, read_table};
 use crate::trackmate_xml::is_xml;
-use crate::tracks::{ImportOptions, import_trackmate, import_tracks, table_error};
+use crate::tracks::{ImportOptions, import_trackmate, import_tracks};
 
 /// The most specific kind of table that it can be read as; else what is wrong with it as one of tracks.
 pub(super) fn of_table(path: &Path, bytes: &[u8]) -> Result<Inspection, Error> {

@@ -11,7 +11,7 @@ use std::fs::{self, File};
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
-use super::folder::deciding;
+use super::held::deciding;
 use super::run::{self, RUN};
 use super::{output_error, refuse_folder};
 use crate::error::{Error, OutputFault};

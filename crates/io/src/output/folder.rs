@@ -3,9 +3,10 @@
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
-use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+use std::sync::Arc;
 
 use super::commit::{self, DECIDED};
+use super::held::{Origin, held};
 use super::run::{self, RUN};
 use super::{STAGING, output_error};
 use crate::error::{Error, OutputFault};
@@ -43,32 +44,6 @@ struct Claim {
     path: PathBuf,
     origin: Origin,
     lock: Option<File>,
-}
-
-/// Directories that this process holds, and whether it has decided on results of one.
-static HELD: Mutex<Held> = Mutex::new(Held { claims: Vec::new(), decided: false });
-
-struct Held {
-    claims: Vec<(PathBuf, Origin)>,
-    decided: bool,
-}
-
-/// The table of what is held; it stays usable if a thread has died with it.
-fn held() -> MutexGuard<'static, Held> {
-    HELD.lock().unwrap_or_else(PoisonError::into_inner)
-}
-
-/// Does what decides on results, and what comes after; no signal ends the process in between.
-pub(crate) fn deciding<T>(decide: impl FnOnce() -> T) -> T {
-    let mut held = held();
-    held.decided = true;
-    decide()
-}
-
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Origin {
-    Found,
-    Made,
 }
 
 impl OutputFolder {

@@ -2,9 +2,9 @@
 
 use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-use super::{OutputFolder, output_error};
+use super::output_error;
 use crate::error::{Error, FileFault, OutputFault};
 
 /// Its name.
@@ -12,45 +12,6 @@ pub(crate) const RUN: &str = ".voronudge-run";
 /// What makes it worth to be taken up: a checkpoint, or a journal.
 pub(crate) const CHECKPOINT: &str = "checkpoint";
 pub(crate) const JOURNAL: &str = "journal";
-
-/// The folder of a run at work. It goes with the run if nothing in it can be taken up.
-#[derive(Debug)]
-pub(crate) struct RunFolder {
-    path: PathBuf,
-    folder: OutputFolder,
-}
-
-impl RunFolder {
-    /// Makes an empty one; an unfinished run is given up.
-    pub fn begin(folder: &OutputFolder) -> Result<Self, Error> {
-        let path = folder.path().join(RUN);
-        remove(&path)?;
-        fs::create_dir(&path)
-            .map_err(|source| output_error(folder.path(), OutputFault::NotWritable(source)))?;
-        Ok(Self { path, folder: folder.clone() })
-    }
-
-    /// The one that is there.
-    pub fn resume(folder: &OutputFolder) -> Self {
-        Self { path: folder.path().join(RUN), folder: folder.clone() }
-    }
-
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    pub fn folder(&self) -> &OutputFolder {
-        &self.folder
-    }
-}
-
-impl Drop for RunFolder {
-    fn drop(&mut self) {
-        if is_empty(&self.path) {
-            let _ = remove(&self.path);
-        }
-    }
-}
 
 /// Whether nothing in the folder of a run can be taken up.
 pub(crate) fn is_empty(run: &Path) -> bool {

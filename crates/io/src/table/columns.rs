@@ -4,7 +4,9 @@ use std::borrow::Cow;
 
 use csv::ByteRecord;
 
+use super::header::{bare, plain, unit_in};
 use super::known::{Known, LABEL};
+use super::spot::{Layout, Spot};
 use crate::error::{TableFault, excerpt};
 use crate::note::Note;
 
@@ -21,26 +23,6 @@ pub struct ColumnNames {
     pub x: Option<String>,
     /// The y coordinate.
     pub y: Option<String>,
-}
-
-/// The kind of table.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Layout {
-    TrackMate,
-    Tracks,
-    /// Corners of outlines, row after row; without a column of frames all are in one.
-    Outlines,
-    /// Points without tracks; without a column of frames all are in one.
-    Points,
-}
-
-/// A spot that belongs to a track.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) struct Spot {
-    pub(crate) track: i64,
-    pub(crate) frame: i64,
-    pub(crate) x: f64,
-    pub(crate) y: f64,
 }
 
 /// A column found in the header.
@@ -237,31 +219,4 @@ impl Column {
     pub(super) fn fault(&self, text: &str, expected: &'static str) -> TableFault {
         TableFault::NotANumber { column: self.name.clone(), text: excerpt(text), expected }
     }
-}
-
-/// A column name without what people write differently.
-pub(super) fn plain(name: &str) -> String {
-    name.chars().filter(|letter| !matches!(letter, ' ' | '_' | '-')).flat_map(char::to_lowercase).collect()
-}
-
-/// A column name without its unit and without what people write differently.
-pub(super) fn unbracketed(name: &str) -> String {
-    plain(name.split(['[', '(']).next().unwrap_or_default())
-}
-
-/// The same, and without the distance that CellProfiler adds to the name of its tracks.
-fn bare(name: &str) -> String {
-    let name = unbracketed(name);
-    let tracks = name.strip_prefix("trackobjectslabel");
-    match tracks.is_some_and(|rest| rest.bytes().all(|byte| byte.is_ascii_digit())) {
-        true => "trackobjectslabel".into(),
-        false => name,
-    }
-}
-
-/// The unit in brackets at the end of a name.
-pub(super) fn unit_in(name: &str) -> Option<String> {
-    let start = name.find(['[', '('])? + 1;
-    let unit = name[start..].trim_end_matches([']', ')']).trim();
-    (!unit.is_empty()).then(|| unit.to_owned())
 }

@@ -1,6 +1,7 @@
 //! Names of columns as other programs write them.
 
-use super::columns::{Layout, plain};
+use super::header::plain;
+use super::spot::Layout;
 
 /// Numbers that regionprops gives to the regions of one image; they are tracks only where the segmentation was tracked.
 pub(super) const LABEL: &str = "label";

@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 use std::path::Path;
 
-use super::vectors::{FlowColumnNames, Vector, VectorTable};
+use super::vector_table::{FlowColumnNames, Vector, VectorTable};
 use crate::error::{Error, TableFault, excerpt};
 use crate::mat::{Variable, variables};
 

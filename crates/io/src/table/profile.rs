@@ -5,7 +5,8 @@ use std::path::Path;
 
 use csv::ByteRecord;
 
-use super::columns::{Column, plain};
+use super::columns::Column;
+use super::header::plain;
 use super::{csv_fault, delimiter, line_number, offset_of, text_of, with_points};
 use crate::error::{Error, TableFault};
 use crate::input::{InputFile, read_input};

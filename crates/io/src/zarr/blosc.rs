@@ -1,7 +1,7 @@
 //! Buffers as Blosc 1 packs them: blocks, of which each may be compressed in parts, with bytes of a kind put side by side.
 
 use super::Fault;
-use super::codec::{inflated, unpacked};
+use super::compression::{inflated, unpacked};
 
 /// Bytes before the blocks.
 const HEADER: usize = 16;

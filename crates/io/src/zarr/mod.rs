@@ -1,8 +1,9 @@
 //! Stores of chunks, Zarr 2 and 3: images of OME-Zarr and tracks of GEFF.
 
 mod blosc;
-mod codec;
+mod compression;
 mod geff;
+mod layout;
 mod metadata;
 mod ome;
 mod store;

@@ -7,10 +7,9 @@ use serde_json::Value;
 use super::Fault;
 use super::store::Store;
 use crate::error::{Error, excerpt};
-use crate::image::Described;
+use crate::image::{Described, Wanted};
 use crate::input::InputFile;
 use crate::note::Note;
-use crate::series::Wanted;
 use crate::stated::Stated;
 
 const BY: &str = "OME-Zarr";

@@ -7,12 +7,11 @@ use std::path::{Component, Path, PathBuf};
 use serde_json::Value;
 
 use super::Fault;
-use super::metadata::Layout;
+use super::layout::Layout;
 use crate::digest::sha256;
 use crate::error::{Error, FileFault};
 use crate::input::InputFile;
-use crate::memory::machine_memory;
-use crate::tracks::SIZE_LIMIT;
+use crate::memory::{SIZE_LIMIT, machine_memory};
 
 /// The most chunks of an array.
 const MOST_CHUNKS: usize = 1_000_000;

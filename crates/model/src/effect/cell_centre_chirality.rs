@@ -1,7 +1,9 @@
 //! Chirality that acts on the centre of the cell.
 
 use super::{Alias, Column, Effect, Kind, Unit};
-use crate::{Flow, FlowResponse, Linearisation, Parity, Rows, VelocityAssembly};
+use crate::{
+    BlockMatrix, Flow, FlowResponse, JacobianBuilder, Linearisation, Parity, Rows, VelocityAssembly,
+};
 use voronudge_geometry::{Scalar, Vector, quarter_turn};
 
 /// The velocity of all forces that descend an energy, turned by a quarter at the centre of the cell.
@@ -34,7 +36,8 @@ impl FlowResponse for CellCentreChirality {
 
     fn linearise<'a>(&'a self, at: &'a Linearisation<'a>, coefficient: f64) -> Rows<'a> {
         let flow = &at.flow;
-        let passive = crate::jacobian(flow.tessellation, flow.positions, &flow.model.passive());
+        let (model, mut passive) = (flow.model.passive(), BlockMatrix::default());
+        JacobianBuilder::default().build_terms(flow.tessellation, flow.positions, &model, &mut passive);
         let turn = [0.0, -coefficient, coefficient, 0.0];
         Box::new(move |cell, row| row.add_row(&turn, &passive, cell))
     }

@@ -1,7 +1,7 @@
 //! The positions under check: which cells are displaced, how far, and where the topology is ambiguous.
 
 use super::CELL_LIMIT;
-use crate::assembly::ring_terms;
+use crate::element::ring_terms;
 use crate::{CellElement, Environment, Model, RingForces, VectorMap, VertexForces};
 use std::sync::Arc;
 use voronudge_geometry::{CellPolygon, Domain, Error, FieldOfView, Grid, Shape, Tessellation, Vector, cross};

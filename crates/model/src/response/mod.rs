@@ -10,7 +10,7 @@
 //! types stand in `effect/`; the list of all is at the end of this file.
 
 use crate::effect::{columns_of, *};
-use crate::jacobian::has_velocity;
+use crate::has_velocity::has_velocity;
 use crate::{BlockMatrix, Model, Parity, RowAssembly, VelocityAssembly, assemble};
 use num_dual::Dual;
 use voronudge_geometry::{Scalar, Tessellation, Vector};
