@@ -92,7 +92,7 @@ fn deviance(objective: &Objective<'_>, parts: &[&Whitened], components: usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::least_squares::residuals;
+    use crate::residuals::residuals;
     use crate::{CoefficientSpace, Constraints, NoiseLevels, Progress};
     use nalgebra::{DMatrix, DVector};
     use std::ops::ControlFlow;

@@ -9,8 +9,9 @@
 //! their columns. At the end the coefficients are those that fit best at the nudged positions.
 
 use super::{Found, Watch, own_error};
-use crate::least_squares::{fit_at, free_rows, residuals};
+use crate::least_squares::fit_at;
 use crate::objective::{Nudged, Objective};
+use crate::residuals::{free_rows, residuals};
 use crate::{Error, Loss, Status};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, Gradient};
 use argmin::solver::gradientdescent::SteepestDescent;

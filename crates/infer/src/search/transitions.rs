@@ -13,8 +13,8 @@
 
 use super::patch::{Patch, Whole};
 use super::{Found, TOLERANCE, Watch, optimise, refine};
-use crate::least_squares::residuals;
 use crate::objective::Objective;
+use crate::residuals::residuals;
 use crate::{CoefficientSpace, Error, Observation};
 use rayon::prelude::*;
 use std::collections::HashSet;

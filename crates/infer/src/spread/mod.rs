@@ -19,22 +19,20 @@ mod gram;
 mod interval;
 mod inverse;
 mod levels;
-mod own;
 mod step;
 
 use crate::noise::{LARGEST_POSITION_NOISE, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
 use crate::normal_equations::NormalEquations;
 use crate::objective::Objective;
+use crate::own_parts::{Layout, OwnParts, coefficient};
 use crate::search::{Found, Watch};
 use crate::{Error, KnownNoise, NoiseLevels, Observation, Request};
-use columns::{FrameColumns, Layout, columns};
+use columns::{FrameColumns, columns};
 pub(crate) use evidence::{evidence, evidence_of_field};
 use gram::Gram;
 pub(crate) use interval::probability;
 use levels::{Held, Likelihood, SMALLEST, Variances};
 use nalgebra::{DMatrix, DVector, Matrix4};
-use own::coefficient;
-pub(crate) use own::{OwnParts, surroundings};
 use rayon::prelude::*;
 use voronudge_model::CellParameter;
 

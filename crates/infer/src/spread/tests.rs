@@ -1,7 +1,7 @@
 use super::*;
 use crate::CoefficientSpace;
 use crate::Constraints;
-use crate::least_squares::residuals;
+use crate::residuals::residuals;
 use voronudge_model::Structure;
 
 /// −2 log L with dense matrices, from the definition, for cells that differ in two parameters.
