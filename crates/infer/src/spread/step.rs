@@ -1,8 +1,9 @@
 //! Steps of coefficients, nudges and deviations together, and what deviations mean at the end.
 
+use super::Spread;
+use super::fitting::{Fitting, Linearised, State};
 use super::gram::Gram;
 use super::inverse::inverse;
-use super::{Fitting, Linearised, Spread, State};
 use crate::Error;
 use crate::linearisation::Accuracy;
 use crate::noisy_fit::STEPS_PER_ROUND;

@@ -1,6 +1,10 @@
+use super::columns::columns;
+use super::gram::Gram;
+use super::levels::{Held, Likelihood};
 use super::*;
 use crate::CoefficientSpace;
 use crate::Constraints;
+use crate::noise::SMALLEST_VELOCITY_NOISE;
 use crate::residuals::residuals;
 use voronudge_model::Structure;
 
