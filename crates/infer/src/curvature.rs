@@ -11,11 +11,12 @@
 //! (M. J. Box, J. R. Stat. Soc. B 33, 171, 1971), r the residuals. It does not shrink with the number of cells, as standard errors do. The expectation is a
 //! mean over draws, each with the contacts that cells have there, so it knows of the kinks of forces where contacts change.
 
-use crate::least_squares::{invert, residuals};
 use crate::linearisation::Linearisation;
 use crate::normal_equations::{NormalEquations, Reduced};
+use crate::normal_matrix::invert;
 use crate::objective::{Measurable, Nudged, Objective};
 use crate::position_rows::PositionRows;
+use crate::residuals::residuals;
 use crate::rows::Rows;
 use crate::{Error, Observation};
 use nalgebra::{DMatrix, DVector};

@@ -71,7 +71,7 @@ pub(crate) struct StandardErrors {
 impl Fitted<'_> {
     /// Standard errors alone.
     pub fn standard_errors(&self) -> Result<StandardErrors, Error> {
-        let free = crate::least_squares::invert(self.information.clone())?;
+        let free = crate::normal_matrix::invert(self.information.clone())?;
         let rows = self.rows([None; BASE]);
         let covariance = rows.covariance(&free);
         let effects = self.space.base_dimension()..self.free.len();
@@ -111,7 +111,7 @@ impl Fitted<'_> {
     /// The same of cells that have coefficients of their own.
     pub fn estimates_of(&self, rows: &Rows) -> Result<ParameterEstimates, Error> {
         let quadratic = Quadratic::new(self.centre.clone(), self.information)?;
-        let covariance = rows.covariance(&crate::least_squares::invert(self.information.clone())?);
+        let covariance = rows.covariance(&crate::normal_matrix::invert(self.information.clone())?);
         let c = rows.coefficients(self.free);
         let bounds = self.space.half_spaces();
         let coefficient = |index: usize| rows.functional(index);
@@ -186,7 +186,7 @@ impl Fitted<'_> {
 
     /// Principal axes of the covariance of the coefficients, each measured in its usual size: stiffest first.
     pub fn directions(&self) -> Result<Vec<Direction>, Error> {
-        let covariance = self.space.covariance(&crate::least_squares::invert(self.information.clone())?);
+        let covariance = self.space.covariance(&crate::normal_matrix::invert(self.information.clone())?);
         let relative =
             Matrix4::from_fn(|i, j| covariance[(i, j)] / (COEFFICIENT_SIZES[i] * COEFFICIENT_SIZES[j]));
         let eigen = relative.symmetric_eigen();

@@ -2,7 +2,7 @@
 
 use crate::estimates::Fitted;
 use crate::fit_parameter::BASE;
-use crate::least_squares::invert;
+use crate::normal_matrix::invert;
 use crate::{Error, Estimate, FitParameter, NORMAL_95, ParameterEstimates};
 use nalgebra::{DVector, RowDVector};
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -1,14 +1,12 @@
 //! The linear part: coefficients at fixed positions.
 
+use crate::normal_matrix::{invert, within_bounds};
 use crate::objective::Nudged;
-use crate::quadratic::Quadratic;
+use crate::residuals::{Columns, combined, free_rows, residuals};
 use crate::{CoefficientSpace, Error, Observation};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Vector;
 use voronudge_model::Structure;
-
-/// Fields for cells or for grid points, one for each coefficient.
-pub(crate) type Columns = Vec<Vec<Vector<f64>>>;
 
 /// Gauss–Newton steps of a naive fit where velocities are not linear in the coefficients.
 const STEPS: usize = 4;
@@ -67,20 +65,6 @@ fn solve(
     within_bounds(space, free, normal).map(|beta| beta.as_slice().to_vec())
 }
 
-/// The point within the bounds of β where `(β − centre)ᵀ H (β − centre)` is least.
-pub(crate) fn within_bounds(
-    space: &CoefficientSpace,
-    centre: DVector<f64>,
-    hessian: DMatrix<f64>,
-) -> Result<DVector<f64>, Error> {
-    let bounds = space.half_spaces();
-    if bounds.is_empty() {
-        return Ok(centre);
-    }
-    let minimum = Quadratic::new(centre, &hessian)?.minimise(&bounds, None);
-    minimum.map(|minimum| minimum.at).ok_or(Error::Constraint("no parameters lie within all bounds"))
-}
-
 /// XᵀX and Xᵀ(v − F + X (c − c₀)) of one frame, with the prediction F, its derivatives by the coefficients, and the
 /// coefficients at which they hold, relative to the origin of the space.
 fn normal_equations(
@@ -102,57 +86,11 @@ fn normal_equations(
     (normal, right)
 }
 
-/// Σ c_t X_t at one place.
-pub(crate) fn combined(columns: &Columns, coefficients: &[f64], datum: usize) -> Vector<f64> {
-    columns.iter().zip(coefficients).fold(Vector::zeros(), |sum, (column, c)| sum + column[datum] * *c)
-}
-
-/// What a prediction leaves unexplained: datum and residual, for each target.
-pub(crate) fn residuals(frame: &Observation, predicted: &[Vector<f64>]) -> Vec<(usize, Vector<f64>)> {
-    let mut rests: Vec<Vector<f64>> = frame.targets().map(|(datum, v)| v - predicted[datum]).collect();
-    frame.remove_background(&mut rests);
-    frame.targets().map(|(datum, _)| datum).zip(rests).collect()
-}
-
-/// The same for given coefficients at the measured positions.
+/// What given coefficients leave unexplained at the measured positions: datum and residual, for each target.
 pub(crate) fn residuals_as_measured(
     frame: &Observation,
     structure: &Structure,
     coefficients: &[f64],
 ) -> Vec<(usize, Vector<f64>)> {
     residuals(frame, &Nudged::as_measured(frame, structure).evaluate(coefficients).predicted)
-}
-
-/// `X B` (2, p) for each target.
-pub(crate) fn free_rows(
-    frame: &Observation,
-    by_coefficient: &Columns,
-    space: &CoefficientSpace,
-) -> Vec<DMatrix<f64>> {
-    let fields: Vec<Vec<Vector<f64>>> = (0..space.dimension())
-        .map(|k| {
-            let along = space.basis().column(k);
-            let mut field: Vec<Vector<f64>> =
-                frame.targets().map(|(datum, _)| combined(by_coefficient, along.as_slice(), datum)).collect();
-            frame.remove_background(&mut field);
-            field
-        })
-        .collect();
-    let count = fields.first().map_or_else(|| frame.targets().count(), Vec::len);
-    (0..count).map(|row| DMatrix::from_fn(2, fields.len(), |axis, k| fields[k][row][axis])).collect()
-}
-
-/// The inverse of a normal matrix, refused if its columns are dependent to rounding.
-pub(crate) fn invert(normal: DMatrix<f64>) -> Result<DMatrix<f64>, Error> {
-    let scale: Vec<f64> = normal.diagonal().iter().map(|d| d.sqrt()).collect();
-    if scale.iter().any(|s| !(s.is_finite() && *s > 0.0)) {
-        return Err(Error::Degenerate);
-    }
-    let scaled = DMatrix::from_fn(scale.len(), scale.len(), |i, j| normal[(i, j)] / (scale[i] * scale[j]));
-    let eigenvalues = scaled.clone().symmetric_eigen().eigenvalues;
-    if eigenvalues.min() < 1e-12 {
-        return Err(Error::Degenerate);
-    }
-    let inverse = scaled.cholesky().ok_or(Error::Degenerate)?.inverse();
-    Ok(DMatrix::from_fn(scale.len(), scale.len(), |i, j| inverse[(i, j)] / (scale[i] * scale[j])))
 }

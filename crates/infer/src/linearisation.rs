@@ -13,14 +13,15 @@
 //! Coordinates without a measured position (of cells that were not seen) have no row in H. They are unknowns of no
 //! distribution, as coefficients are, but for a stiffness that keeps them near where they were put.
 
+mod accuracy;
 mod conjugate_gradients;
 mod eliminated;
 mod freedom;
 mod iterated;
 mod solved;
 
+pub(crate) use accuracy::Accuracy;
 pub(crate) use eliminated::Eliminated;
-pub(crate) use iterated::Accuracy;
 pub(crate) use solved::Weighting;
 
 use crate::Error;

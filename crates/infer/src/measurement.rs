@@ -9,25 +9,18 @@ mod tests;
 
 use crate::excerpt::excerpts;
 use crate::inference::to_be_explained;
-use crate::least_squares::{self, invert};
+use crate::least_squares;
 use crate::noisy_fit::{SETTLED, STEPS_PER_ROUND, first_levels, most_likely};
+use crate::normal_matrix::invert;
 use crate::objective::Objective;
 use crate::search::{Watch, follow, refine};
+use crate::unknown::Unknown;
 use crate::{
     Error, FitParameter, NORMAL_95, NoiseLevels, Observation, Progress, Request, Velocities, Window,
     WindowKind,
 };
 use std::ops::ControlFlow;
 use voronudge_geometry::Grid;
-
-/// An unknown of the measurement.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Unknown {
-    /// The share c of the way from site to centroid.
-    Share,
-    /// The width of the windows.
-    Width,
-}
 
 /// What is known of the measurement beforehand.
 #[derive(Debug, Clone, Copy, Default, PartialEq)]

@@ -2,10 +2,11 @@
 
 use crate::excerpt::excerpts;
 use crate::least_squares::{self, residuals_as_measured};
-use crate::measurement::Unknown;
-use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, Restricted, SMALLEST_VELOCITY_NOISE};
+use crate::noise::{FIRST_POSITION_NOISE, LARGEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
 use crate::objective::{Objective, Patches};
+use crate::restricted::Restricted;
 use crate::search::{Effort, Found, Watch, descend, follow, improve, refine};
+use crate::unknown::Unknown;
 use crate::{Error, KnownNoise, Method, NoiseLevels, Observation, Request};
 
 /// Rounds of estimating the noise levels before contacts are flipped, and after.

@@ -1,7 +1,7 @@
 //! The linearised problem of all frames: the nudges eliminated, the few coefficients found within their bounds.
 
-use crate::least_squares::{invert, within_bounds};
 use crate::linearisation::{Accuracy, Eliminated, Held, Linearisation};
+use crate::normal_matrix::{invert, within_bounds};
 use crate::quadratic::HalfSpace;
 use crate::{CoefficientSpace, Error, NoiseLevels};
 use nalgebra::{DMatrix, DVector};

@@ -5,14 +5,15 @@ mod obstacles;
 mod patches;
 
 use crate::flow::Sampling;
-use crate::least_squares::{Columns, residuals};
 use crate::normal_equations::NormalEquations;
+use crate::own_parts::OwnParts;
 use crate::placing::Placing;
 use crate::position_rows;
-use crate::spread::OwnParts;
+use crate::residuals::{Columns, residuals};
+use crate::rows::Row;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
-pub(crate) use linearised::{Free, Linear};
-use nalgebra::{DMatrix, DVector};
+pub(crate) use linearised::Linear;
+use nalgebra::DVector;
 pub(crate) use patches::Patches;
 use rayon::prelude::*;
 use std::sync::{Arc, OnceLock};
@@ -76,9 +77,6 @@ impl Predicted {
 
 /// Cells at some time, with the velocities that the model gives them.
 pub(crate) type Moving<'a> = (Nudged<'a>, Predicted);
-
-/// Datum, residual, and its derivative by the free coefficients (2, p).
-pub(crate) type Row = (usize, Vector<f64>, DMatrix<f64>);
 
 /// One frame at some positions with its residuals and their derivatives.
 pub(crate) struct Measurable<'a> {

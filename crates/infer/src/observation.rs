@@ -7,7 +7,7 @@ mod scaled;
 use crate::Error;
 use crate::background::Background;
 use crate::flow::{Flow, Sampling};
-use crate::measurement::Unknown;
+use crate::unknown::Unknown;
 use nalgebra::DMatrix;
 use std::sync::Arc;
 use voronudge_geometry::{

@@ -9,7 +9,7 @@
 //! measured at their sites.
 
 use crate::Observation;
-use crate::objective::Free;
+use crate::free_cells::Free;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
 use voronudge_geometry::{CellPolygon, Tessellation, Vector, centroid_slopes};

@@ -1,7 +1,7 @@
 //! How probable a fitted model makes velocities that are left out.
 //!
 //! Linearised about the fit, the likelihood of all data is that of some times that of the others given those. So for
-//! velocities B, with the restricted likelihood L of the module [`noise`](crate::noise),
+//! velocities B, with the restricted likelihood L of the module [`restricted`](crate::restricted),
 //!
 //! ```text
 //! −2 log p(v_B | rest) = −2 log L(all) + 2 log L(rest) = e_Bᵀ P_BB e_B / σ_v² + log det (σ_v² P_BB⁻¹),    e_B = P_BB⁻¹ (P y)_B
@@ -92,7 +92,7 @@ fn deviance(objective: &Objective<'_>, parts: &[&Whitened], components: usize) -
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::least_squares::residuals;
+    use crate::residuals::residuals;
     use crate::{CoefficientSpace, Constraints, NoiseLevels, Progress};
     use nalgebra::{DMatrix, DVector};
     use std::ops::ControlFlow;

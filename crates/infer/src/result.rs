@@ -1,6 +1,6 @@
 //! What a fit answers.
 
-use crate::spread::surroundings;
+use crate::own_parts::surroundings;
 use crate::{Doubt, Error, FitParameter, KindEstimates, NoiseLevels, NoiseSource, Observation, Spread};
 use nalgebra::DVector;
 use voronudge_geometry::{Tessellation, Vector};

@@ -12,9 +12,9 @@
 
 mod leverage;
 
-use crate::least_squares::residuals;
 use crate::objective::Objective;
 use crate::placing::Placing;
+use crate::residuals::residuals;
 use crate::{Error, Observation};
 use leverage::About;
 use nalgebra::Matrix2;

@@ -27,6 +27,9 @@ pub(crate) fn from_lanes<const L: usize>(lanes: &[Pair<L>], vectors: usize) -> V
     (0..vectors).flat_map(|lane| lanes.iter().flat_map(move |pair| [pair[0][lane], pair[1][lane]])).collect()
 }
 
+/// Datum, residual, and its derivative by the free coefficients (2, p).
+pub(crate) type Row = (usize, Vector<f64>, DMatrix<f64>);
+
 /// Residuals of one kind with their derivatives: by the coordinates, a block column for each place, and by the free
 /// coefficients.
 pub(crate) struct Rows<'a> {

@@ -1,7 +1,7 @@
 //! Generalised least squares: the whitened data of a linearised problem, and what the best coefficients leave.
 
 use crate::Error;
-use crate::least_squares::invert;
+use crate::normal_matrix::invert;
 use nalgebra::{DMatrix, DVector};
 
 /// `W⁻¹ = (I + JJᵀ/k)⁻¹` between y and X, and its determinant.

@@ -1,8 +1,8 @@
 //! Residuals without the correlations that errors of the positions make.
 
-use crate::least_squares::residuals;
 use crate::objective::{Nudged, Objective};
 use crate::position_rows::PositionRows;
+use crate::residuals::residuals;
 use crate::rows::linearised_back;
 use crate::uncertainty::nudges;
 use crate::{Error, Inference, Observation, Request};

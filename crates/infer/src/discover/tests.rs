@@ -67,7 +67,7 @@ fn the_score_is_that_of_the_dense_problem() {
     let evaluated = placed.evaluate(c);
     let n = 2 * frames[0].positions.len();
     let j = DMatrix::from_row_slice(n, n, &placed.jacobian(c, &evaluated.of_cells).to_dense());
-    let rest = crate::least_squares::residuals(&frames[0], &evaluated.predicted);
+    let rest = crate::residuals::residuals(&frames[0], &evaluated.predicted);
     let e = DVector::from_iterator(n, rest.iter().flat_map(|(_, rest)| [rest.x, rest.y]));
     let y = e + &j * DVector::from_column_slice(nudges);
     let w = (DMatrix::identity(n, n) + &j * j.transpose() / levels.spring()).try_inverse().unwrap();

@@ -9,8 +9,9 @@
 //!
 //! so that velocities around a cell that was not detected count little. A scale estimated anew each time would hide them.
 
-use crate::least_squares::{free_rows, invert, residuals, within_bounds};
+use crate::normal_matrix::{invert, within_bounds};
 use crate::objective::Nudged;
+use crate::residuals::{free_rows, residuals};
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Vector;

@@ -5,6 +5,7 @@
 //!
 //! Right-hand sides go together by lanes, for which J is read once.
 
+use super::accuracy::Accuracy;
 use super::conjugate_gradients::Operator;
 use super::{Held, Linearisation};
 use crate::Error;
@@ -21,15 +22,6 @@ const FACTORED: usize = 16_000;
 
 /// Right-hand sides that go together.
 pub(super) const LANES: usize = 4;
-
-/// How well unknowns are eliminated.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Accuracy {
-    /// For a step of an optimiser, which the next one sets right.
-    OfSteps,
-    /// For what is told.
-    OfResults,
-}
 
 /// Solutions, one after the other, and what they leave of the right-hand sides.
 pub(super) type Iterated = (Vec<f64>, Vec<f64>);

@@ -1,9 +1,9 @@
 //! The cells at which a step of a fit to snapshots fails.
 
 use super::{Moving, Objective};
-use crate::least_squares::residuals;
 use crate::obstacles::{around, failing};
 use crate::position_rows::squares;
+use crate::residuals::residuals;
 use voronudge_geometry::Vector;
 
 /// What a term of Φ belongs to, with its frame.

@@ -5,9 +5,8 @@
 //! small factor. It is a likelihood of fewer data, and exact; velocities at the borders of patches are not asked. Which are is a matter of the contacts as
 //! measured, so that likelihoods of different fits are of the same data.
 
-use super::Free;
-use crate::objective::Row;
-use crate::rows::Rows;
+use crate::free_cells::Free;
+use crate::rows::{Row, Rows};
 use crate::{Observation, Velocities};
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;

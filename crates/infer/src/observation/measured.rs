@@ -3,7 +3,7 @@
 use super::{Observation, Velocities};
 use crate::Error;
 use crate::flow::{Sampling, Window};
-use crate::measurement::Unknown;
+use crate::unknown::Unknown;
 use voronudge_geometry::{CellPolygon, Tessellation, Vector};
 
 /// Steps `r ← y − c (centroid(r) − r)` from measured positions towards sites: more would follow the noise.

@@ -18,7 +18,7 @@ pub(crate) use snapshots::informed;
 pub use snapshots::prospects;
 
 use crate::estimates::{Fitted, StandardErrors};
-use crate::least_squares::invert;
+use crate::normal_matrix::invert;
 use crate::{CoefficientSpace, Constraints, Error, FitParameter, Inference};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Domain;

@@ -1,6 +1,8 @@
 //! From loose to tight data, the springs held: a stiff start keeps the nudges from falling into wrong neighbourhoods.
 
-use super::{Found, TOLERANCE, Watch, optimise};
+use super::found::Found;
+use super::optimise::{TOLERANCE, optimise};
+use super::watch::Watch;
 use crate::objective::Objective;
 use crate::{Error, NoiseLevels};
 use std::ops::ControlFlow;

@@ -8,9 +8,12 @@
 //! the length of a step follows from backtracking to a sufficient decrease, and coefficients are scaled by the norms of
 //! their columns. At the end the coefficients are those that fit best at the nudged positions.
 
-use super::{Found, Watch, own_error};
-use crate::least_squares::{fit_at, free_rows, residuals};
+use super::found::Found;
+use super::optimise::own_error;
+use super::watch::Watch;
+use crate::least_squares::fit_at;
 use crate::objective::{Nudged, Objective};
+use crate::residuals::{free_rows, residuals};
 use crate::{Error, Loss, Status};
 use argmin::core::{CostFunction, Error as ArgminError, Executor, Gradient};
 use argmin::solver::gradientdescent::SteepestDescent;

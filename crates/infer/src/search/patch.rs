@@ -1,7 +1,8 @@
 //! A part of a frame cut out, to try changes in without touching the rest.
 
+use crate::free_cells::Free;
 use crate::normal_equations::NormalEquations;
-use crate::objective::{Free, Moving, Nudged, Objective};
+use crate::objective::{Moving, Nudged, Objective};
 use crate::placing::Placing;
 use crate::{CoefficientSpace, Error, NoiseLevels, Observation, Velocities};
 use std::collections::HashMap;

@@ -1,12 +1,25 @@
 //! Further starts within the noise.
 
-use super::{Effort, Found, TOLERANCE, Watch, optimise, transitions};
+use super::found::Found;
+use super::optimise::{TOLERANCE, optimise};
+use super::transitions;
+use super::watch::Watch;
 use crate::Error;
 use crate::objective::Objective;
 use crate::seeds::{Purpose, seed_of};
 use rand::SeedableRng;
 use rand_distr::{Distribution, Normal};
 use rand_pcg::Pcg64;
+
+/// How far to search.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Effort {
+    /// Steps of one optimisation at the final noise levels.
+    pub max_steps: u64,
+    /// Starts in all.
+    pub starts: usize,
+    pub seed: u64,
+}
 use std::ops::ControlFlow;
 
 /// Displacement of a new start from the best point, in units of σ_r.

@@ -11,10 +11,12 @@
 //! and descends. Those flips that make the objective less and do not touch each other are made together, and the whole
 //! descends again.
 
+use super::found::Found;
+use super::optimise::{TOLERANCE, optimise, refine};
 use super::patch::{Patch, Whole};
-use super::{Found, TOLERANCE, Watch, optimise, refine};
-use crate::least_squares::residuals;
+use super::watch::Watch;
 use crate::objective::Objective;
+use crate::residuals::residuals;
 use crate::{CoefficientSpace, Error, Observation};
 use rayon::prelude::*;
 use std::collections::HashSet;

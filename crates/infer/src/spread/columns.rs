@@ -1,79 +1,13 @@
 //! What the parameters of single cells do to what is measured.
 
 use crate::objective::{Measurable, Objective};
+use crate::own_parts::Layout;
 use crate::rows::linearised_back;
-use crate::{Error, Observation, Velocities};
+use crate::{Error, Observation};
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;
-use std::collections::HashMap;
 use voronudge_geometry::Vector;
-use voronudge_model::{BlockMatrix, CellParameter, cell_derivatives};
-
-/// Most unknown parameters of cells: the linear algebra is dense.
-const LARGEST: usize = 4000;
-
-/// Which unknown belongs to which cell: those of one parameter follow each other, one for each cell of the tissue.
-#[derive(Debug, Clone)]
-pub(super) struct Layout {
-    pub parameters: Vec<CellParameter>,
-    /// Unknowns of one cell.
-    pub blocks: usize,
-    /// Number of cells of the tissue.
-    pub cells: usize,
-    /// Which of them the cells of each frame are.
-    pub of_frames: Vec<Vec<usize>>,
-}
-
-impl Layout {
-    /// Cells of one identity are the same in all frames; those without one are new in each.
-    pub fn new(frames: &[Observation], parameters: &[CellParameter]) -> Result<Self, Error> {
-        let mut known = HashMap::new();
-        let mut cells = 0;
-        let mut of_frames = Vec::with_capacity(frames.len());
-        for frame in frames {
-            if !matches!(frame.velocities, Velocities::OfCells(_)) {
-                return Err(Error::Spread(
-                    "cells that differ are told from velocities of cells, not from a flow field",
-                ));
-            }
-            let mut next = || {
-                cells += 1;
-                cells - 1
-            };
-            let own = (0..frame.positions.len()).map(|cell| match frame.identity(cell) {
-                Some(identity) => *known.entry(identity).or_insert_with(&mut next),
-                None => next(),
-            });
-            of_frames.push(own.collect());
-        }
-        if cells * parameters.len() > LARGEST {
-            return Err(Error::Spread("cells that differ are told of up to 4000 cells times parameters"));
-        }
-        Ok(Self { parameters: parameters.to_vec(), blocks: parameters.len(), cells, of_frames })
-    }
-
-    /// The two components of a smooth velocity that is another in each frame, with a centre at each cell.
-    pub fn of_field(frames: &[Observation]) -> Self {
-        let mut cells = 0;
-        let of_frame = |frame: &Observation| {
-            let first = cells;
-            cells += frame.positions.len();
-            (first..cells).collect()
-        };
-        let of_frames = frames.iter().map(of_frame).collect();
-        Self { parameters: Vec::new(), blocks: 2, cells, of_frames }
-    }
-
-    /// Number of unknowns.
-    pub fn order(&self) -> usize {
-        self.blocks * self.cells
-    }
-
-    /// The unknowns of one parameter.
-    pub fn block(&self, parameter: usize) -> std::ops::Range<usize> {
-        parameter * self.cells..(parameter + 1) * self.cells
-    }
-}
+use voronudge_model::{BlockMatrix, cell_derivatives};
 
 /// One frame's data with their derivatives by the unknowns of the cells.
 pub(super) struct FrameColumns {

@@ -1,9 +1,10 @@
 //! What speaks for cells that differ beside a fit in which they are alike.
 
-use super::columns::{FrameColumns, Layout, columns, columns_of_field};
+use super::columns::{FrameColumns, columns, columns_of_field};
+use super::fitting::{FIRST, Fitting, Linearised, SPACING, State};
 use super::levels::Variances;
-use super::{FIRST, Fitting, Linearised, SPACING, State};
 use crate::objective::Objective;
+use crate::own_parts::Layout;
 use crate::{Error, KnownNoise};
 use nalgebra::DVector;
 use voronudge_model::CellParameter;

@@ -2,8 +2,8 @@
 
 use super::columns::FrameColumns;
 use crate::Error;
-use crate::least_squares::invert;
 use crate::normal_equations::NormalEquations;
+use crate::normal_matrix::invert;
 use crate::whitened::Whitened;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

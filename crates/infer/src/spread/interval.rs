@@ -1,8 +1,8 @@
 //! Intervals of spreads by the profile of the restricted likelihood, and whether there are any.
 
+use super::fitting::{Fitting, Linearised, State};
 use super::gram::Gram;
 use super::levels::{SMALLEST, Variances};
-use super::{Fitting, Linearised, State};
 use crate::Error;
 use crate::estimates::CHI_SQUARED_95;
 use statrs::distribution::{ChiSquared, ContinuousCDF};

@@ -7,11 +7,11 @@
 //! −2 log L = (n − p) log σ_v² + log det W + log det XᵀW⁻¹X + log det B + (yᵀPy − yᵀPZ D B⁻¹ D ZᵀPy) / σ_v²
 //! ```
 
-use super::columns::Layout;
 use super::gram::Projected;
 use super::inverse::inverse;
 use crate::Error;
 use crate::noise::SMALLEST_VELOCITY_NOISE;
+use crate::own_parts::Layout;
 use nalgebra::{DMatrix, DVector};
 
 /// Standard deviations below this, relative to the parameter, are none.

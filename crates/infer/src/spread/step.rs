@@ -1,12 +1,13 @@
 //! Steps of coefficients, nudges and deviations together, and what deviations mean at the end.
 
+use super::Spread;
+use super::fitting::{Fitting, Linearised, State};
 use super::gram::Gram;
 use super::inverse::inverse;
-use super::{Fitting, Linearised, Spread, State};
 use crate::Error;
-use crate::least_squares::{invert, within_bounds};
 use crate::linearisation::Accuracy;
 use crate::noisy_fit::STEPS_PER_ROUND;
+use crate::normal_matrix::{invert, within_bounds};
 use crate::search::refine;
 use nalgebra::{DMatrix, DVector};
 use rayon::prelude::*;

@@ -1,7 +1,11 @@
+use super::columns::columns;
+use super::gram::Gram;
+use super::levels::{Held, Likelihood};
 use super::*;
 use crate::CoefficientSpace;
 use crate::Constraints;
-use crate::least_squares::residuals;
+use crate::noise::SMALLEST_VELOCITY_NOISE;
+use crate::residuals::residuals;
 use voronudge_model::Structure;
 
 /// −2 log L with dense matrices, from the definition, for cells that differ in two parameters.

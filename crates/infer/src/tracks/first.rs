@@ -2,7 +2,7 @@
 
 use super::objective::MovieObjective;
 use crate::Error;
-use crate::least_squares::{invert, within_bounds};
+use crate::normal_matrix::{invert, within_bounds};
 use nalgebra::{DMatrix, DVector};
 use voronudge_geometry::Vector;
 

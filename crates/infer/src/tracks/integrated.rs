@@ -21,9 +21,9 @@
 use super::objective::MovieObjective;
 use super::states::Place;
 use crate::Error;
-use crate::least_squares::invert;
 use crate::linearisation::Held;
 use crate::normal_equations::{LINEARISED_TOGETHER, NormalEquations};
+use crate::normal_matrix::invert;
 use nalgebra::{DMatrix, DVector};
 
 /// Steps of the differences to either side, in standard errors of independent directions.

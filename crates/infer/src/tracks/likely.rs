@@ -3,7 +3,8 @@
 use super::look::{Look, Seen, Way};
 use super::memory::Memory;
 use super::surface::{CLOSE, FURTHEST, Matrix, Point};
-use crate::noise::{LARGEST_POSITION_NOISE, Likelihood, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
+use crate::noise::{LARGEST_POSITION_NOISE, SMALLEST_POSITION_NOISE, SMALLEST_VELOCITY_NOISE};
+use crate::restricted::Likelihood;
 use crate::{Error, KnownNoise, NoiseLevels, NoiseSource};
 
 /// x and log σ_v²/σ_p²: at least and at most.

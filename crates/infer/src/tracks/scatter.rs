@@ -15,7 +15,7 @@ use super::movie::Movie;
 use super::objective::{MovieObjective, Placed};
 use super::states::States;
 use crate::diagnostics::robust_variance;
-use crate::noise::Likelihood;
+use crate::restricted::Likelihood;
 use crate::{CoefficientSpace, Error, Request};
 
 /// How many motions are taken for jumps by chance.

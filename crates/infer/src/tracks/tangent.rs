@@ -9,7 +9,7 @@
 use super::objective::MovieObjective;
 use super::passage::{Derivatives, Part, Passage, Stage, Step, is_known};
 use super::row_builder::IDENTITY;
-use crate::least_squares::{Columns, combined};
+use crate::residuals::{Columns, combined};
 use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
 use voronudge_model::BlockMatrix;

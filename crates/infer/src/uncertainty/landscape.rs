@@ -1,9 +1,9 @@
 //! Slices of the loss landscape over two parameters.
 
 use super::{Point, with};
-use crate::least_squares::residuals;
 use crate::objective::{Nudged, Objective};
 use crate::position_rows;
+use crate::residuals::residuals;
 use crate::search::Watch;
 use crate::{Error, FitParameter, Inference, Observation, Progress, Request};
 use nalgebra::DVector;
