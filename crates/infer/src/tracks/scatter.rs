@@ -5,7 +5,7 @@
 //! for a scatter is by how much −2 log L falls from the least that a fit has to the likeliest one, positions with errors in either case.
 
 use super::anchors::Share;
-use super::fit::least_scatter;
+use super::course::least_scatter;
 use super::held_out::AsMeasured;
 use super::inference::Followed;
 use super::likely::LESS_LIKELY;
