@@ -206,7 +206,7 @@ fn a_detection_of_two_cells_is_no_third_between_them() {
     let (positions, velocities) = (vectors(&set.positions), vectors(velocities));
     let cells = positions.len();
     let rms = (velocities.iter().map(Vector::norm_squared).sum::<f64>() / cells as f64).sqrt();
-    let velocities = velocities.into_iter().map(|v| Some(v / rms)).collect();
+    let velocities: Vec<_> = velocities.into_iter().map(|v| Some(v / rms)).collect();
     let domain = Domain::Periodic(PeriodicBox::new([set.cell_box.unwrap(); 2]).unwrap());
     let observation = Observation::new(0, positions, velocities, domain, FieldOfView::default()).unwrap();
     let constraints = Constraints::fixed([(FitParameter::AreaElasticity, set.truth.parameters["K_A"] / rms)]);

@@ -1,6 +1,6 @@
 //! Which effects can be tested on the data.
 
-use super::result::Search;
+use super::search::Search;
 use crate::{Drives, Observation, Velocities};
 use voronudge_model::effect::Kind;
 use voronudge_model::{CellParameter, Column, Effect};

@@ -1,30 +1,18 @@
-//! What was added against everything that could stand in its place.
+//! What was added, with all that is known of it: what it explains, and what could stand in its place.
 
-use super::chance::Chance;
-use super::crawling::{Crawling, TOO_LITTLE, is_too_little};
+use super::crawling::Crawling;
 use super::heterogeneity::Heterogeneity;
 use super::lineup::added_places;
-use super::resilience::{Member, partial};
+use super::resilience::partial;
 use super::result::Selected;
-use super::steps::{Model, Setting};
+use super::steps::{LEAD, Model, Setting};
+use super::tested::Tested;
 use crate::search::Watch;
 use crate::{Error, FitParameter};
 use voronudge_model::Effect;
 
-/// Lead in `−2 log L` below which another effect could as well be the right one: under it, so large a lead of a wrong one has a
-/// probability below `exp(−lead/2)`, 5 %.
-pub(super) const LEAD: f64 = 6.0;
-
 /// Lead of the linear problem below which it is refitted to know.
 const UNSURE: f64 = 25.0;
-
-/// Least statistic that fitted coefficients are expected to have, as a share of the one found, which is that of the linear problem without them. A
-/// third of the coefficients has a ninth.
-const BORNE_OUT: f64 = 0.1;
-
-/// Why an effect is taken back whose fit knows nothing of it.
-const NOT_THERE: &str =
-    "what speaks for it in the linear problem is not borne out: fitted with all else, it is hardly there";
 
 /// The effects added.
 #[derive(Debug, Clone, Default)]
@@ -34,97 +22,6 @@ pub(super) struct Selection {
     pub share: f64,
     /// The largest share that is compatible with chance.
     pub largest_share: f64,
-}
-
-/// One effect added, tested with all others in the model.
-pub(super) struct Tested {
-    pub candidate: usize,
-    pub p: f64,
-    pub adjusted_p: f64,
-    pub(super) statistic: f64,
-    pub(super) size: f64,
-    /// Why it does not stand without some of the data, if it does not.
-    pub(super) weakness: Option<&'static str>,
-    /// Other candidates in its place: lead over them in the linear problem, and their coefficients.
-    pub(super) others: Vec<(usize, f64, Vec<f64>)>,
-}
-
-impl Tested {
-    /// Why it is taken back at a level, if it is.
-    pub fn reason_against(&self, level: f64) -> Option<&'static str> {
-        match self.adjusted_p >= level {
-            true => Some("with all else in the model it is no more than chance"),
-            false => self.weakness,
-        }
-    }
-}
-
-/// Tests each effect added, with all others in the model.
-pub(super) fn without_each(
-    setting: &Setting<'_>,
-    base: &Model,
-    model: &Model,
-    watch: &mut Watch<'_>,
-) -> Result<Vec<Tested>, Error> {
-    let places = added_places(&setting.search.fit.structure, setting.candidates, &model.added);
-    let mut all = Vec::with_capacity(model.added.len());
-    for (candidate, places) in model.added.iter().zip(&places.effects) {
-        let others: Vec<usize> = model.added.iter().copied().filter(|k| k != candidate).collect();
-        if let Some(crawling) = Crawling::of(setting, *candidate, model) {
-            all.push(crawling.tested(setting, base, &others));
-            continue;
-        }
-        let own: Vec<f64> = places.iter().map(|k| model.inference.coefficients[*k]).collect();
-        let own_lineup;
-        let lineup = if others.is_empty() {
-            &base.lineup
-        } else if setting.candidates[*candidate].is_linear() {
-            own_lineup = model.lineup.restored(*candidate, &own);
-            &own_lineup
-        } else {
-            // With a response in the model the columns of the terms are not their own: only a fit without it tells.
-            own_lineup = setting.fit(others.clone(), Some(model), watch)?.lineup;
-            &own_lineup
-        };
-        let projected = lineup.beyond(&others);
-        let on_offer = setting.named(&others);
-        let chance = Chance::new(&projected, &on_offer, setting.search.fit.seed);
-        let score = projected.score(*candidate);
-        let worth = |statistic: f64, dimension: usize| statistic - setting.price(lineup, dimension);
-        let mine = worth(score.statistic, score.dimension);
-        // What another explains is measured with the same noise.
-        let unit = score.statistic / projected.gain(*candidate).max(f64::MIN_POSITIVE);
-        let rivals = on_offer.iter().filter(|k| *k != candidate).filter_map(|k| {
-            let other = projected.score(*k);
-            // What has no columns cannot stand in its place here.
-            (other.dimension > 0).then(|| {
-                (
-                    *k,
-                    mine - worth(projected.gain(*k) * unit, other.dimension),
-                    other.coefficients.as_slice().to_vec(),
-                )
-            })
-        });
-        let member = Member { candidate: *candidate, places, others: &others, statistic: score.statistic };
-        let adjusted_p = chance.adjusted(score.p);
-        let is_there = projected.expected(*candidate, &own, &score) >= BORNE_OUT * score.statistic;
-        all.push(Tested {
-            candidate: *candidate,
-            // What is no more than chance need not be looked at.
-            weakness: match adjusted_p < setting.level(others.len()) {
-                true if !is_there => Some(NOT_THERE),
-                true if is_too_little(model, score.statistic) => Some(TOO_LITTLE),
-                true => member.weakness(setting, base, model)?,
-                false => None,
-            },
-            p: score.p,
-            adjusted_p,
-            statistic: score.statistic,
-            size: score.size,
-            others: rivals.collect(),
-        });
-    }
-    Ok(all)
 }
 
 /// The effects added with all that is known of them, and the parameters in which cells differ beside them.

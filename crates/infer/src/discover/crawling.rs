@@ -1,10 +1,10 @@
 //! The polarity of cells as a candidate, and what turns it: states of the cells instead of columns.
 
-use super::classes::Tested;
 use super::lineup::{critical_chi_squared, upper_chi_squared};
 use super::ranking::{self, by_evidence};
 use super::result::{Fate, Ranked};
 use super::steps::{Model, Setting};
+use super::tested::Tested;
 use crate::Estimate;
 use crate::tracks::{Alignment, Drive, Polarity};
 

@@ -1,11 +1,12 @@
 //! The model grows: what it lacks is added, and what does not stand the test is taken back.
 
-use super::classes::{Tested, without_each};
+use super::beside_others::without_each;
 use super::crawling::{self, Crawling};
 use super::null_data;
 use super::ranking::Ranking;
 use super::result::{Fate, NullSets, Ranked};
 use super::steps::{Model, Setting};
+use super::tested::Tested;
 use crate::Error;
 use crate::cross_validation::{Folds, Split};
 use crate::predictive::Predictive;

@@ -4,13 +4,12 @@
 //! same everywhere, and must explain more than a smooth flow does. What is known of single cells predicts no cell that was not seen: such an effect
 //! is never proven by velocities held out.
 
-use super::classes::LEAD;
 use super::growth::{Grown, Growth};
 use super::lineup::{added_places, upper_chi_squared};
 use super::ranking::{self, by_evidence, untested};
 use super::resilience::weakness_of_difference;
 use super::result::{Fate, Ranked, Selected};
-use super::steps::{Model, Setting};
+use super::steps::{LEAD, Model, Setting};
 use crate::search::Watch;
 use crate::spread::{evidence, evidence_of_field, probability};
 use crate::{Error, Estimate, FitParameter, Inference, Observation};

@@ -1,8 +1,9 @@
 //! Synthetic data without an effect, searched like the data.
 
-use super::classes::Tested;
-use super::result::{NullSets, Observer};
+use super::result::NullSets;
+use super::search::Observer;
 use super::steps::{Model, Setting};
+use super::tested::Tested;
 use crate::replicates::{Keeper, Series};
 use crate::search::Watch;
 use crate::uncertainty::synthetic;

@@ -2,9 +2,8 @@
 
 use super::candidate::Candidate;
 use super::chance::Chance;
-use super::classes::Selection;
 use super::lineup::Lineup;
-use super::result::{Fate, Ranked};
+use super::result::{Fate, Ranked, Selected};
 use super::steps::Setting;
 use voronudge_model::Effect;
 
@@ -109,19 +108,17 @@ impl Ranking {
 
     /// Marks those selected and those that cannot be told from them. Where nothing was selected, what was better than
     /// chance at first has not been confirmed.
-    pub fn settle(&mut self, selection: &Selection) {
+    pub fn settle(&mut self, selected: &[Selected]) {
         for ranked in &mut self.candidates {
             let is = |other: &Effect| other.id == ranked.effect.id;
-            let fate = if let Some(own) = selection.selected.iter().find(|own| is(own.effect)) {
+            let fate = if let Some(own) = selected.iter().find(|own| is(own.effect)) {
                 if ranked.size.is_nan() {
                     ranked.size = own.size;
                 }
                 Some(Fate::Selected)
-            } else if let Some(own) =
-                selection.selected.iter().find(|own| own.class.iter().any(|other| is(other)))
-            {
+            } else if let Some(own) = selected.iter().find(|own| own.class.iter().any(|other| is(other))) {
                 Some(Fate::Alias(own.effect.id))
-            } else if selection.selected.is_empty() && ranked.fate == Fate::Explained {
+            } else if selected.is_empty() && ranked.fate == Fate::Explained {
                 Some(Fate::NotConfirmed(
                     "it is not worth its coefficients, or less so than one that was refused",
                 ))

@@ -2,45 +2,8 @@
 
 use crate::cross_validation::Folds;
 use crate::diagnostics::Diagnostics;
-use crate::{Doubt, Error, Estimate, Inference, Progress, Prospects, Request, Tracked};
-use std::ops::ControlFlow;
+use crate::{Doubt, Error, Estimate, Inference, Prospects, Tracked};
 use voronudge_model::{Column, Effect};
-
-/// What to search for, and how.
-#[derive(Debug, Clone)]
-pub struct Search {
-    /// The fit of the base model. With cross-validation the base model and the last are also fitted without the velocities
-    /// of each fold; whether an effect is added does not depend on it.
-    pub fit: Request,
-    /// Candidates, descriptions among them.
-    pub candidates: Vec<&'static Effect>,
-    /// Probability that data without any effect lead to one.
-    pub level: f64,
-    /// Synthetic data without an effect that are refitted before one is believed. If not said: 20 where some effect is in
-    /// doubt (adjusted p of 10⁻⁴ or more) and there are at most 1000 velocities, none otherwise.
-    pub null_sets: Option<usize>,
-    /// Effects added at most.
-    pub most_effects: usize,
-    /// Which tracked cell each cell of each frame is, if cells are tracked; negative for a cell without a name.
-    pub identities: Option<Vec<Vec<i64>>>,
-    /// Ids of effects of the measurement that were determined before: what they would say is part of the frames.
-    pub determined: Vec<&'static str>,
-}
-
-impl Search {
-    /// The whole catalogue at a level of 5 %.
-    pub fn new(fit: Request) -> Self {
-        Self {
-            fit,
-            candidates: Effect::all().iter().collect(),
-            level: 0.05,
-            null_sets: None,
-            most_effects: 4,
-            identities: None,
-            determined: Vec::new(),
-        }
-    }
-}
 
 /// The answer in a word.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -120,6 +83,13 @@ pub struct Fitted {
     pub residuals: Vec<Vec<nalgebra::Vector2<f64>>>,
     /// What the whitened residual looks like.
     pub diagnostics: Diagnostics,
+}
+
+impl Fitted {
+    /// What of the measurement is in doubt beside it.
+    pub(super) fn doubt_of_measurement(&self) -> Option<&Doubt> {
+        self.inference.doubts.iter().find(|doubt| doubt.part().is_measurement())
+    }
 }
 
 /// An effect that was added.
@@ -245,7 +215,7 @@ pub struct Discovery {
 impl Discovery {
     /// What of the measurement is in doubt beside the last model.
     pub fn doubt_of_measurement(&self) -> Option<&Doubt> {
-        super::verdict::doubt_of_measurement(&self.after)
+        self.after.doubt_of_measurement()
     }
 
     /// The effects added that act on all cells alike.
@@ -260,9 +230,11 @@ impl Discovery {
 
     /// Whether the effects predict data held out better, by more than the standard error of the difference.
     pub fn predicts_better(&self) -> bool {
-        self.gain.is_some_and(super::verdict::predicts_better)
+        self.gain.is_some_and(predicts_better)
     }
 }
 
-/// Told of progress; may stop the search.
-pub type Observer<'o> = &'o mut dyn FnMut(Progress<'_>) -> ControlFlow<()>;
+/// Whether the error on data held out falls by more than its standard error: a fit can only get better, a prediction need not.
+pub(super) fn predicts_better(gain: [f64; 2]) -> bool {
+    gain[0] > gain[1]
+}

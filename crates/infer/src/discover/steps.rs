@@ -2,9 +2,8 @@
 
 use super::candidate::Candidate;
 use super::chance::Chance;
-use super::classes::LEAD;
 use super::lineup::{Lineup, Score, added_places};
-use super::result::Search;
+use super::search::Search;
 use crate::objective::Objective;
 use crate::search::{Watch, refine};
 use crate::tracks::{Followed, HintsOfDrives, Movie, Scatter, follow};
@@ -17,6 +16,10 @@ use voronudge_model::CellParameter;
 
 /// Fall of `−2 log L` by which a candidate may be behind the first and is still refitted with it.
 const CONTENDERS: f64 = 16.0;
+
+/// Lead in `−2 log L` below which another effect could as well be the right one: under it, so large a lead of a wrong one has a
+/// probability below `exp(−lead/2)`, 5 %.
+pub(super) const LEAD: f64 = 6.0;
 
 /// Candidates refitted at most to choose between them.
 const MOST_CONTENDERS: usize = 5;

@@ -1,6 +1,7 @@
 //! What was found on some data, put to the test on others.
 
-use super::result::{Discovery, HeldOut, Search};
+use super::result::{Discovery, HeldOut};
+use super::search::Search;
 use crate::Observation;
 use crate::cross_validation::Folds;
 use voronudge_model::{Column, Effect};

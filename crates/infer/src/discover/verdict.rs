@@ -11,11 +11,6 @@ const STRUCTURED: f64 = 0.003;
 /// Share of the excess that effects must explain, chance allowed for, to be all that is missing.
 const ENOUGH: f64 = 0.8;
 
-/// Whether the error on data held out falls by more than its standard error: a fit can only get better, a prediction need not.
-pub(super) fn predicts_better(gain: [f64; 2]) -> bool {
-    gain[0] > gain[1]
-}
-
 /// What the last model leaves.
 #[derive(Clone, Copy)]
 pub(super) struct Left {
@@ -25,11 +20,6 @@ pub(super) struct Left {
     pub too_much: bool,
     /// How the cells were measured is in doubt.
     pub measurement: bool,
-}
-
-/// What of the measurement is in doubt beside a model.
-pub(super) fn doubt_of_measurement(fitted: &Fitted) -> Option<&Doubt> {
-    fitted.inference.doubts.iter().find(|doubt| doubt.part().is_measurement())
 }
 
 impl Left {
@@ -44,7 +34,7 @@ impl Left {
             structured: described || fitted.diagnostics.structure.p < STRUCTURED,
             too_much: inference.noise_source == NoiseSource::Given
                 && inference.doubts.iter().any(|doubt| matches!(doubt, Doubt::Objective(_))),
-            measurement: doubt_of_measurement(fitted).is_some(),
+            measurement: fitted.doubt_of_measurement().is_some(),
         }
     }
 }
@@ -68,6 +58,7 @@ pub(super) fn decide(testable: bool, explained: Option<f64>, left: &Left, proven
 
 #[cfg(test)]
 mod tests {
+    use super::super::result::predicts_better;
     use super::*;
 
     /// An error of .0769 that becomes .0726 ± .0073 has not fallen.

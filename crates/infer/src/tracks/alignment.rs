@@ -11,8 +11,9 @@
 //! `σ_u² (1 − ρ²) / (1 − ρ² (1 − aλ)²)`; so have the first polarities of the cells whose tracks begin in one frame. Neighbours without a polarity hold
 //! nothing.
 
-use super::memory::{Memory, NONE, Polarities, innovation};
-use super::states::Instant;
+use super::instants::Instant;
+use super::memory::{Memory, innovation, share};
+use super::polarities::{NONE, Polarities, Ties};
 use crate::Error;
 use crate::stiffness::Stiffness;
 use voronudge_linalg::{Cholesky, SymmetricMatrix};
@@ -24,9 +25,6 @@ const MOST_NEIGHBOURS: f64 = 9.0;
 
 /// Polarities of which the variance is computed, at most: evenly chosen ones.
 const SAMPLES: usize = 300;
-
-/// The neighbours, as blocks, of each polarity in its frame, with their weights in L; none at all where cells do not align.
-pub(super) type Ties = Vec<Vec<(u32, f64)>>;
 
 /// The weights of neighbours in L, which are symmetric: one over six, but less around cells with very many.
 pub(crate) fn weighted(neighbours: Vec<Vec<u32>>) -> Vec<Vec<(u32, f64)>> {
@@ -92,11 +90,6 @@ impl Polarities {
     pub fn apart(mut self) -> Self {
         self.ties = Ties::new();
         self
-    }
-
-    /// Whether neighbours may hold each other.
-    pub fn align(&self) -> bool {
-        !self.ties.is_empty()
     }
 
     /// The row of M for a polarity, times a factor, with the neighbours that are `chosen`.
@@ -210,14 +203,9 @@ impl Polarities {
     }
 }
 
-/// a
-pub(super) fn share(memory: Memory, since: f64) -> f64 {
-    -(-memory.alignment * since).exp_m1()
-}
-
 #[cfg(test)]
 mod tests {
-    use super::super::memory::First;
+    use super::super::polarities::First;
     use super::*;
     use nalgebra::DMatrix;
 

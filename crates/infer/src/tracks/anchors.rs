@@ -1,6 +1,7 @@
 //! The measured positions of a movie, frame by frame, as rows in its unknowns.
 
-use super::objective::{MovieObjective, Placed};
+use super::objective::MovieObjective;
+use super::placed::Placed;
 use super::row_builder::RowBuilder;
 use crate::position_rows::PositionRows;
 use crate::rows::Rows;

@@ -1,7 +1,8 @@
 //! The beginning of a fit: first coefficients and trajectories, and noise levels settled roughly.
 
+use super::course::{Course, MOST_STEPS};
 use super::first::{forward_coefficients, naive_coefficients};
-use super::fit::{Course, Fit, MOST_STEPS};
+use super::fitted_movie::Fit;
 use super::memory::Memory;
 use super::movie::Movie;
 use super::objective::MovieObjective;

@@ -17,11 +17,14 @@
 //!
 //! of which the first line is a form in the polarities alone and each term of the second the square of fixed rows with a weight.
 
-use super::alignment::share;
-use super::memory::{Memory, NONE, Polarities, innovation};
-use super::objective::{Instant, MovieObjective, Placed};
-use super::row_builder::{IDENTITY, RowBuilder};
-use super::states::{Place, States};
+use super::block::IDENTITY;
+use super::instants::Place;
+use super::memory::{Memory, innovation, share};
+use super::objective::MovieObjective;
+use super::placed::{Instant, Placed};
+use super::polarities::{Driven, NONE, Polarities};
+use super::row_builder::RowBuilder;
+use super::states::States;
 use crate::Drives;
 use crate::objective::Nudged;
 use crate::residuals::combined;
@@ -35,13 +38,6 @@ use voronudge_model::{BlockMatrix, Structure};
 
 /// Times since the polarity before, in usual intervals, that count as usual.
 const USUAL: [f64; 2] = [0.75, 1.25];
-
-/// A polarity and that before, and where in the frames before it is expected from: frame, cell and share.
-#[derive(Debug, Clone)]
-pub(super) struct Driven {
-    block: u32,
-    from: Vec<(usize, usize, f64)>,
-}
 
 /// Rows of one kind.
 pub(super) struct DriveRows {
@@ -98,11 +94,6 @@ impl Polarities {
         self
     }
 
-    /// The block of c_n and c_F, if there are drives.
-    pub fn of_drives(&self) -> Option<usize> {
-        self.drives.any().then(|| self.gamma().end)
-    }
-
     /// Takes off what rows of drives hold beside them, of cells that do not align.
     pub(super) fn release(&self, memory: Memory, ratio: f64, stiffness: &mut Stiffness) {
         let (own, rho) = innovation(1.0, memory.times);
@@ -110,11 +101,6 @@ impl Polarities {
             stiffness.of_blocks[*block as usize] -= ratio * own;
             stiffness.of_blocks[*block as usize - 1] -= ratio * own * rho;
         }
-    }
-
-    /// The polarities before those that are driven.
-    pub(super) fn before_driven(&self) -> impl Iterator<Item = u32> {
-        self.driven.iter().map(|driven| driven.block - 1)
     }
 
     /// Weights of the rows of drives.

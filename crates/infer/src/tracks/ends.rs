@@ -4,10 +4,10 @@
 //! with room for its cell where that must have been a frame before, is that of a cell which was not detected there. Without it the
 //! polygons of its neighbours reach into its place, and their centroids with them.
 
+use super::instants::{Instant, instants};
 use super::join::unite;
 use super::movie::Movie;
 use super::neighbours::Motion;
-use super::states::{Instant, instants};
 use crate::Error;
 use std::collections::BTreeSet;
 use voronudge_geometry::{CellPolygon, Tessellation, Vector};

@@ -1,7 +1,7 @@
 //! Whether it is worth while to fit polarities, or their alignment: likelihoods of a few, about a fit without.
 
-use super::likely::{Place, RATIO, TIMES};
 use super::look::Seen;
+use super::place::{Place, RATIO, TIMES};
 use crate::Error;
 
 /// x and log σ_v²/σ_p² of polarities that are tried before any is fitted.

@@ -1,10 +1,12 @@
 //! The fit of a movie: coefficients, trajectories, noise levels, intervals and errors.
 
-use super::fit::{Fit, fit};
+use super::fit::fit;
+use super::fitted_movie::Fit;
 use super::held_out::{AsMeasured, HeldOut, MeanVelocities, cross_validate};
 use super::look::Seen;
 use super::movie::Movie;
-use super::objective::{MovieObjective, Placed};
+use super::objective::MovieObjective;
+use super::placed::Placed;
 use super::present::Dynamics;
 use super::result::{Integration, Tracked};
 use super::rule::Rule;

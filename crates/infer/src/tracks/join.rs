@@ -38,27 +38,32 @@ const ROUNDS: usize = 8;
 /// Gains are counted in these parts of a unit.
 const PARTS: f64 = 1e6;
 
-/// Joins broken tracks; positions in units of ℓ₀. Returns how many joins were made.
-pub(super) fn join(movie: &mut Movie) -> usize {
-    let count = movie.tracks.len();
-    let pairs = pairs(movie);
-    let mut joins = assign(&gains(&pairs, |pair| -pair.beginnings.ln()));
-    for _ in 1..ROUNDS {
-        let odds = Odds::left_by(movie, &joins);
-        let now = assign(&gains(&pairs, |_| odds.log_of_a_join()));
-        let is_settled = now == joins;
-        joins = now;
-        if is_settled {
-            break;
+impl Movie {
+    /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.
+    ///
+    /// A track that ends and one that begins a frame or two later are taken for one cell where that is more likely than two that are
+    /// there by chance, given how well the motion of its neighbours predicts that of a cell.
+    pub fn join(&mut self) -> usize {
+        let count = self.tracks.len();
+        let pairs = pairs(self);
+        let mut joins = assign(&gains(&pairs, |pair| -pair.beginnings.ln()));
+        for _ in 1..ROUNDS {
+            let odds = Odds::left_by(self, &joins);
+            let now = assign(&gains(&pairs, |_| odds.log_of_a_join()));
+            let is_settled = now == joins;
+            joins = now;
+            if is_settled {
+                break;
+            }
         }
+        // The next part of each track.
+        let mut next = vec![None; count];
+        for &(end, begin) in &joins {
+            next[end] = Some(begin);
+        }
+        unite(self, &next);
+        joins.len()
     }
-    // The next part of each track.
-    let mut next = vec![None; count];
-    for &(end, begin) in &joins {
-        next[end] = Some(begin);
-    }
-    unite(movie, &next);
-    joins.len()
 }
 
 /// Makes one track of those that follow each other: the next part of each, if it has one.
@@ -244,7 +249,7 @@ mod tests {
             }
         }
         let mut broken = movie(&frames, domain);
-        assert_eq!(join(&mut broken), 2);
+        assert_eq!(broken.join(), 2);
         assert_eq!(broken.tracks.len(), 37);
         let named = |name: usize| broken.tracks.iter().find(|t| t.names.iter().any(|n| n.1 == name)).unwrap();
         assert_eq!(named(3).names, [(0, 3), (2, 36)]);
@@ -277,7 +282,7 @@ mod tests {
                 }
             }
             let mut broken = movie(&frames, domain);
-            (join(&mut broken), broken.tracks.len())
+            (broken.join(), broken.tracks.len())
         };
         assert_eq!(joined(12), (13, 36));
         assert_eq!(joined(1), (1, 37));

@@ -33,22 +33,39 @@ pub struct Jump {
     pub frames: [usize; 2],
 }
 
-/// The jumps of all tracks, in any unit of length, by track and frame.
-pub(super) fn jumps(movie: &Movie) -> Vec<Jump> {
-    let Some(nearest) = nearest_distance(movie) else { return Vec::new() };
-    let motions = (0..movie.frames() - 1).into_par_iter().map(|frame| Motion::new(movie, frame)).collect();
-    let expected = Expected { movie, motions, unit: nearest / NEAREST };
-    let of_track = |(number, track): (usize, &Track)| {
-        let seen: Vec<usize> =
-            (track.first..track.end()).filter(|frame| track.at(*frame).is_some()).collect();
-        let jumped = |pair: &[usize]| {
-            let frames = [pair[0], pair[1]];
-            let cell = track.name(frames[0])?;
-            expected.jumps(number, frames).then_some(Jump { cell, frames })
+impl Movie {
+    /// Where tracks jump to another cell, by track and frame; positions in any unit. Tracks must not be joined yet.
+    pub fn jumps(&self) -> Vec<Jump> {
+        let Some(nearest) = nearest_distance(self) else { return Vec::new() };
+        let motions = (0..self.frames() - 1).into_par_iter().map(|frame| Motion::new(self, frame)).collect();
+        let expected = Expected { movie: self, motions, unit: nearest / NEAREST };
+        let of_track = |(number, track): (usize, &Track)| {
+            let seen: Vec<usize> =
+                (track.first..track.end()).filter(|frame| track.at(*frame).is_some()).collect();
+            let jumped = |pair: &[usize]| {
+                let frames = [pair[0], pair[1]];
+                let cell = track.name(frames[0])?;
+                expected.jumps(number, frames).then_some(Jump { cell, frames })
+            };
+            seen.windows(2).filter_map(jumped).collect::<Vec<_>>()
         };
-        seen.windows(2).filter_map(jumped).collect::<Vec<_>>()
-    };
-    movie.tracks.par_iter().enumerate().flat_map_iter(of_track).collect()
+        self.tracks.par_iter().enumerate().flat_map_iter(of_track).collect()
+    }
+
+    /// Cuts tracks where they jump, as [`jumps`](Self::jumps) of a movie of the same tracks found. Parts bear the name of the whole.
+    pub fn cut(&mut self, jumps: &[Jump]) {
+        for jump in jumps.iter().rev() {
+            let [before, after] = jump.frames;
+            let is_own = |track: &&mut Track| {
+                track.name(before) == Some(jump.cell) && track.first <= before && after < track.end()
+            };
+            let Some(track) = self.tracks.iter_mut().find(is_own) else { continue };
+            let rest = track.seen.split_off(after - track.first);
+            track.seen.truncate(before + 1 - track.first);
+            let (names, label) = (vec![(after, jump.cell)], track.label);
+            self.tracks.push(Track { first: after, seen: rest, names, label });
+        }
+    }
 }
 
 /// Where cells should be, by how their neighbours move.
@@ -116,21 +133,6 @@ fn nearest_distance(movie: &Movie) -> Option<f64> {
     let mut distances: Vec<f64> = places.iter().enumerate().map(nearest).collect();
     distances.sort_unstable_by(f64::total_cmp);
     distances.get(distances.len() / 2).copied()
-}
-
-/// Cuts tracks where they jump.
-pub(super) fn cut(movie: &mut Movie, jumps: &[Jump]) {
-    for jump in jumps.iter().rev() {
-        let [before, after] = jump.frames;
-        let is_own = |track: &&mut Track| {
-            track.name(before) == Some(jump.cell) && track.first <= before && after < track.end()
-        };
-        let Some(track) = movie.tracks.iter_mut().find(is_own) else { continue };
-        let rest = track.seen.split_off(after - track.first);
-        track.seen.truncate(before + 1 - track.first);
-        let (names, label) = (vec![(after, jump.cell)], track.label);
-        movie.tracks.push(Track { first: after, seen: rest, names, label });
-    }
 }
 
 #[cfg(test)]

@@ -2,8 +2,9 @@
 //! information, and go on by the model without noise.
 
 use super::movie::{Movie, Sighting, Track};
-use super::objective::{Instant, MovieObjective, Placed};
+use super::objective::MovieObjective;
 use super::passage::Passage;
+use super::placed::{Instant, Placed};
 use crate::Error;
 use std::collections::BTreeMap;
 use voronudge_geometry::Vector;

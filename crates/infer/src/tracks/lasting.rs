@@ -4,7 +4,7 @@
 //! does not. So cells that are moved at random are explained better by polarities that are forgotten at once than by none, and a polarity
 //! is one only if more speaks for its memory.
 
-use super::likely::{Place, RATIO, TIMES};
+use super::place::{Place, RATIO, TIMES};
 use super::polarity::Fitted;
 use crate::Error;
 

@@ -1,12 +1,14 @@
 //! The objective of a movie linearised: a row for each motion.
 
 use super::anchors::{Anchors, Share};
+use super::block::IDENTITY;
 use super::drive::DriveRows;
+use super::instants::Place;
 use super::motions::Motion;
-use super::objective::{MovieObjective, Placed};
+use super::objective::MovieObjective;
 use super::outset::Outset;
-use super::row_builder::{IDENTITY, RowBuilder};
-use super::states::Place;
+use super::placed::Placed;
+use super::row_builder::RowBuilder;
 use super::tangent::Tangent;
 use crate::Error;
 use crate::linearisation::{Linearisation, Local};

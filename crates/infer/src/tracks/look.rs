@@ -1,8 +1,8 @@
 //! The likelihood of noise levels and memory about a point: from factors at points around it, or from one factor and draws.
 
-use super::likely::{Place, Spaced};
 use super::memory::Memory;
 use super::objective::MovieObjective;
+use super::place::{Place, Spaced};
 use super::surface::{CLOSE, Matrix, PAIRS_OF_SIDES, POINTS, Point, Surface};
 use crate::linearisation::{Held, Weighting};
 use crate::normal_equations::NormalEquations;

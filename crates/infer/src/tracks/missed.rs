@@ -6,9 +6,9 @@
 //! there, which then is its own.
 
 use super::ends::lengthen;
+use super::instants::{Instant, instants};
 use super::movie::{Movie, Sighting, Track};
 use super::neighbours::Motion;
-use super::states::{Instant, instants};
 use crate::{
     Change, ChangeKind, CompletedFrame, Completion, Error, KnownNoise, Observation, Origin, Progress,
     Request, complete,

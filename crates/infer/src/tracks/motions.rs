@@ -1,12 +1,9 @@
 //! Which motions of a movie a model explains.
 
+use super::instants::{ABSENT, Instant, Interval, indices};
 use super::movie::Movie;
-use super::states::{Instant, Interval};
 use crate::Observation;
 use voronudge_geometry::Visibility;
-
-/// Marks an absent cell.
-pub(super) const ABSENT: u32 = u32::MAX;
 
 /// One cell over the time between two frames.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -85,13 +82,6 @@ pub(super) fn explained(instants: &[Instant], motions: &[Motion]) -> Vec<Vec<boo
     explained
 }
 
-/// Where each track stands in a list of some of them.
-pub(super) fn indices(movie: &Movie, tracks: impl Iterator<Item = u32>) -> Vec<u32> {
-    let mut index = vec![ABSENT; movie.tracks.len()];
-    (0..).zip(tracks).for_each(|(cell, track)| index[track as usize] = cell);
-    index
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::movie::{Drift, Movie};
@@ -116,6 +106,6 @@ mod tests {
         let ((all, crawling), (certain, _)) = (in_last(Explained::All), in_last(Explained::Certain));
         assert_eq!(all, 90);
         assert!(certain < 60, "{certain}");
-        assert!(crawling.polarities.block[2].iter().all(|block| *block != super::super::memory::NONE));
+        assert!(crawling.polarities.block[2].iter().all(|block| *block != super::super::polarities::NONE));
     }
 }

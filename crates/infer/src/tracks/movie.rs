@@ -1,9 +1,6 @@
 //! Cells followed from frame to frame.
 
-use super::join::join;
-use super::jump::{Jump, cut, jumps};
-use super::states::States;
-use crate::{Error, Observation};
+use crate::Error;
 use std::sync::Arc;
 use voronudge_geometry::{Domain, FieldOfView, Vector};
 use voronudge_model::Environment;
@@ -219,24 +216,6 @@ impl Movie {
         self.share
     }
 
-    /// Where tracks jump to another cell, by track and frame; positions in any unit. Tracks must not be joined yet.
-    pub fn jumps(&self) -> Vec<Jump> {
-        jumps(self)
-    }
-
-    /// Cuts tracks where they jump, as [`jumps`](Self::jumps) of a movie of the same tracks found. Parts bear the name of the whole.
-    pub fn cut(&mut self, jumps: &[Jump]) {
-        cut(self, jumps);
-    }
-
-    /// Joins tracks that break and go on under another name; positions in units of ℓ₀. Returns how many joins were made.
-    ///
-    /// A track that ends and one that begins a frame or two later are taken for one cell where that is more likely than two that are
-    /// there by chance, given how well the motion of its neighbours predicts that of a cell.
-    pub fn join(&mut self) -> usize {
-        join(self)
-    }
-
     /// Number of frames.
     pub fn frames(&self) -> usize {
         self.times.len()
@@ -305,33 +284,6 @@ impl Movie {
             values.get(values.len() / 2).copied().unwrap_or(0.0)
         };
         Vector::new(median(0), median(1))
-    }
-
-    /// The cells of each frame, those in gaps of their tracks included, with their mean velocities up to the next frame, where the model
-    /// can explain these, without the median of the interval; in the last frame there is none. Tracks ascend within a frame.
-    ///
-    /// # Errors
-    /// [`Error::Geometry`].
-    pub fn observations(&self) -> Result<Vec<Observation>, Error> {
-        Ok(self.seen_by(States::new(self)?))
-    }
-
-    /// The same from states.
-    pub(super) fn seen_by(&self, states: States) -> Vec<Observation> {
-        let mut velocities: Vec<Vec<Option<Vector<f64>>>> =
-            states.instants.iter().map(|instant| vec![None; instant.tracks.len()]).collect();
-        for motion in &states.motions {
-            let (frame, track) = (motion.interval, &self.tracks[motion.track as usize]);
-            if track.at(frame).is_some() && track.at(frame + 1).is_some() {
-                let at =
-                    |node: usize| states.instants[frame + node].cells.positions[motion.cells[node] as usize];
-                let time = self.times[frame + 1] - self.times[frame];
-                velocities[frame][motion.cells[0] as usize] =
-                    Some((at(1) - at(0) - self.first_drift(frame)) / time);
-            }
-        }
-        let frames = states.instants.into_iter().zip(velocities);
-        frames.map(|(instant, velocities)| instant.cells.with_velocities(velocities)).collect()
     }
 
     /// The tracks of the cells of [`observations`](Self::observations) in a frame.

@@ -1,7 +1,8 @@
 //! Where a step fails: the cells at which the linearised problem does not hold, because contacts change there.
 
-use super::objective::{MovieObjective, Placed};
-use super::states::Place;
+use super::instants::Place;
+use super::objective::MovieObjective;
+use super::placed::Placed;
 use crate::obstacles::{around, failing};
 use crate::position_rows::squares;
 

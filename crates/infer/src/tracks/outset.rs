@@ -11,10 +11,13 @@
 //! with coefficients γ of its own. (Chamberlain's device for effects of individuals that depend on what is regressed on.) What is new in the
 //! polarity afterwards does not depend on places.
 
-use super::memory::First;
-use super::objective::{MovieObjective, Placed};
-use super::row_builder::{IDENTITY, RowBuilder};
-use super::states::{Place, States};
+use super::block::IDENTITY;
+use super::instants::Place;
+use super::objective::MovieObjective;
+use super::placed::Placed;
+use super::polarities::First;
+use super::row_builder::RowBuilder;
+use super::states::States;
 use crate::rows::Rows;
 use nalgebra::DMatrix;
 use rayon::prelude::*;

@@ -12,12 +12,9 @@
 //! coupled to the motions of its own cell alone, and separators of a dissection have places only. The rows of V are those of the inverse of U among the cells near
 //! by. U is that at one point of a fit, kept while it goes on: any V is as good a measure of what is left, if it is near the inverse.
 
+use super::block::{Block, accumulate};
 use super::motions::Motion;
-use super::objective::MovieObjective;
-use super::tangent::{Block, Tangent, accumulate};
-use crate::Error;
 use nalgebra::DMatrix;
-use rayon::prelude::*;
 use std::sync::Arc;
 use voronudge_geometry::Vector;
 use voronudge_model::BlockMatrix;
@@ -28,34 +25,19 @@ const NONE: u32 = u32::MAX;
 /// V of each interval.
 #[derive(Debug, Clone)]
 pub(crate) struct OwnMotion {
-    intervals: Arc<Vec<Freed>>,
+    pub(super) intervals: Arc<Vec<Freed>>,
 }
 
 /// V of an interval: a row for each cell that is led.
 #[derive(Debug)]
-struct Freed {
-    start: Vec<usize>,
+pub(super) struct Freed {
+    pub start: Vec<usize>,
     /// Cells of the interval.
-    column: Vec<u32>,
-    block: Vec<Block>,
+    pub column: Vec<u32>,
+    pub block: Vec<Block>,
 }
 
 impl OwnMotion {
-    /// At a point of a fit of cells that crawl.
-    pub fn at(objective: &MovieObjective<'_>, parameters: &[f64]) -> Result<Option<Self>, Error> {
-        if objective.memory.is_none() {
-            return Ok(None);
-        }
-        let placed = objective.displaced(parameters)?;
-        let coefficients = objective.space.coefficients(objective.split(parameters).0);
-        let of_interval = |(interval, passage)| {
-            let tangent = Tangent::of_ways(objective, interval, passage, coefficients.as_slice());
-            Freed::new(&tangent, &objective.states.intervals[interval].led)
-        };
-        let intervals: Vec<Freed> = placed.passages.par_iter().enumerate().map(of_interval).collect();
-        Ok((!intervals.is_empty()).then(|| Self { intervals: Arc::new(intervals) }))
-    }
-
     /// V of what is left of some motions of an interval.
     pub fn of(&self, motions: &[Motion], rests: &mut [Vector<f64>]) {
         let Some(own) = motions.first().and_then(|first| self.intervals.get(first.interval)) else { return };
@@ -107,48 +89,6 @@ impl OwnMotion {
 }
 
 impl Freed {
-    /// From where cells end by their ways.
-    fn new(tangent: &Tangent, led: &[bool]) -> Self {
-        let cells = led.len();
-        // The row of U of a cell: cells and blocks.
-        let pushed = |cell: usize| {
-            let by_ways =
-                move |(column, block): (usize, &'_ Block)| Some((column.checked_sub(2 * cells)?, *block));
-            tangent.row(cell).filter_map(by_ways)
-        };
-        let row = |cell: usize| -> Vec<(usize, Block)> {
-            if !led[cell] {
-                return Vec::new();
-            }
-            let near: Vec<usize> = pushed(cell).map(|(other, _)| other).collect();
-            let mut transposed = DMatrix::zeros(2 * near.len(), 2 * near.len());
-            for (i, one) in near.iter().enumerate() {
-                for (other, [xx, xy, yx, yy]) in pushed(*one) {
-                    let Some(j) = near.iter().position(|cell| *cell == other) else { continue };
-                    (transposed[(2 * j, 2 * i)], transposed[(2 * j + 1, 2 * i)]) = (xx, xy);
-                    (transposed[(2 * j, 2 * i + 1)], transposed[(2 * j + 1, 2 * i + 1)]) = (yx, yy);
-                }
-            }
-            let own = near.iter().position(|other| *other == cell).unwrap_or(0);
-            let mut unit = DMatrix::zeros(2 * near.len(), 2);
-            (unit[(2 * own, 0)], unit[(2 * own + 1, 1)]) = (1.0, 1.0);
-            let freed = transposed.lu().solve(&unit).unwrap_or(unit);
-            let block = |k: usize| {
-                [freed[(2 * k, 0)], freed[(2 * k + 1, 0)], freed[(2 * k, 1)], freed[(2 * k + 1, 1)]]
-            };
-            near.iter().enumerate().map(|(k, other)| (*other, block(k))).collect()
-        };
-        let mut own = Self { start: vec![0], column: Vec::new(), block: Vec::new() };
-        for all in (0..cells).map(row) {
-            for (other, block) in all {
-                own.column.push(other as u32);
-                own.block.push(block);
-            }
-            own.start.push(own.column.len());
-        }
-        own
-    }
-
     /// The number of the motion of each cell among some motions.
     fn among(&self, motions: &[Motion]) -> Vec<u32> {
         let mut among = vec![NONE; self.start.len() - 1];

@@ -1,13 +1,12 @@
 //! The polarity of cells at a fit, its intervals and what speaks for it.
 
 use super::driven::Drive;
-use super::likely::{
-    LASTING, LESS_LIKELY, Likely, NO_GAIN, Place, QUANTILE, RATIO, TIMES, alignment_of, of_alignment,
-    of_times, times_of,
-};
+use super::likely::{LESS_LIKELY, Likely, NO_GAIN, QUANTILE};
 use super::look::{Seen, Way};
-use super::memory::{Memory, NONE};
+use super::memory::Memory;
 use super::objective::MovieObjective;
+use super::place::{LASTING, Place, RATIO, TIMES, alignment_of, of_alignment, of_times, times_of};
+use super::polarities::NONE;
 use super::states::States;
 use crate::Error;
 use voronudge_geometry::Vector;

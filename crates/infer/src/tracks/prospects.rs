@@ -1,7 +1,7 @@
 //! What would be known of cells followed otherwise.
 
 use super::anchors::Share;
-use super::fit::least_scatter;
+use super::course::least_scatter;
 use super::inference::Followed;
 use super::laid::Laid;
 use super::movie::Movie;

@@ -1,6 +1,6 @@
 //! Rows of blocks in the unknowns of a movie.
 
-use super::states::Place;
+use super::instants::Place;
 use voronudge_model::BlockMatrix;
 
 /// Builds rows of blocks whose columns come in any order, some of them several times.
@@ -9,9 +9,6 @@ pub(super) struct RowBuilder {
     /// Where each column stands in the row at hand.
     at: Vec<u32>,
 }
-
-/// The block of a place by itself.
-pub(super) const IDENTITY: [f64; 4] = [1.0, 0.0, 0.0, 1.0];
 
 /// A column that the row at hand does not have.
 const NONE: u32 = u32::MAX;

@@ -5,14 +5,15 @@
 //! for a scatter is by how much −2 log L falls from the least that a fit has to the likeliest one, positions with errors in either case.
 
 use super::anchors::Share;
-use super::fit::least_scatter;
+use super::course::least_scatter;
 use super::held_out::AsMeasured;
 use super::inference::Followed;
 use super::likely::LESS_LIKELY;
 use super::look::{Seen, Way};
 use super::motions::Motion;
 use super::movie::Movie;
-use super::objective::{MovieObjective, Placed};
+use super::objective::MovieObjective;
+use super::placed::Placed;
 use super::states::States;
 use crate::diagnostics::robust_variance;
 use crate::restricted::Likelihood;

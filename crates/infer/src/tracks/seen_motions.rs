@@ -1,7 +1,8 @@
 //! Motions as they would be measured: of sites, or of points on the way from sites to centroids.
 
 use super::motions::Motion;
-use super::objective::{MovieObjective, Placed};
+use super::objective::MovieObjective;
+use super::placed::Placed;
 use crate::Error;
 use rayon::prelude::*;
 use voronudge_geometry::Vector;

@@ -3,60 +3,16 @@
 //! A cell has a place of its own at a frame if it was seen there or if its motion to or from there is explained. Elsewhere (in gaps at the
 //! rim of an open field) it is on the straight line between its nearest places before and after, if there are both.
 
+use super::instants::{Instant, Interval, Place, instants, intervals};
 use super::integrated::Integrated;
-use super::memory::{NONE, Polarities};
-use super::motions::{ABSENT, Explained, Motion, explained, indices, motions};
+use super::motions::{Explained, Motion, explained, motions};
 use super::movie::{Drift, Movie};
 use super::own_motion::OwnMotion;
-use crate::{Drives, Error, Observation};
+use super::polarities::{NONE, Polarities};
+use crate::{Drives, Error};
 use rayon::prelude::*;
 use voronudge_geometry::Vector;
 use voronudge_linalg::Dissections;
-
-/// The cells that are there at a frame.
-#[derive(Debug, Clone)]
-pub(crate) struct Instant {
-    /// Number of the track of each cell.
-    pub tracks: Vec<u32>,
-    /// The cells where they were seen, or on the line between.
-    pub cells: Observation,
-    /// On which places the position of each cell depends, with their shares.
-    pub place: Vec<Place>,
-}
-
-/// On which places a position depends.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub(crate) enum Place {
-    /// Its own.
-    Own(u32),
-    /// On the line between two: the share of the second.
-    Between(u32, u32, f64),
-    /// None: the cell stays where it is thought to be.
-    Fixed,
-}
-
-impl Place {
-    /// The places and their shares.
-    pub fn shares(self) -> impl Iterator<Item = (usize, f64)> {
-        let (first, second) = match self {
-            Self::Own(place) => (Some((place, 1.0)), None),
-            Self::Between(before, after, share) => (Some((before, 1.0 - share)), Some((after, share))),
-            Self::Fixed => (None, None),
-        };
-        first.into_iter().chain(second).map(|(place, share)| (place as usize, share))
-    }
-}
-
-/// The time between two frames: the cells that are there at both.
-#[derive(Debug, Clone)]
-pub(crate) struct Interval {
-    /// The cells half-way between where they begin.
-    pub halfway: Observation,
-    /// Index of each cell at both frames.
-    pub ends: Vec<[u32; 2]>,
-    /// Whether the model says how the cell moves, which it does where its motion is explained. The others go straight.
-    pub led: Vec<bool>,
-}
 
 /// The unknowns of a movie and the motions that are explained.
 #[derive(Debug, Clone)]
@@ -299,58 +255,4 @@ impl States {
     pub fn drift(&self, interval: usize) -> Option<usize> {
         (interval < self.drifts.1).then_some(self.drifts.0 + interval)
     }
-}
-
-/// The frames with the cells that are there.
-pub(super) fn instants(movie: &Movie) -> Result<Vec<Instant>, Error> {
-    let instant = |frame: usize| {
-        let (mut tracks, mut positions, mut errors) = (Vec::new(), Vec::new(), Vec::new());
-        for number in 0..movie.tracks.len() {
-            if let Some(place) = movie.near(number, frame) {
-                tracks.push(number as u32);
-                positions.push(place);
-                errors.push(movie.tracks[number].error(frame));
-            }
-        }
-        let mut cells = still(movie, frame, positions, &tracks)?;
-        if errors.iter().any(|error| *error != 1.0) {
-            cells = cells.with_position_errors(&errors);
-        }
-        let cells = cells.with_positions_at(movie.share())?;
-        let place = vec![Place::Fixed; tracks.len()];
-        Ok(Instant { tracks, cells, place })
-    };
-    (0..movie.frames()).into_par_iter().map(instant).collect()
-}
-
-/// Cells of a movie without velocities.
-fn still(
-    movie: &Movie,
-    frame: usize,
-    positions: Vec<Vector<f64>>,
-    tracks: &[u32],
-) -> Result<Observation, Error> {
-    let velocities = vec![None; positions.len()];
-    let cells = Observation::new(frame, positions, velocities, movie.domain, movie.field_of_view.clone())?;
-    Ok(cells.within(movie.environment_of(tracks)))
-}
-
-/// The times between frames.
-fn intervals(movie: &Movie, instants: &[Instant]) -> Result<Vec<Interval>, Error> {
-    let interval = |(frame, pair): (usize, &[Instant])| {
-        let (mut ends, mut positions, mut tracks) = (Vec::new(), Vec::new(), Vec::new());
-        let after = indices(movie, pair[1].tracks.iter().copied());
-        for (cell, track) in pair[0].tracks.iter().enumerate() {
-            let next = after[*track as usize];
-            if next != ABSENT {
-                ends.push([cell as u32, next]);
-                tracks.push(*track);
-                positions
-                    .push(0.5 * (pair[0].cells.positions[cell] + pair[1].cells.positions[next as usize]));
-            }
-        }
-        let led = vec![false; ends.len()];
-        Ok(Interval { halfway: still(movie, frame, positions, &tracks)?, ends, led })
-    };
-    instants.par_windows(2).enumerate().map(interval).collect()
 }

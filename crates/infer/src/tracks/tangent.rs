@@ -6,9 +6,10 @@
 //!
 //! Derivatives by the places of cells farther than two rings are left out: what a cell does to others falls off fast.
 
+use super::block::{Block, IDENTITY, accumulate};
 use super::objective::MovieObjective;
-use super::passage::{Derivatives, Part, Passage, Stage, Step, is_known};
-use super::row_builder::IDENTITY;
+use super::passage::{Passage, Step, is_known};
+use super::stages::{Derivatives, Part, Stage};
 use crate::residuals::{Columns, combined};
 use nalgebra::DMatrix;
 use voronudge_geometry::{Tessellation, Vector};
@@ -16,9 +17,6 @@ use voronudge_model::BlockMatrix;
 
 /// Rings of cells whose places and polarities count: those of a force.
 const RINGS: usize = 2;
-
-/// A 2 × 2 block, `[xx, xy, yx, yy]`.
-pub(super) type Block = [f64; 4];
 
 /// The place of a column that is not in a row.
 const OUT_OF_REACH: u32 = 0;
@@ -346,12 +344,4 @@ impl Advance<'_> {
             }
         }
     }
-}
-
-/// Adds the product of two blocks.
-pub(super) fn accumulate(sum: &mut Block, a: &Block, b: &Block) {
-    sum[0] += a[0] * b[0] + a[1] * b[2];
-    sum[1] += a[0] * b[1] + a[1] * b[3];
-    sum[2] += a[2] * b[0] + a[3] * b[2];
-    sum[3] += a[2] * b[1] + a[3] * b[3];
 }

@@ -8,7 +8,7 @@
 //! the stages of a step, at its shares c_i and with weights w_i, those that have the new neighbours (the second sum) would count the jump from
 //! wherever they are. With the further term the displacement does not leap where a transition moves from one stage, or one step, to another.
 
-use super::passage::{Derivatives, MIDDLE, STAGES, Stage};
+use super::stages::{Derivatives, MIDDLE, STAGES, Stage};
 use crate::objective::Nudged;
 use nalgebra::DMatrix;
 use std::sync::Arc;

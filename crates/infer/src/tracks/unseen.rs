@@ -3,11 +3,12 @@
 //! Such a cell is put to the middle of the room that the others leave, which can be a third of its size from where it is, in a neighbourhood of other contacts. Motions
 //! around it are then nothing that the model explains, count little, and no longer lead it back. With some coefficients known it is better begun where these lead.
 
-use super::fit::Course;
+use super::course::Course;
+use super::instants::Place;
 use super::motions::Motion;
 use super::objective::MovieObjective;
 use super::passage::Passage;
-use super::states::{Place, States};
+use super::states::States;
 use crate::Error;
 use voronudge_geometry::Vector;
 
