@@ -15,6 +15,9 @@ pub(super) trait Mesh: Sized {
     fn ring(&self, point: usize, neighbours: &mut Vec<u32>) -> bool;
 }
 
+/// Largest coordinate whose fourth powers can be added up. Beyond, delaunator might not come to an end.
+const LARGEST: f64 = 1e60;
+
 /// By delaunator, whose in-circle tests are rounded: less than half the time of [`Exact`], but almost cocircular points may be connected wrongly.
 pub(super) struct Fast {
     /// The points from which half-edges come. Three in a row make a triangle, clockwise.
@@ -26,6 +29,9 @@ pub(super) struct Fast {
 
 impl Mesh for Fast {
     fn of(points: &[Vector<f64>]) -> Option<Self> {
+        if points.iter().any(|r| r.amax() > LARGEST) {
+            return None;
+        }
         let copies: Vec<_> = points.iter().map(|r| delaunator::Point { x: r.x, y: r.y }).collect();
         let delaunator::Triangulation { triangles: from, halfedges: twin, .. } =
             delaunator::triangulate(&copies);

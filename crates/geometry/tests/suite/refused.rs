@@ -32,6 +32,24 @@ fn cells_very_many_boxes_away_are_refused() -> Result<(), Error> {
     Ok(())
 }
 
+/// Where determinants overflow, a tessellation is right or refused.
+#[test]
+fn huge_coordinates_come_to_an_end() -> Result<(), Error> {
+    let positions = random(120, [8.0, 8.0], 1);
+    for unit in [2f64.powi(180), 2f64.powi(230), 2f64.powi(300)] {
+        let scaled: Vec<_> = positions.iter().map(|r| r * unit).collect();
+        for (domain, other) in
+            [(periodic([8.0, 8.0])?, periodic([8.0 * unit; 2])?), (Domain::Open, Domain::Open)]
+        {
+            match Tessellation::new(&scaled, other) {
+                Ok(found) => assert_eq!(found.edges(), Tessellation::new(&positions, domain)?.edges()),
+                Err(error) => assert!(matches!(error, Error::Inconsistent { .. }), "{error}"),
+            }
+        }
+    }
+    Ok(())
+}
+
 #[test]
 fn duplicates_are_named() -> Result<(), Error> {
     let mut positions = random(30, [5.0, 5.0], 3);
