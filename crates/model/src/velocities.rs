@@ -14,9 +14,7 @@ impl<S: Scalar> VelocityAssembly<S> {
         velocities: &mut Vec<Vector<S>>,
     ) {
         self.evaluate_terms(tessellation, positions, model, velocities);
-        if !model.responses.is_empty() {
-            respond(tessellation, positions, model, velocities);
-        }
+        respond(tessellation, positions, model, velocities);
     }
 }
 
@@ -31,9 +29,7 @@ impl<S: Scalar> HalfEdgeForces<S> {
     ) {
         velocities.resize(tessellation.len(), Vector::new(S::constant(0.0), S::constant(0.0)));
         self.evaluate_with_images(tessellation, positions, model, &[], velocities);
-        if !model.responses.is_empty() {
-            respond(tessellation, positions, model, velocities);
-        }
+        respond(tessellation, positions, model, velocities);
     }
 }
 

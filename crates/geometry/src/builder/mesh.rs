@@ -1,7 +1,7 @@
 //! Delaunay triangulations of points in the plane by two libraries: one that is fast, and one that is exact.
 
 use crate::Vector;
-use delaunator::EMPTY;
+use delaunator::{EMPTY, next_halfedge, prev_halfedge};
 use spade::handles::FixedVertexHandle;
 use spade::{DelaunayTriangulation, HasPosition, Point2, Triangulation};
 
@@ -23,7 +23,7 @@ pub(super) struct Fast {
     /// The points from which half-edges come. Three in a row make a triangle, clockwise.
     from: Vec<usize>,
     twin: Vec<usize>,
-    /// A half-edge from each point.
+    /// A half-edge from each point; of one on the hull, the clockwise end of its ring.
     outgoing: Vec<usize>,
 }
 
@@ -39,37 +39,29 @@ impl Mesh for Fast {
         for (edge, &point) in from.iter().enumerate() {
             outgoing[point] = edge;
         }
+        for (edge, _) in twin.iter().enumerate().filter(|(_, twin)| **twin == EMPTY) {
+            let next = next_halfedge(edge);
+            outgoing[from[next]] = next;
+        }
         (!outgoing.contains(&EMPTY)).then_some(Self { from, twin, outgoing })
     }
 
     #[inline]
     fn ring(&self, point: usize, neighbours: &mut Vec<u32>) -> bool {
-        use delaunator::{next_halfedge as next, prev_halfedge as previous};
         neighbours.clear();
         let first = self.outgoing[point];
         let mut edge = first;
         loop {
-            neighbours.push(self.from[next(edge)] as u32);
+            neighbours.push(self.from[next_halfedge(edge)] as u32);
             match self.twin[edge] {
-                EMPTY => break,
-                twin => edge = next(twin),
+                EMPTY => {
+                    neighbours.insert(0, self.from[prev_halfedge(first)] as u32);
+                    return false;
+                }
+                twin => edge = next_halfedge(twin),
             }
             if edge == first {
                 return true;
-            }
-        }
-        // Once more, from the clockwise end of an open ring.
-        let mut edge = first;
-        while self.twin[previous(edge)] != EMPTY {
-            edge = self.twin[previous(edge)];
-        }
-        neighbours.clear();
-        neighbours.push(self.from[previous(edge)] as u32);
-        loop {
-            neighbours.push(self.from[next(edge)] as u32);
-            match self.twin[edge] {
-                EMPTY => return false,
-                twin => edge = next(twin),
             }
         }
     }

@@ -59,6 +59,13 @@ pub(super) struct Proposal {
     promise: f64,
 }
 
+impl Proposal {
+    /// One that is judged whatever there is to explain.
+    fn new(kind: ChangeKind, centre: Vector<f64>, removed: Vec<usize>) -> Self {
+        Self { kind, centre, removed, promise: 0.0 }
+    }
+}
+
 /// What evidence rests on.
 pub(super) struct Evidence<'a> {
     pub law: Law<'a>,
@@ -157,12 +164,11 @@ pub(super) fn reassess(
         Some(cell) if change.added.len() != 1 => scene.measured.positions[*cell],
         _ => change.added.first().copied().unwrap_or_else(Vector::zeros),
     };
-    let proposal = |kind, centre, removed| Proposal { kind, centre, removed, promise: 0.0 };
-    let own = proposal(change.kind, centre, change.removed.clone());
+    let own = Proposal::new(change.kind, centre, change.removed.clone());
     let own = judge(scene, &own, &[index], &change.added, evidence)?;
     let others: Vec<Proposal> = match change.kind {
         ChangeKind::Split => {
-            change.added.iter().map(|place| proposal(ChangeKind::Inserted, *place, Vec::new())).collect()
+            change.added.iter().map(|place| Proposal::new(ChangeKind::Inserted, *place, Vec::new())).collect()
         }
         ChangeKind::Inserted if stage != Stage::Additions => {
             nearest_detection(scene, centre).map(|cell| split(scene, cell)).into_iter().collect()
@@ -181,7 +187,7 @@ pub(super) fn reassess(
 }
 
 /// For two cells that were put in on either side of a detection: this split into the two, if that has more evidence than both, with the number of
-/// the other change. A detection in the middle of two cells keeps them apart, wherever its own velocity is believed.
+/// the other change. What was detected as one would else stay between the two as a third.
 pub(super) fn split_between(
     scene: &Scene<'_>,
     index: usize,
@@ -202,12 +208,7 @@ pub(super) fn split_between(
             arm.norm().max(across.norm()) < BESIDE && 0.5 * (arm + across).norm() < BETWEEN
         });
     let Some((other, place)) = opposite else { return Ok(None) };
-    let inserted = |at: Vector<f64>| Proposal {
-        kind: ChangeKind::Inserted,
-        centre: at,
-        removed: Vec::new(),
-        promise: 0.0,
-    };
+    let inserted = |place| Proposal::new(ChangeKind::Inserted, place, Vec::new());
     let first = judge(scene, &inserted(own), &[index], &[own], evidence)?;
     let second = judge(scene, &inserted(place), &[index, other], &[place], evidence)?;
     let split = judge(scene, &split(scene, detection), &[index, other], &[], evidence)?;
@@ -217,8 +218,7 @@ pub(super) fn split_between(
 
 /// A detection to be split.
 fn split(scene: &Scene<'_>, cell: usize) -> Proposal {
-    let centre = scene.measured.positions[cell];
-    Proposal { kind: ChangeKind::Split, centre, removed: vec![cell], promise: 0.0 }
+    Proposal::new(ChangeKind::Split, scene.measured.positions[cell], vec![cell])
 }
 
 /// The detection that is nearest to a place, of those that stand.

@@ -123,13 +123,16 @@ pub trait FlowResponse {
     }
 }
 
-/// Adds the responses of a model to the velocities of its terms.
+/// Adds the responses of a model, if it has some, to the velocities of its terms.
 pub(crate) fn respond<S: Scalar>(
     tessellation: &Tessellation,
     positions: &[Vector<S>],
     model: &Model<S>,
     velocities: &mut [Vector<S>],
 ) {
+    if model.responses.is_empty() {
+        return;
+    }
     let mut before = velocities.to_vec();
     for stage in [Stage::Additive, Stage::Implicit] {
         for weighted in model.responses.iter().filter(|w| w.response.stage() == stage) {
