@@ -32,11 +32,10 @@ fn fault(name: &str) -> Option<String> {
     })
 }
 
-/// A test for each tissue, so that they run side by side; the slowest only if asked for.
+/// A test for each tissue, so that they run side by side.
 macro_rules! tissues {
-    ($($(#[$attribute:meta])* $name:ident)*) => {$(
+    ($($name:ident)*) => {$(
         #[test]
-        $(#[$attribute])*
         fn $name() {
             assert_eq!(fault(&stringify!($name).replace('_', "-")), None);
         }
@@ -44,14 +43,6 @@ macro_rules! tissues {
 }
 
 tissues! {
-    tissue_02 tissue_05 tissue_12
-    #[ignore = "slow"] tissue_01
-    #[ignore = "slow"] tissue_03
-    #[ignore = "slow"] tissue_04
-    #[ignore = "slow"] tissue_06
-    #[ignore = "slow"] tissue_07
-    #[ignore = "slow"] tissue_08
-    #[ignore = "slow"] tissue_09
-    #[ignore = "slow"] tissue_10
-    #[ignore = "slow"] tissue_11
+    tissue_01 tissue_02 tissue_03 tissue_04 tissue_05 tissue_06
+    tissue_07 tissue_08 tissue_09 tissue_10 tissue_11 tissue_12
 }

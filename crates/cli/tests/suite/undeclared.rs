@@ -67,46 +67,37 @@ fn fault(name: &str) -> Option<String> {
     None
 }
 
-fn check<'a>(names: impl IntoIterator<Item = &'a str>) {
-    let faults: Vec<String> = names.into_iter().filter_map(fault).collect();
-    assert!(faults.is_empty(), "{faults:#?}");
-}
-
-/// One of each kind that takes a few seconds: nothing is missing, too few cells, a mechanism, a flow.
-#[test]
-fn the_truth_is_found_in_quick_sets() {
-    check(["set-08", "set-10", "set-22", "set-24"]);
-}
-
-/// Every so many sets are one test, so that tests run side by side, if asked for.
+/// Every so many sets are one test, so that tests run side by side.
 macro_rules! parts {
-    ($($part:literal $(#[$attribute:meta])* $name:ident)*) => {
+    ($($part:literal $name:ident)*) => {
         const TESTS: usize = [$($part),*].len();
         $(
             #[test]
-            $(#[$attribute])*
             fn $name() {
-                check(names().iter().map(String::as_str).skip($part).step_by(TESTS));
+                let names = names();
+                let faults: Vec<String> =
+                    names.iter().skip($part).step_by(TESTS).filter_map(|name| fault(name)).collect();
+                assert!(faults.is_empty(), "{faults:#?}");
             }
         )*
     };
 }
 
 parts! {
-    0 #[ignore = "slow"] the_truth_is_found_in_the_first_part
-    1 #[ignore = "slow"] the_truth_is_found_in_the_second_part
-    2 #[ignore = "slow"] the_truth_is_found_in_the_third_part
-    3 #[ignore = "slow"] the_truth_is_found_in_the_fourth_part
-    4 #[ignore = "slow"] the_truth_is_found_in_the_fifth_part
-    5 #[ignore = "slow"] the_truth_is_found_in_the_sixth_part
-    6 #[ignore = "slow"] the_truth_is_found_in_the_seventh_part
-    7 #[ignore = "slow"] the_truth_is_found_in_the_eighth_part
-    8 #[ignore = "slow"] the_truth_is_found_in_the_ninth_part
-    9 #[ignore = "slow"] the_truth_is_found_in_the_tenth_part
-    10 #[ignore = "slow"] the_truth_is_found_in_the_eleventh_part
-    11 #[ignore = "slow"] the_truth_is_found_in_the_twelfth_part
-    12 #[ignore = "slow"] the_truth_is_found_in_the_thirteenth_part
-    13 #[ignore = "slow"] the_truth_is_found_in_the_fourteenth_part
-    14 #[ignore = "slow"] the_truth_is_found_in_the_fifteenth_part
-    15 #[ignore = "slow"] the_truth_is_found_in_the_sixteenth_part
+    0 the_truth_is_found_in_the_first_part
+    1 the_truth_is_found_in_the_second_part
+    2 the_truth_is_found_in_the_third_part
+    3 the_truth_is_found_in_the_fourth_part
+    4 the_truth_is_found_in_the_fifth_part
+    5 the_truth_is_found_in_the_sixth_part
+    6 the_truth_is_found_in_the_seventh_part
+    7 the_truth_is_found_in_the_eighth_part
+    8 the_truth_is_found_in_the_ninth_part
+    9 the_truth_is_found_in_the_tenth_part
+    10 the_truth_is_found_in_the_eleventh_part
+    11 the_truth_is_found_in_the_twelfth_part
+    12 the_truth_is_found_in_the_thirteenth_part
+    13 the_truth_is_found_in_the_fourteenth_part
+    14 the_truth_is_found_in_the_fifteenth_part
+    15 the_truth_is_found_in_the_sixteenth_part
 }

@@ -51,7 +51,7 @@ impl Asked<'_> {
         Ok(Raw { prepared, past: Some(past) })
     }
 
-    /// Searches what was found out about the measurement by the base model, and, if an effect that was found shows it in another light, once
+    /// Searches what was found out about the measurement by the base model, and, if the effects that were found show it in another light, once
     /// more. What predicts velocities held out better is kept.
     pub fn searched(
         &self,
@@ -64,16 +64,20 @@ impl Asked<'_> {
         let base = &raw.prepared.request.structure;
         let understood = self.understood(raw, base, progress).map_err(placed)?;
         let found = self.search(raw, self.surrounded(raw, data, understood)?, kept, progress)?;
-        let Some(structure) = extended(raw, &found.discovery) else { return Ok(found) };
-        match self.understood(raw, &structure, progress) {
-            Ok(again) if !are_measured_alike(&again, &found.prepared) => {
-                let again = self.search(raw, self.surrounded(raw, data, again)?, kept, progress)?;
-                Ok(if again.predicts_better_than(&found) { again } else { found })
+        for structure in extended(raw, &found.discovery) {
+            match self.understood(raw, &structure, progress) {
+                Ok(again) if !are_measured_alike(&again, &found.prepared) => {
+                    let again = self.search(raw, self.surrounded(raw, data, again)?, kept, progress)?;
+                    if again.predicts_better_than(&found) {
+                        return Ok(again);
+                    }
+                }
+                Err(Error::Interrupted) => return Err(placed(Error::Interrupted)),
+                // Beside the effects the data do not tell how they were measured.
+                Ok(_) | Err(_) => {}
             }
-            Err(Error::Interrupted) => Err(placed(Error::Interrupted)),
-            // Beside the effects the data do not tell how they were measured.
-            Ok(_) | Err(_) => Ok(found),
         }
+        Ok(found)
     }
 
     /// The data with what a model says about how they were measured.
@@ -123,18 +127,24 @@ impl Asked<'_> {
     }
 }
 
-/// The model with the effects that were found, if these can act on the data as they were given: on any cells, not on those that are known by
-/// name.
-fn extended(raw: &Raw, discovery: &Discovery) -> Option<Structure> {
+/// The model with the first effect that was found, and with all of them, as far as these can act on the data as they were given: on any cells,
+/// not on those that are known by name. An effect that stands out under a wrong idea of the measurement may draw others after it that make up for
+/// what is wrong; with these in the model the idea would look right.
+fn extended(raw: &Raw, discovery: &Discovery) -> Vec<Structure> {
     let prepared = &raw.prepared;
-    if discovery.selected.is_empty() || prepared.tracks.is_some() {
-        return None;
+    let Some(first) = prepared.observations.first() else { return Vec::new() };
+    if prepared.tracks.is_some() {
+        return Vec::new();
     }
-    let domain = prepared.observations.first()?.tessellation.domain();
+    let domain = first.tessellation.domain();
     let anywhere = Environment::default().about(prepared.origin());
-    let columns = discovery.columns_there(|effect| effect.columns(&anywhere, domain)).ok()?;
+    let found = discovery.columns_there(|effect| effect.columns(&anywhere, domain)).unwrap_or_default();
     // What has no columns shows no measurement in another light.
-    (!columns.is_empty()).then(|| prepared.request.structure.with(&columns))
+    let first = discovery.selected.iter().map(|own| own.columns.len()).find(|columns| *columns > 0);
+    let mut ends: Vec<usize> = first.into_iter().chain([found.len()]).collect();
+    ends.dedup();
+    ends.retain(|end| (1..=found.len()).contains(end));
+    ends.into_iter().map(|end| prepared.request.structure.with(&found[..end])).collect()
 }
 
 impl Searched {
