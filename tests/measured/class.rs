@@ -26,8 +26,19 @@ pub struct Recipe {
     pub motion: Motion,
     /// Whether cells crawl: each has a velocity of its own whose direction diffuses.
     pub crawls: bool,
-    /// Whether something acts that the model lacks: an effect that changes from seed to seed.
-    pub lacks: bool,
+    /// What acts that the model lacks.
+    pub lack: Lack,
+}
+
+/// What acts that the model lacks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Lack {
+    /// Nothing.
+    Nothing,
+    /// An effect that changes from seed to seed.
+    Effect,
+    /// The preferred perimeter changes evenly along both axes, in a tissue larger than what is seen.
+    Ramp,
 }
 
 /// How much of a tissue is seen.
@@ -90,7 +101,7 @@ const COMPLETE: Recipe = Recipe {
     flaws: NONE,
     motion: Motion::Velocities,
     crawls: false,
-    lacks: false,
+    lack: Lack::Nothing,
 };
 
 const fn missed(missed: f64) -> Recipe {
@@ -118,7 +129,7 @@ pub const EFFECTS: [&str; 6] =
     ["nematic_stress", "drift", "alpha_area", "odd_nematic_stress", "p0_gradient", "short_range_repulsion"];
 
 /// All classes of the study.
-pub const CLASSES: [Class; 25] = [
+pub const CLASSES: [Class; 26] = [
     class("complete", "complete, periodic", COMPLETE),
     class("open", "open field of view", Recipe { view: View::Window, ..COMPLETE }),
     class("missed-2", "2 % not detected", missed(0.02)),
@@ -160,17 +171,22 @@ pub const CLASSES: [Class; 25] = [
     class(
         "open-missed-2-effect",
         "open field of view, 2 % not detected, an effect of 15 %",
-        Recipe { view: View::Window, lacks: true, ..missed(0.02) },
+        Recipe { view: View::Window, lack: Lack::Effect, ..missed(0.02) },
+    ),
+    class(
+        "open-missed-2-ramp",
+        "open field of view, 2 % not detected, P₀ that changes evenly, 15 % along each axis",
+        Recipe { view: View::Window, lack: Lack::Ramp, ..missed(0.02) },
     ),
     class(
         "flow-square-effect",
         "flow, square window of 1.5 spacings, an effect of 15 %",
-        Recipe { lacks: true, ..flow(Window::Square(1.5)) },
+        Recipe { lack: Lack::Effect, ..flow(Window::Square(1.5)) },
     ),
     class(
         "tracks-effect",
         "tracks, steps of 0.1 ℓ₀, an effect of 15 %",
-        Recipe { lacks: true, ..tracks(0.1) },
+        Recipe { lack: Lack::Effect, ..tracks(0.1) },
     ),
     class("active-05", "crawling cells, 6 frames, steps of 0.05 ℓ₀", crawling(FRAMES, 0.05)),
     class("active-10", "crawling cells, 6 frames, steps of 0.1 ℓ₀", crawling(FRAMES, 0.1)),

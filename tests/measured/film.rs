@@ -2,6 +2,7 @@
 
 use super::Motion;
 use std::error::Error;
+use std::sync::Arc;
 use voronudge_geometry::{Domain, PeriodicBox, Vector};
 use voronudge_model::{Column, Effect, Environment, Model, Parameters};
 use voronudge_simulate::{Driving, RandomPlacement, Simulation, generator, recommended_time_step};
@@ -29,6 +30,15 @@ pub(super) struct Film {
     pub frames: Vec<Frame>,
 }
 
+/// Which form an effect has that depends on where a cell is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Form {
+    /// Waves, which a box of this size allows.
+    InABox,
+    /// Ramps about the middle of the box, with a jump at its border; of the size that is asked for in cells farther from the border than `unseen`.
+    InAnOpenField { unseen: f64 },
+}
+
 /// Sites, within the box, and their velocities.
 pub(super) struct Frame {
     pub sites: Vec<Vector<f64>>,
@@ -41,7 +51,7 @@ impl Film {
         side: f64,
         parameters: &Parameters<f64>,
         driving: Driving,
-        effect: Option<&str>,
+        effect: Option<(&str, Form)>,
         motion: Motion,
     ) -> Result<Self, Box<dyn Error>> {
         let cell_box = PeriodicBox::new([side; 2])?;
@@ -55,7 +65,7 @@ impl Film {
             simulation.step(recommended)?;
         }
         if let Some(effect) = effect {
-            simulation = with_effect(&simulation, Domain::Periodic(cell_box), effect)?;
+            simulation = with_effect(&simulation, cell_box, effect)?;
             for _ in 0..(SETTLING_OF_EFFECT / recommended).ceil() as usize {
                 simulation.step(recommended)?;
             }
@@ -91,17 +101,37 @@ impl Film {
 }
 
 /// The tissue with an effect of so large a share of its velocities.
-fn with_effect(before: &Simulation, domain: Domain, effect: &str) -> Result<Simulation, Box<dyn Error>> {
+fn with_effect(
+    before: &Simulation,
+    cell_box: PeriodicBox,
+    (effect, form): (&str, Form),
+) -> Result<Simulation, Box<dyn Error>> {
     let effect = Effect::from_id(effect).ok_or("no such effect")?;
+    let domain = Domain::Periodic(cell_box);
+    let mut positions = before.positions().to_vec();
     let mut model = before.model().clone();
-    for column in effect.columns(&Environment::default(), domain)? {
+    let lengths = Vector::from(cell_box.lengths());
+    let (columns, unseen) = match form {
+        Form::InABox => (effect.columns(&model.environment, domain)?, 0.0),
+        Form::InAnOpenField { unseen } => {
+            positions.iter_mut().for_each(|site| *site = cell_box.wrap(*site));
+            model.environment = Arc::new(Environment::default().about(lengths / 2.0));
+            (effect.columns(&model.environment, Domain::Open)?, unseen)
+        }
+    };
+    let is_seen = |site: &Vector<f64>| {
+        let beyond = lengths.map(|length| length - unseen);
+        unseen == 0.0 || (site.min() >= unseen && site.x < beyond.x && site.y < beyond.y)
+    };
+    for column in columns {
         let Column::Term(term) = column else { return Err("not a term".into()) };
-        let lone = Model::single(term);
-        let alone = Simulation::new(before.positions().to_vec(), domain, lone)?;
-        let size = root_mean_square(alone.velocities());
+        let lone = Model { environment: model.environment.clone(), ..Model::single(term) };
+        let alone = Simulation::new(positions.clone(), domain, lone)?;
+        let moves = positions.iter().zip(alone.velocities()).filter(|(site, _)| is_seen(site));
+        let size = root_mean_square(&moves.map(|(_, velocity)| *velocity).collect::<Vec<_>>());
         model = model.with(column, SHARE * root_mean_square(before.velocities()) / size);
     }
-    Ok(Simulation::new(before.positions().to_vec(), domain, model)?)
+    Ok(Simulation::new(positions, domain, model)?)
 }
 
 fn mean_norm<'a>(pairs: impl ExactSizeIterator<Item = (&'a Vector<f64>, &'a Vector<f64>)>) -> f64 {

@@ -14,14 +14,14 @@ mod polygon;
 mod truth;
 mod writing;
 
-pub use class::{CLASSES, Class, EFFECTS, Flaws, Motion, Point, Recipe, View};
+pub use class::{CLASSES, Class, EFFECTS, Flaws, Lack, Motion, Point, Recipe, View};
 pub use flow::Window;
 pub use truth::{Hidden, Kind, Truth};
 pub use writing::Written;
 
 use crate::Noise;
 use detection::{Detection, Detector};
-use film::Film;
+use film::{Film, Form};
 use ndarray::{Array2, Array3};
 use rand::{Rng, SeedableRng};
 use rand_pcg::Pcg64;
@@ -101,8 +101,13 @@ impl Class {
             View::Whole => (0.0, side),
             View::Window => (UNSEEN, side + 2.0 * UNSEEN),
         };
-        let effect = self.recipe.lacks.then(|| EFFECTS[seed as usize % EFFECTS.len()]);
-        let film = Film::new(whole, &parameters, driving, effect, self.recipe.motion)?;
+        let (effect, form) = match self.recipe.lack {
+            Lack::Nothing => (None, Form::InABox),
+            Lack::Effect => (Some(EFFECTS[seed as usize % EFFECTS.len()]), Form::InABox),
+            Lack::Ramp => (Some("p0_gradient"), Form::InAnOpenField { unseen: origin }),
+        };
+        let added = effect.map(|effect| (effect, form));
+        let film = Film::new(whole, &parameters, driving, added, self.recipe.motion)?;
         let mut rng = Pcg64::seed_from_u64(self.stream(seed));
         let seen_from = Vector::new(origin, origin);
         let mut detector = Detector::new(&film, &self.recipe, noise, &mut rng)?;
