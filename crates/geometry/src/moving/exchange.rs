@@ -46,7 +46,7 @@ impl MovingTessellation {
         for (cell, _) in after.iter().enumerate().filter(|(_, after)| **after == GONE) {
             around.extend(lawson.take_out(&self.tessellation, &self.positions, cell as u32)?);
         }
-        lawson.begin_at_lowest(&self.tessellation);
+        lawson.conclude(&self.tessellation);
         let mut next = renumbered(&self.tessellation, &lawson, &after, positions.len())?;
         lawson.begin(next.len());
         // Ties are decided by the numbers that cells have now.
@@ -65,7 +65,7 @@ impl MovingTessellation {
             lawson.put_in(&next, positions, (cell as u32, image), nearest as u32)?;
             flips += lawson.flip_all(&next, positions).ok()?;
         }
-        lawson.begin_at_lowest(&next);
+        lawson.conclude(&next);
         Spare::default().splice(&mut next, &lawson);
         Some((next, flips))
     }

@@ -1,8 +1,13 @@
 //! Lawson's flips: edges that are not Delaunay edges are exchanged for the other diagonal until none is left.
+//!
+//! Cells are divided into parts by number. Flips among the cells of one part touch no ring of another, so parts flip side by side, and what
+//! concerns several waits until all have done. The order of flips does not matter: there is one Delaunay triangulation.
 
 use super::diagonal::{Site, is_delaunay};
 use super::scan::Edge;
+use super::split::CHUNK;
 use crate::{Tessellation, Vector};
+use rayon::prelude::*;
 
 /// A cell that no flip has touched.
 const UNTOUCHED: u32 = u32::MAX;
@@ -16,33 +21,76 @@ pub(super) struct Tangled;
 /// The rings that flips have changed, apart from the arrays of the tessellation. Memory is kept from call to call.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Lawson {
-    /// For each cell, its place in `rings`.
-    slot: Vec<u32>,
-    /// The cells touched, in the order of their rings.
-    touched: Vec<u32>,
-    rings: Vec<Vec<Site>>,
+    parts: Vec<Part>,
+    /// Edges that may not be Delaunay edges, of each part and of all.
+    waiting: Vec<Waiting>,
     pub(super) queue: Vec<Edge>,
 }
 
+/// The changed rings of [`CHUNK`] cells.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Part {
+    /// For each cell, its place in `rings`.
+    slot: Vec<u32>,
+    /// The cells touched.
+    touched: Vec<u32>,
+    rings: Vec<Vec<Site>>,
+    /// By how many half-edges there are more.
+    growth: i32,
+}
+
+/// Edges of a part that are to be looked at, and those to be flipped whose triangles reach into other parts.
+#[derive(Debug, Clone, Default)]
+struct Waiting {
+    queue: Vec<Edge>,
+    left: Vec<Edge>,
+}
+
+/// The rings of the cells of some parts in a row, of which the first is given: what flips may change.
+struct Reach<'a> {
+    tessellation: &'a Tessellation,
+    first: usize,
+    parts: &'a mut [Part],
+}
+
 impl Lawson {
-    /// Flips until every edge is a Delaunay edge, given the edges that may not be. Returns the number of flips.
+    /// Flips until every edge is a Delaunay edge, given the edges of each [`CHUNK`] of cells that may not be. Returns the number of flips.
     pub fn settle(
         &mut self,
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
-        suspects: &[Edge],
+        suspects: &[Vec<Edge>],
     ) -> Result<usize, Tangled> {
         self.begin(tessellation.len());
-        self.queue.extend(suspects.iter().rev());
-        let flips = self.flip_all(tessellation, positions)?;
-        self.begin_at_lowest(tessellation);
-        Ok(flips)
+        let of_parts = self.parts.par_iter_mut().zip(&mut self.waiting).zip(suspects).enumerate();
+        let flips: Option<usize> = of_parts
+            .map(|(first, ((part, Waiting { queue, left }), suspects))| {
+                queue.extend(suspects.iter().rev());
+                let parts = std::slice::from_mut(part);
+                Reach { tessellation, first, parts }.flip_all(positions, queue, left).ok()
+            })
+            .sum();
+        let Some(flips) = flips else {
+            self.forget();
+            return Err(Tangled);
+        };
+        for waiting in self.waiting.iter_mut().rev() {
+            self.queue.extend(waiting.left.drain(..).rev());
+        }
+        let more = self.flip_all(tessellation, positions)?;
+        self.conclude(tessellation);
+        Ok(flips + more)
     }
 
     /// Forgets all changes, of so many cells from now on.
     pub fn begin(&mut self, cells: usize) {
         self.forget();
-        self.slot.resize(cells, UNTOUCHED);
+        let parts = cells.div_ceil(CHUNK);
+        self.parts.resize_with(parts, Part::default);
+        self.waiting.resize_with(parts, Waiting::default);
+        for (k, part) in self.parts.iter_mut().enumerate() {
+            part.slot.resize(CHUNK.min(cells - k * CHUNK), UNTOUCHED);
+        }
         self.queue.clear();
     }
 
@@ -52,110 +100,86 @@ impl Lawson {
         tessellation: &Tessellation,
         positions: &[Vector<f64>],
     ) -> Result<usize, Tangled> {
-        let most = FLIPS_PER_CELL * tessellation.len().max(20);
-        let mut flips = 0;
-        while let Some(edge) = self.queue.pop() {
-            let Some([before, after]) = self.opposite(tessellation, edge) else {
-                continue; // flipped away
-            };
-            let own = (edge.from, [0, 0]);
-            let decided = is_delaunay(positions, &tessellation.domain(), [own, before, edge.to, after]);
-            if decided == Some(true) {
-                continue;
-            }
-            flips += 1;
-            if decided.is_none() || flips > most || !self.flip(tessellation, [own, before, edge.to, after]) {
-                self.forget();
-                return Err(Tangled);
-            }
+        let mut all = Reach { tessellation, first: 0, parts: &mut self.parts };
+        let flips = all.flip_all(positions, &mut self.queue, &mut Vec::new());
+        if flips.is_err() {
+            self.forget();
         }
-        Ok(flips)
+        flips
     }
 
-    /// Lets the rings that have changed begin as those of a tessellation do.
-    pub fn begin_at_lowest(&mut self, tessellation: &Tessellation) {
-        for &cell in &self.touched {
-            let ring = &mut self.rings[self.slot[cell as usize] as usize];
-            if !tessellation.is_closed(cell as usize) {
-                continue;
+    /// Lets the rings that have changed begin as those of a tessellation do, and counts and orders them.
+    pub fn conclude(&mut self, tessellation: &Tessellation) {
+        self.parts.par_iter_mut().enumerate().for_each(|(k, part)| {
+            part.touched.sort_unstable();
+            part.growth = 0;
+            for cell in part.touched.iter().map(|cell| *cell as usize) {
+                let ring = &mut part.rings[part.slot[cell - k * CHUNK] as usize];
+                part.growth += ring.len() as i32 - tessellation.ring(cell).len() as i32;
+                if tessellation.is_closed(cell) {
+                    let lowest = (0..ring.len()).min_by_key(|&m| ring[m]).unwrap_or(0);
+                    ring.rotate_left(lowest);
+                }
             }
-            let lowest = (0..ring.len()).min_by_key(|&m| ring[m]).unwrap_or(0);
-            ring.rotate_left(lowest);
-        }
+        });
     }
 
-    /// The cells whose rings have changed.
-    pub fn touched(&self) -> &[u32] {
-        &self.touched
+    /// The changed rings in parts of [`CHUNK`] cells.
+    pub fn parts(&self) -> &[Part] {
+        &self.parts
     }
 
     /// The new ring of a cell, from its lowest neighbour on or along the hull, if flips have changed it.
     #[inline]
     pub fn ring(&self, cell: usize) -> Option<&[Site]> {
-        match self.slot[cell] {
-            UNTOUCHED => None,
-            slot => Some(&self.rings[slot as usize]),
-        }
-    }
-
-    /// Forgets all changes.
-    pub fn forget(&mut self) {
-        for cell in self.touched.drain(..) {
-            self.slot[cell as usize] = UNTOUCHED;
-        }
-    }
-
-    /// The sites before and after an edge in the ring of its first cell; none of an edge of the hull.
-    fn opposite(&self, tessellation: &Tessellation, edge: Edge) -> Option<[Site; 2]> {
-        let is_closed = tessellation.is_closed(edge.from as usize);
-        let around = |sides: usize, site: &dyn Fn(usize) -> Site| {
-            let m = (0..sides).find(|&m| site(m) == edge.to)?;
-            if !is_closed && (m == 0 || m + 1 == sides) {
-                return None;
-            }
-            Some([site(if m == 0 { sides - 1 } else { m - 1 }), site(if m + 1 == sides { 0 } else { m + 1 })])
-        };
-        let cell = edge.from as usize;
-        match self.ring(cell) {
-            Some(ring) => around(ring.len(), &|m| ring[m]),
-            None => {
-                let ring = tessellation.ring(cell);
-                around(ring.len(), &|m| {
-                    (tessellation.neighbour[ring.start + m], tessellation.image[ring.start + m])
-                })
-            }
-        }
+        ring(&self.parts[cell / CHUNK], cell)
     }
 
     /// Exchanges the diagonal between the first and the third of four counter-clockwise sites for the other. False if the
     /// rings are not those of a triangulation.
     pub(super) fn flip(&mut self, tessellation: &Tessellation, sites: [Site; 4]) -> bool {
-        let seen = |from: usize, to: usize| {
-            let ((_, origin), (cell, image)) = (sites[from], sites[to]);
-            (cell, [image[0] - origin[0], image[1] - origin[1]])
-        };
-        let mut sound = true;
-        for (end, other) in [(0, 2), (2, 0)] {
-            let ring = self.touch(tessellation, sites[end].0);
-            let site = seen(end, other);
-            let place = ring.iter().position(|s| *s == site);
-            sound &= place.map(|m| ring.remove(m)).is_some();
-        }
-        // Seen from the second site, the quadrilateral opens from the third to the first; from the fourth, the other way.
-        for (end, other, next) in [(1, 3, 0), (3, 1, 2)] {
-            let ring = self.touch(tessellation, sites[end].0);
-            let following = seen(end, next);
-            let place = ring.iter().position(|s| *s == following);
-            sound &= place.map(|m| ring.insert(m, seen(end, other))).is_some();
-        }
-        for (from, to) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
-            self.queue.push(Edge { from: sites[from].0, to: seen(from, to) });
-        }
-        sound
+        Reach { tessellation, first: 0, parts: &mut self.parts }.flip(sites, &mut self.queue)
     }
 
     pub(super) fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
-        let slot = &mut self.slot[cell as usize];
+        self.parts[cell as usize / CHUNK].touch(tessellation, cell)
+    }
+
+    /// Forgets all changes.
+    fn forget(&mut self) {
+        for part in &mut self.parts {
+            for cell in part.touched.drain(..) {
+                part.slot[cell as usize % CHUNK] = UNTOUCHED;
+            }
+        }
+        for Waiting { queue, left } in &mut self.waiting {
+            queue.clear();
+            left.clear();
+        }
+    }
+}
+
+#[inline]
+fn ring(part: &Part, cell: usize) -> Option<&[Site]> {
+    match part.slot[cell % CHUNK] {
+        UNTOUCHED => None,
+        slot => Some(&part.rings[slot as usize]),
+    }
+}
+
+impl Part {
+    /// The cells whose rings have changed, in rising order once all is concluded.
+    pub fn touched(&self) -> &[u32] {
+        &self.touched
+    }
+
+    /// By how many half-edges there are more than before.
+    pub fn growth(&self) -> i32 {
+        self.growth
+    }
+
+    fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
+        let slot = &mut self.slot[cell as usize % CHUNK];
         if *slot == UNTOUCHED {
             let next = self.touched.len();
             *slot = next as u32;
@@ -169,5 +193,94 @@ impl Lawson {
             self.rings[next].extend(neighbours.zip(tessellation.image[ring].iter().copied()));
         }
         &mut self.rings[*slot as usize]
+    }
+}
+
+impl Reach<'_> {
+    /// Flips until no edge of a queue is left that may not be a Delaunay edge, but for those `left` that reach beyond.
+    fn flip_all(
+        &mut self,
+        positions: &[Vector<f64>],
+        queue: &mut Vec<Edge>,
+        left: &mut Vec<Edge>,
+    ) -> Result<usize, Tangled> {
+        let cells: usize = self.parts.iter().map(|part| part.slot.len()).sum();
+        let most = FLIPS_PER_CELL * cells.max(20);
+        let mut flips = 0;
+        while let Some(edge) = queue.pop() {
+            let Some([before, after]) = self.opposite(edge) else {
+                continue; // flipped away
+            };
+            let sites = [(edge.from, [0, 0]), before, edge.to, after];
+            let decided = is_delaunay(positions, &self.tessellation.domain(), sites);
+            if decided == Some(true) {
+                continue;
+            }
+            if decided.is_some() && !sites.iter().all(|site| self.holds(site.0)) {
+                left.push(edge);
+                continue;
+            }
+            flips += 1;
+            if decided.is_none() || flips > most || !self.flip(sites, queue) {
+                return Err(Tangled);
+            }
+        }
+        Ok(flips)
+    }
+
+    fn holds(&self, cell: u32) -> bool {
+        (self.first..self.first + self.parts.len()).contains(&(cell as usize / CHUNK))
+    }
+
+    fn part(&mut self, cell: u32) -> &mut Part {
+        &mut self.parts[cell as usize / CHUNK - self.first]
+    }
+
+    /// The sites before and after an edge in the ring of its first cell; none of an edge of the hull.
+    fn opposite(&self, edge: Edge) -> Option<[Site; 2]> {
+        let (tessellation, cell) = (self.tessellation, edge.from as usize);
+        let is_closed = tessellation.is_closed(cell);
+        let around = |sides: usize, site: &dyn Fn(usize) -> Site| {
+            let m = (0..sides).find(|&m| site(m) == edge.to)?;
+            if !is_closed && (m == 0 || m + 1 == sides) {
+                return None;
+            }
+            Some([site(if m == 0 { sides - 1 } else { m - 1 }), site(if m + 1 == sides { 0 } else { m + 1 })])
+        };
+        match ring(&self.parts[cell / CHUNK - self.first], cell) {
+            Some(ring) => around(ring.len(), &|m| ring[m]),
+            None => {
+                let ring = tessellation.ring(cell);
+                around(ring.len(), &|m| {
+                    (tessellation.neighbour[ring.start + m], tessellation.image[ring.start + m])
+                })
+            }
+        }
+    }
+
+    fn flip(&mut self, sites: [Site; 4], queue: &mut Vec<Edge>) -> bool {
+        let seen = |from: usize, to: usize| {
+            let ((_, origin), (cell, image)) = (sites[from], sites[to]);
+            (cell, [image[0] - origin[0], image[1] - origin[1]])
+        };
+        let tessellation = self.tessellation;
+        let mut sound = true;
+        for (end, other) in [(0, 2), (2, 0)] {
+            let ring = self.part(sites[end].0).touch(tessellation, sites[end].0);
+            let site = seen(end, other);
+            let place = ring.iter().position(|s| *s == site);
+            sound &= place.map(|m| ring.remove(m)).is_some();
+        }
+        // Seen from the second site, the quadrilateral opens from the third to the first; from the fourth, the other way.
+        for (end, other, next) in [(1, 3, 0), (3, 1, 2)] {
+            let ring = self.part(sites[end].0).touch(tessellation, sites[end].0);
+            let following = seen(end, next);
+            let place = ring.iter().position(|s| *s == following);
+            sound &= place.map(|m| ring.insert(m, seen(end, other))).is_some();
+        }
+        for (from, to) in [(0, 1), (1, 2), (2, 3), (3, 0)] {
+            queue.push(Edge { from: sites[from].0, to: seen(from, to) });
+        }
+        sound
     }
 }

@@ -18,7 +18,7 @@ impl Repair {
         let Finding::Suspects(suspects) = scan(tessellation, positions) else {
             return None;
         };
-        if suspects.is_empty() {
+        if suspects.iter().all(Vec::is_empty) {
             return Some(0);
         }
         let flips = self.lawson.settle(tessellation, positions, &suspects).ok()?;

@@ -5,8 +5,9 @@ use super::hull::turns_once;
 use super::split::CHUNK;
 use crate::domain::MOST_BOXES;
 use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector, cross, dot};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::{Arch, Scalar, Simd, WithSimd};
 use rayon::prelude::*;
+use std::cmp::Ordering;
 
 /// Bounds of the rounding errors of a cross product and of the in-circle determinant, in units of
 /// ε · (largest coordinate) · (length of the ring)^n. Four displacements, each rounded thrice at the size of the
@@ -23,9 +24,9 @@ pub(super) struct Edge {
 
 /// What a scan found.
 pub(super) enum Finding {
-    /// Every triangle is counter-clockwise. These edges are not, or to rounding not surely, Delaunay edges; all others
-    /// are. If there are none, the tessellation is that of the positions.
-    Suspects(Vec<Edge>),
+    /// Every triangle is counter-clockwise. These edges of each [`CHUNK`] of cells are not, or to rounding not surely, Delaunay edges; all
+    /// others are. If there are none, the tessellation is that of the positions.
+    Suspects(Vec<Vec<Edge>>),
     /// A triangle is turned over, or to rounding flat; or cells are too far from the box; or those of an open field have another hull.
     Inverted,
 }
@@ -59,7 +60,7 @@ pub(super) fn scan(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Fi
             scan_cells(tessellation, positions, size, chunk * CHUNK..last)
         })
         .collect();
-    findings.map_or(Finding::Inverted, |lists| Finding::Suspects(lists.concat()))
+    findings.map_or(Finding::Inverted, Finding::Suspects)
 }
 
 fn scan_cells(
@@ -91,21 +92,43 @@ impl WithSimd for Proof<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn with_simd<A: Simd>(self, _: A) {
+    fn with_simd<A: Simd>(self, simd: A) {
         let zero = Lanes::constant(0.0);
         let mut ring = [Vector::new(zero, zero); BySides::MOST_SIDES];
+        let mut registers = [[simd.splat_f64s(0.0); 2]; BySides::MOST_SIDES];
         for sides in 3..=BySides::MOST_SIDES {
             for batch in self.by_sides.batches(sides) {
                 batch.fill_ring(self.positions, &mut ring[..sides], Lanes::put);
-                let proven = Extremes::of(&ring[..sides]).prove(self.size);
+                let proofs = proofs(simd, &ring[..sides], &mut registers[..sides], self.size);
                 batch.each(|lane, cell| {
-                    if !proven[lane] {
+                    if proofs[lane].is_none_or(|proof| proof <= 0.0) {
                         self.doubtful.push(cell);
                     }
                 });
             }
         }
     }
+}
+
+/// The proofs of several rings, in as many registers as they fill.
+#[inline(always)]
+fn proofs<A: Simd>(
+    simd: A,
+    ring: &[Vector<Lanes>],
+    registers: &mut [[A::f64s; 2]],
+    size: f64,
+) -> [Option<f64>; Lanes::WIDTH] {
+    let mut proofs = [0.0; Lanes::WIDTH];
+    for first in (0..Lanes::WIDTH).step_by(A::F64_LANES) {
+        let lanes = first..(first + A::F64_LANES).min(Lanes::WIDTH);
+        for (own, d) in registers.iter_mut().zip(ring) {
+            own[0] = simd.partial_load_f64s(&d.x.0[lanes.clone()]);
+            own[1] = simd.partial_load_f64s(&d.y.0[lanes.clone()]);
+        }
+        let proof = Extremes::of(simd, registers).proof(simd, size);
+        simd.partial_store_f64s(&mut proofs[lanes], proof);
+    }
+    proofs.map(|proof| (!proof.is_nan()).then_some(proof))
 }
 
 /// What proves a ring: the smallest cross product of consecutive neighbours, the smallest in-circle determinant and the largest square of a
@@ -118,25 +141,45 @@ struct Extremes<S> {
     total: S,
 }
 
-impl<S: Ordered> Extremes<S> {
+impl<S: Copy> Extremes<S> {
     #[inline(always)]
-    fn of(ring: &[Vector<S>]) -> Self {
-        let lifted = |m: usize| (ring[m], dot(ring[m], ring[m]));
-        let (far, zero) = (S::constant(f64::INFINITY), S::constant(0.0));
+    fn of<A: Simd<f64s = S>>(simd: A, ring: &[[S; 2]]) -> Self {
+        let (far, zero) = (simd.splat_f64s(f64::INFINITY), simd.splat_f64s(0.0));
         let mut extremes = Self { cross: far, determinant: far, farthest: zero, total: zero };
-        let (mut before, mut here) = (lifted(ring.len() - 1), lifted(0));
-        let mut first = cross(before.0, here.0);
+        let [mut before, mut here] = [Lifted::new(simd, ring[ring.len() - 1]), Lifted::new(simd, ring[0])];
+        let mut first = before.cross(simd, here);
         for m in 0..ring.len() {
-            let after = lifted(if m + 1 == ring.len() { 0 } else { m + 1 });
-            let second = cross(here.0, after.0);
-            extremes.cross = second.least(extremes.cross);
-            extremes.determinant =
-                determinant(before, here, after, first, second).least(extremes.determinant);
-            extremes.farthest = here.1.most(extremes.farthest);
-            extremes.total += here.1;
+            let after = Lifted::new(simd, ring[if m + 1 == ring.len() { 0 } else { m + 1 }]);
+            let second = here.cross(simd, after);
+            extremes.cross = simd.min_f64s(second, extremes.cross);
+            let determinant = determinant(simd, [before, here, after], [first, second]);
+            extremes.determinant = simd.min_f64s(determinant, extremes.determinant);
+            extremes.farthest = simd.max_f64s(here.square, extremes.farthest);
+            extremes.total = simd.add_f64s(extremes.total, here.square);
             (before, here, first) = (here, after, second);
         }
         extremes
+    }
+
+    /// Below which the cross product, and the determinant, may be zero.
+    #[inline(always)]
+    fn margins<A: Simd<f64s = S>>(&self, simd: A, size: f64) -> [S; 2] {
+        let reach = simd.mul_f64s(simd.splat_f64s(size), simd.sqrt_f64s(self.farthest));
+        let volume = simd.mul_f64s(reach, self.farthest);
+        [
+            simd.mul_f64s(simd.splat_f64s(CROSS_MARGIN), reach),
+            simd.mul_f64s(simd.splat_f64s(DETERMINANT_MARGIN), volume),
+        ]
+    }
+
+    /// Positive if every triangle is surely counter-clockwise and every edge surely a Delaunay edge.
+    #[inline(always)]
+    fn proof<A: Simd<f64s = S>>(&self, simd: A, size: f64) -> S {
+        let [flat, tied] = self.margins(simd, size);
+        let turns = simd.sub_f64s(self.cross, flat);
+        let opens = simd.sub_f64s(self.determinant, tied);
+        // A sum that is infinite or no number makes this no number.
+        simd.add_f64s(simd.min_f64s(turns, opens), simd.mul_f64s(self.total, simd.splat_f64s(0.0)))
     }
 }
 
@@ -148,40 +191,11 @@ impl Extremes<f64> {
         let pairs = ring.windows(2).chain([&ends[..]]);
         let squares = || ring.iter().map(|r| dot(*r, *r));
         Self {
-            cross: pairs
-                .map(|pair| cross(pair[0], pair[1]))
-                .fold(f64::INFINITY, |least, own| own.least(least)),
+            cross: pairs.map(|pair| cross(pair[0], pair[1])).fold(f64::INFINITY, f64::min),
             determinant: 0.0,
             farthest: squares().fold(0.0, f64::max),
             total: squares().sum(),
         }
-    }
-}
-
-impl Extremes<Lanes> {
-    #[inline(always)]
-    fn prove(&self, size: f64) -> [bool; Lanes::WIDTH] {
-        std::array::from_fn(|lane| {
-            let of = |lanes: Lanes| lanes.0[lane];
-            let [cross, determinant, farthest, total] =
-                [self.cross, self.determinant, self.farthest, self.total].map(of);
-            Extremes { cross, determinant, farthest, total }.is_proven(size)
-        })
-    }
-}
-
-impl Extremes<f64> {
-    fn is_turned(&self, size: f64) -> bool {
-        !(self.cross > CROSS_MARGIN * size * self.farthest.sqrt() && self.total < f64::INFINITY)
-    }
-
-    fn margin(&self, size: f64) -> f64 {
-        DETERMINANT_MARGIN * size * self.farthest.sqrt() * self.farthest
-    }
-
-    #[inline(always)]
-    fn is_proven(&self, size: f64) -> bool {
-        !self.is_turned(size) && self.determinant > self.margin(size)
     }
 }
 
@@ -198,17 +212,20 @@ fn scan_cell(
     if ring.len() < if is_closed { 3 } else { 2 } {
         return None;
     }
-    let extremes = if is_closed { Extremes::of(&ring) } else { Extremes::of_open(&ring) };
-    if extremes.is_turned(size) {
+    let one = Scalar::new();
+    let coordinates: Vec<[f64; 2]> = ring.iter().map(|d| [d.x, d.y]).collect();
+    let extremes = if is_closed { Extremes::of(one, &coordinates) } else { Extremes::of_open(&ring) };
+    let [flat, tied] = extremes.margins(one, size);
+    if extremes.cross.partial_cmp(&flat) != Some(Ordering::Greater) || !extremes.total.is_finite() {
         return None;
     }
-    let lifted = |m: usize| (ring[m % ring.len()], dot(ring[m % ring.len()], ring[m % ring.len()]));
+    let lifted = |m: usize| Lifted::new(one, coordinates[m % ring.len()]);
     // The edges of the hull are between no two triangles.
     let inner = if is_closed { 0..ring.len() } else { 1..ring.len() - 1 };
     for (m, h) in inner.clone().zip(tessellation.ring(cell).skip(inner.start)) {
         let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(lifted);
-        let (first, second) = (cross(before.0, here.0), cross(here.0, after.0));
-        if determinant(before, here, after, first, second) <= extremes.margin(size) {
+        let crosses = [before.cross(one, here), here.cross(one, after)];
+        if determinant(one, [before, here, after], crosses) <= tied {
             let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);
             // Each edge from one end only.
             if (other, image) > (cell as u32, [0, 0]) {
@@ -220,47 +237,35 @@ fn scan_cell(
 }
 
 /// A neighbour relative to the cell, and the square of its distance.
-type Lifted<S> = (Vector<S>, S);
+#[derive(Clone, Copy)]
+struct Lifted<S> {
+    at: [S; 2],
+    square: S,
+}
+
+impl<S: Copy> Lifted<S> {
+    #[inline(always)]
+    fn new<A: Simd<f64s = S>>(simd: A, at: [S; 2]) -> Self {
+        Self { at, square: simd.add_f64s(simd.mul_f64s(at[0], at[0]), simd.mul_f64s(at[1], at[1])) }
+    }
+
+    #[inline(always)]
+    fn cross<A: Simd<f64s = S>>(self, simd: A, other: Self) -> S {
+        let ([x, y], [u, v]) = (self.at, other.at);
+        simd.sub_f64s(simd.mul_f64s(x, v), simd.mul_f64s(y, u))
+    }
+}
 
 /// `a² (b × c) − b² (a × c) + c² (a × b)`, given the cross products of the two triangles (0, a, b) and (0, b, c): positive if
 /// the edge between them, from the cell at 0 to b, is a Delaunay edge. c then lies outside the circle through 0, a and b.
 #[inline(always)]
-fn determinant<S: Arithmetic>(
-    (a, a2): Lifted<S>,
-    (_, b2): Lifted<S>,
-    (c, c2): Lifted<S>,
-    a_cross_b: S,
-    b_cross_c: S,
+fn determinant<S: Copy, A: Simd<f64s = S>>(
+    simd: A,
+    [a, b, c]: [Lifted<S>; 3],
+    [a_cross_b, b_cross_c]: [S; 2],
 ) -> S {
-    a2 * b_cross_c - b2 * cross(a, c) + c2 * a_cross_b
-}
-
-/// Numbers with a smaller and a larger one of two; that of a NaN and a number is the number if the NaN comes first.
-trait Ordered: Arithmetic {
-    fn least(self, other: Self) -> Self;
-    fn most(self, other: Self) -> Self;
-}
-
-impl Ordered for f64 {
-    #[inline(always)]
-    fn least(self, other: Self) -> Self {
-        if self < other { self } else { other }
-    }
-
-    #[inline(always)]
-    fn most(self, other: Self) -> Self {
-        if self > other { self } else { other }
-    }
-}
-
-impl Ordered for Lanes {
-    #[inline(always)]
-    fn least(self, other: Self) -> Self {
-        self.with(other, f64::least)
-    }
-
-    #[inline(always)]
-    fn most(self, other: Self) -> Self {
-        self.with(other, f64::most)
-    }
+    let first = simd.mul_f64s(a.square, b_cross_c);
+    let second = simd.mul_f64s(b.square, a.cross(simd, c));
+    let third = simd.mul_f64s(c.square, a_cross_b);
+    simd.add_f64s(simd.sub_f64s(first, second), third)
 }

@@ -1,7 +1,7 @@
 //! Changed rings are put into the flat arrays.
 
 use super::diagonal::Site;
-use super::lawson::Lawson;
+use super::lawson::{Lawson, Part};
 use super::split::{CHUNK, by_cells};
 use crate::Tessellation;
 use rayon::prelude::*;
@@ -14,8 +14,6 @@ pub(super) struct Spare {
     neighbour: Vec<u32>,
     image: Vec<[i16; 2]>,
     twin_place: Vec<u32>,
-    /// The cells whose rings have changed, in rising order: all is copied in runs between them.
-    changed: Vec<u32>,
     /// Whether the ring of a neighbour has changed, of each cell.
     beside: Vec<bool>,
 }
@@ -32,25 +30,24 @@ struct Stretch<'a> {
 impl Spare {
     /// Replaces the rings of a tessellation that flips have changed.
     pub fn splice(&mut self, tessellation: &mut Tessellation, changes: &Lawson) {
-        if changes.touched().is_empty() {
-            return;
-        }
         let cells = tessellation.len();
-        self.changed.clear();
-        self.changed.extend_from_slice(changes.touched());
-        self.changed.sort_unstable();
         self.beside.resize(cells, false);
-        for cell in &self.changed {
+        let mut any = false;
+        for cell in changes.parts().iter().flat_map(Part::touched) {
+            any = true;
             for (other, _) in changes.ring(*cell as usize).unwrap_or_default() {
                 self.beside[*other as usize] = true;
             }
+        }
+        if !any {
+            return;
         }
         self.begin_chunks(tessellation, changes);
         let half_edges = self.start[cells] as usize;
         self.neighbour.resize(half_edges, 0);
         self.image.resize(half_edges, [0, 0]);
         self.twin_place.resize(half_edges, 0);
-        let Self { start, neighbour, image, twin_place, changed, beside } = self;
+        let Self { start, neighbour, image, twin_place, beside } = self;
         let move_over = MoveOver { old: tessellation, changes };
         let of_chunks = by_cells(neighbour, start)
             .into_par_iter()
@@ -62,8 +59,7 @@ impl Spare {
             .enumerate()
             .for_each(|(chunk, ((((neighbour, image), twin_place), start), beside))| {
                 let cells = chunk * CHUNK..chunk * CHUNK + start.len();
-                let place = |cell: usize| changed.partition_point(|&c| (c as usize) < cell);
-                let changed = &changed[place(cells.start)..place(cells.end)];
+                let changed = changes.parts()[chunk].touched();
                 let mut to = Stretch { start, neighbour, image, twin_place, beside };
                 move_over.cells(cells.clone(), changed, &mut to);
                 move_over.point_back(cells, &mut to);
@@ -78,14 +74,11 @@ impl Spare {
     fn begin_chunks(&mut self, tessellation: &Tessellation, changes: &Lawson) {
         let cells = tessellation.len();
         self.start.resize(cells + 1, 0);
-        let mut changed = self.changed.iter().map(|cell| *cell as usize).peekable();
+        let growth = changes.parts().iter().map(Part::growth).chain([0]);
         let mut by = 0;
-        for first in (0..cells).step_by(CHUNK).chain([cells]) {
-            while let Some(cell) = changed.next_if(|cell| *cell < first) {
-                let ring = changes.ring(cell).unwrap_or_default();
-                by += ring.len() as i32 - tessellation.ring(cell).len() as i32;
-            }
+        for (first, growth) in (0..cells).step_by(CHUNK).chain([cells]).zip(growth) {
             self.start[first] = tessellation.start[first].wrapping_add_signed(by);
+            by += growth;
         }
     }
 }
