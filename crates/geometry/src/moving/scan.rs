@@ -178,8 +178,9 @@ impl<S: Copy> Extremes<S> {
         let [flat, tied] = self.margins(simd, size);
         let turns = simd.sub_f64s(self.cross, flat);
         let opens = simd.sub_f64s(self.determinant, tied);
-        // A sum that is infinite or no number makes this no number.
-        simd.add_f64s(simd.min_f64s(turns, opens), simd.mul_f64s(self.total, simd.splat_f64s(0.0)))
+        // Where numbers are too large, or are none, this is none.
+        let sound = simd.mul_f64s(simd.add_f64s(self.total, opens), simd.splat_f64s(0.0));
+        simd.add_f64s(simd.min_f64s(turns, opens), sound)
     }
 }
 
