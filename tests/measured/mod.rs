@@ -101,12 +101,12 @@ impl Class {
             View::Whole => (0.0, side),
             View::Window => (UNSEEN, side + 2.0 * UNSEEN),
         };
-        let (effect, form) = match self.recipe.lack {
-            Lack::Nothing => (None, Form::InABox),
-            Lack::Effect => (Some(EFFECTS[seed as usize % EFFECTS.len()]), Form::InABox),
-            Lack::Ramp => (Some("p0_gradient"), Form::InAnOpenField { unseen: origin }),
+        let added = match self.recipe.lack {
+            Lack::Nothing => None,
+            Lack::Effect => Some((EFFECTS[seed as usize % EFFECTS.len()], Form::InABox)),
+            Lack::Ramp => Some(("p0_gradient", Form::InAnOpenField { unseen: origin })),
         };
-        let added = effect.map(|effect| (effect, form));
+        let effect = added.map(|(effect, _)| effect);
         let film = Film::new(whole, &parameters, driving, added, self.recipe.motion)?;
         let mut rng = Pcg64::seed_from_u64(self.stream(seed));
         let seen_from = Vector::new(origin, origin);

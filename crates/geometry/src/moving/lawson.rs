@@ -132,7 +132,7 @@ impl Lawson {
     /// The new ring of a cell, from its lowest neighbour on or along the hull, if flips have changed it.
     #[inline]
     pub fn ring(&self, cell: usize) -> Option<&[Site]> {
-        ring(&self.parts[cell / CHUNK], cell)
+        self.parts[cell / CHUNK].ring(cell)
     }
 
     /// Exchanges the diagonal between the first and the third of four counter-clockwise sites for the other. False if the
@@ -159,14 +159,6 @@ impl Lawson {
     }
 }
 
-#[inline]
-fn ring(part: &Part, cell: usize) -> Option<&[Site]> {
-    match part.slot[cell % CHUNK] {
-        UNTOUCHED => None,
-        slot => Some(&part.rings[slot as usize]),
-    }
-}
-
 impl Part {
     /// The cells whose rings have changed, in rising order once all is concluded.
     pub fn touched(&self) -> &[u32] {
@@ -176,6 +168,14 @@ impl Part {
     /// By how many half-edges there are more than before.
     pub fn growth(&self) -> i32 {
         self.growth
+    }
+
+    #[inline]
+    fn ring(&self, cell: usize) -> Option<&[Site]> {
+        match self.slot[cell % CHUNK] {
+            UNTOUCHED => None,
+            slot => Some(&self.rings[slot as usize]),
+        }
     }
 
     fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
@@ -247,7 +247,7 @@ impl Reach<'_> {
             }
             Some([site(if m == 0 { sides - 1 } else { m - 1 }), site(if m + 1 == sides { 0 } else { m + 1 })])
         };
-        match ring(&self.parts[cell / CHUNK - self.first], cell) {
+        match self.parts[cell / CHUNK - self.first].ring(cell) {
             Some(ring) => around(ring.len(), &|m| ring[m]),
             None => {
                 let ring = tessellation.ring(cell);

@@ -4,7 +4,7 @@ use super::diagonal::Site;
 use super::hull::turns_once;
 use super::split::CHUNK;
 use crate::domain::MOST_BOXES;
-use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector, cross, dot};
+use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use rayon::prelude::*;
 use std::cmp::Ordering;
@@ -95,13 +95,13 @@ impl WithSimd for Proof<'_> {
     fn with_simd<A: Simd>(self, simd: A) {
         let zero = Lanes::constant(0.0);
         let mut ring = [Vector::new(zero, zero); BySides::MOST_SIDES];
-        let mut registers = [[simd.splat_f64s(0.0); 2]; BySides::MOST_SIDES];
+        let mut registers = [Lifted::new(simd, [simd.splat_f64s(0.0); 2]); BySides::MOST_SIDES];
         for sides in 3..=BySides::MOST_SIDES {
             for batch in self.by_sides.batches(sides) {
                 batch.fill_ring(self.positions, &mut ring[..sides], Lanes::put);
-                let proofs = proofs(simd, &ring[..sides], &mut registers[..sides], self.size);
+                let proven = prove(simd, &ring[..sides], &mut registers[..sides], self.size);
                 batch.each(|lane, cell| {
-                    if proofs[lane].is_none_or(|proof| proof <= 0.0) {
+                    if !proven[lane] {
                         self.doubtful.push(cell);
                     }
                 });
@@ -110,25 +110,26 @@ impl WithSimd for Proof<'_> {
     }
 }
 
-/// The proofs of several rings, in as many registers as they fill.
+/// Which of several rings are proven, in as many registers as they fill.
 #[inline(always)]
-fn proofs<A: Simd>(
+fn prove<A: Simd>(
     simd: A,
     ring: &[Vector<Lanes>],
-    registers: &mut [[A::f64s; 2]],
+    registers: &mut [Lifted<A::f64s>],
     size: f64,
-) -> [Option<f64>; Lanes::WIDTH] {
+) -> [bool; Lanes::WIDTH] {
     let mut proofs = [0.0; Lanes::WIDTH];
     for first in (0..Lanes::WIDTH).step_by(A::F64_LANES) {
         let lanes = first..(first + A::F64_LANES).min(Lanes::WIDTH);
         for (own, d) in registers.iter_mut().zip(ring) {
-            own[0] = simd.partial_load_f64s(&d.x.0[lanes.clone()]);
-            own[1] = simd.partial_load_f64s(&d.y.0[lanes.clone()]);
+            let x = simd.partial_load_f64s(&d.x.0[lanes.clone()]);
+            let y = simd.partial_load_f64s(&d.y.0[lanes.clone()]);
+            *own = Lifted::new(simd, [x, y]);
         }
         let proof = Extremes::of(simd, registers).proof(simd, size);
         simd.partial_store_f64s(&mut proofs[lanes], proof);
     }
-    proofs.map(|proof| (!proof.is_nan()).then_some(proof))
+    proofs.map(|proof| proof > 0.0)
 }
 
 /// What proves a ring: the smallest cross product of consecutive neighbours, the smallest in-circle determinant and the largest square of a
@@ -143,13 +144,13 @@ struct Extremes<S> {
 
 impl<S: Copy> Extremes<S> {
     #[inline(always)]
-    fn of<A: Simd<f64s = S>>(simd: A, ring: &[[S; 2]]) -> Self {
+    fn of<A: Simd<f64s = S>>(simd: A, ring: &[Lifted<S>]) -> Self {
         let (far, zero) = (simd.splat_f64s(f64::INFINITY), simd.splat_f64s(0.0));
         let mut extremes = Self { cross: far, determinant: far, farthest: zero, total: zero };
-        let [mut before, mut here] = [Lifted::new(simd, ring[ring.len() - 1]), Lifted::new(simd, ring[0])];
+        let (mut before, mut here) = (ring[ring.len() - 1], ring[0]);
         let mut first = before.cross(simd, here);
         for m in 0..ring.len() {
-            let after = Lifted::new(simd, ring[if m + 1 == ring.len() { 0 } else { m + 1 }]);
+            let after = ring[if m + 1 == ring.len() { 0 } else { m + 1 }];
             let second = here.cross(simd, after);
             extremes.cross = simd.min_f64s(second, extremes.cross);
             let determinant = determinant(simd, [before, here, after], [first, second]);
@@ -187,12 +188,12 @@ impl<S: Copy> Extremes<S> {
 impl Extremes<f64> {
     /// Of the ring of a cell on the hull, which goes from the next cell of the hull to the one before: where the hull is no longer convex there, the cross
     /// product of these two tells. Its edges are for [`scan_cell`].
-    fn of_open(ring: &[Vector<f64>]) -> Self {
+    fn of_open(one: Scalar, ring: &[Lifted<f64>]) -> Self {
         let ends = [ring[0], ring[ring.len() - 1]];
         let pairs = ring.windows(2).chain([&ends[..]]);
-        let squares = || ring.iter().map(|r| dot(*r, *r));
+        let squares = || ring.iter().map(|own| own.square);
         Self {
-            cross: pairs.map(|pair| cross(pair[0], pair[1])).fold(f64::INFINITY, f64::min),
+            cross: pairs.map(|pair| pair[0].cross(one, pair[1])).fold(f64::INFINITY, f64::min),
             determinant: 0.0,
             farthest: squares().fold(0.0, f64::max),
             total: squares().sum(),
@@ -208,23 +209,22 @@ fn scan_cell(
     cell: usize,
     suspects: &mut Vec<Edge>,
 ) -> Option<()> {
-    let ring: Vec<Vector<f64>> = tessellation.displacements(positions, cell).collect();
+    let one = Scalar::new();
+    let lifted = |d: Vector<f64>| Lifted::new(one, [d.x, d.y]);
+    let ring: Vec<Lifted<f64>> = tessellation.displacements(positions, cell).map(lifted).collect();
     let is_closed = tessellation.is_closed(cell);
     if ring.len() < if is_closed { 3 } else { 2 } {
         return None;
     }
-    let one = Scalar::new();
-    let coordinates: Vec<[f64; 2]> = ring.iter().map(|d| [d.x, d.y]).collect();
-    let extremes = if is_closed { Extremes::of(one, &coordinates) } else { Extremes::of_open(&ring) };
+    let extremes = if is_closed { Extremes::of(one, &ring) } else { Extremes::of_open(one, &ring) };
     let [flat, tied] = extremes.margins(one, size);
     if extremes.cross.partial_cmp(&flat) != Some(Ordering::Greater) || !extremes.total.is_finite() {
         return None;
     }
-    let lifted = |m: usize| Lifted::new(one, coordinates[m % ring.len()]);
     // The edges of the hull are between no two triangles.
     let inner = if is_closed { 0..ring.len() } else { 1..ring.len() - 1 };
     for (m, h) in inner.clone().zip(tessellation.ring(cell).skip(inner.start)) {
-        let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(lifted);
+        let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(|m| ring[m % ring.len()]);
         let crosses = [before.cross(one, here), here.cross(one, after)];
         if determinant(one, [before, here, after], crosses) <= tied {
             let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);

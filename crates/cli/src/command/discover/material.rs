@@ -64,18 +64,22 @@ impl Asked<'_> {
         let base = &raw.prepared.request.structure;
         let understood = self.understood(raw, base, progress).map_err(placed)?;
         let found = self.search(raw, self.surrounded(raw, data, understood)?, kept, progress)?;
+        let mut worse: Option<Searched> = None;
         for structure in extended(raw, &found.discovery) {
-            match self.understood(raw, &structure, progress) {
-                Ok(again) if !are_measured_alike(&again, &found.prepared) => {
-                    let again = self.search(raw, self.surrounded(raw, data, again)?, kept, progress)?;
-                    if again.predicts_better_than(&found) {
-                        return Ok(again);
-                    }
-                }
+            let again = match self.understood(raw, &structure, progress) {
+                Ok(again) => again,
                 Err(Error::Interrupted) => return Err(placed(Error::Interrupted)),
                 // Beside the effects the data do not tell how they were measured.
-                Ok(_) | Err(_) => {}
+                Err(_) => continue,
+            };
+            if worse.iter().chain([&found]).any(|known| are_measured_alike(&again, &known.prepared)) {
+                continue;
             }
+            let again = self.search(raw, self.surrounded(raw, data, again)?, kept, progress)?;
+            if again.predicts_better_than(&found) {
+                return Ok(again);
+            }
+            worse = Some(again);
         }
         Ok(found)
     }
@@ -132,19 +136,18 @@ impl Asked<'_> {
 /// what is wrong; with these in the model the idea would look right.
 fn extended(raw: &Raw, discovery: &Discovery) -> Vec<Structure> {
     let prepared = &raw.prepared;
-    let Some(first) = prepared.observations.first() else { return Vec::new() };
-    if prepared.tracks.is_some() {
-        return Vec::new();
-    }
-    let domain = first.tessellation.domain();
+    let domain = match prepared.observations.first() {
+        Some(frame) if prepared.tracks.is_none() => frame.tessellation.domain(),
+        _ => return Vec::new(),
+    };
     let anywhere = Environment::default().about(prepared.origin());
-    let found = discovery.columns_there(|effect| effect.columns(&anywhere, domain)).unwrap_or_default();
+    let there = discovery.columns_there(|effect| effect.columns(&anywhere, domain));
     // What has no columns shows no measurement in another light.
     let first = discovery.selected.iter().map(|own| own.columns.len()).find(|columns| *columns > 0);
-    let mut ends: Vec<usize> = first.into_iter().chain([found.len()]).collect();
+    let (Ok(all), Some(first)) = (there, first) else { return Vec::new() };
+    let mut ends = vec![first, all.len()];
     ends.dedup();
-    ends.retain(|end| (1..=found.len()).contains(end));
-    ends.into_iter().map(|end| prepared.request.structure.with(&found[..end])).collect()
+    ends.into_iter().map(|end| prepared.request.structure.with(&all[..end])).collect()
 }
 
 impl Searched {
