@@ -2,10 +2,15 @@
 
 use crate::Error;
 use crate::eigenpairs::{norm, orthonormal};
+use crate::number::Number;
 use crate::small_matrix::small_eigen;
 use faer::linalg::matmul::matmul;
-use faer::{Accum, Mat, Par};
+use faer::{Accum, ColMut, ColRef, Mat, MatRef, Par};
 use num_complex::Complex64;
+use rayon::prelude::*;
+
+/// Rows of the basis that are one task: results must not depend on the number of threads.
+const ROWS: usize = 4096;
 
 /// Which eigenvalues of the operator are wanted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -40,11 +45,12 @@ pub(crate) struct Ritz {
     pub vector: Vec<Complex64>,
 }
 
-/// The wanted eigenvalues, best first; those whose residual is above the tolerance did not converge in time.
-pub(crate) fn arnoldi(
+/// The wanted eigenvalues, best first; those whose residual is above the tolerance did not converge in time. For a real operator all is real
+/// but for what is returned.
+pub(crate) fn arnoldi<T: Number>(
     order: usize,
     settings: &Settings,
-    operator: &mut dyn FnMut(&[Complex64], &mut [Complex64]),
+    operator: &mut dyn FnMut(&[T], &mut [T]),
     restarted: &mut dyn FnMut(usize),
 ) -> Result<Vec<Ritz>, Error> {
     let count = settings.count.min(order);
@@ -67,22 +73,22 @@ pub(crate) fn arnoldi(
         }
         restarted(restart + 1);
         let kept = count + (dimension - count) / 2;
-        space.shrink(ritz.iter().take(kept).map(|(_, weights, _)| weights.as_slice()));
+        space.shrink(ritz.iter().take(kept).flat_map(|(_, weights, _)| T::span(weights)));
     }
     Err(Error::NoConvergence { order })
 }
 
 /// `A V = V H + v bᵀ` with orthonormal columns V and the next vector v behind them.
-struct Space {
-    basis: Mat<Complex64>,
+struct Space<T: Number> {
+    basis: Mat<T>,
     /// H, with bᵀ as its last row.
-    matrix: Mat<Complex64>,
+    matrix: Mat<T>,
     /// Columns that are in use.
     active: usize,
     seed: u64,
 }
 
-impl Space {
+impl<T: Number> Space<T> {
     fn new(order: usize, dimension: usize) -> Self {
         let mut space = Self {
             basis: Mat::zeros(order, dimension + 1),
@@ -97,60 +103,64 @@ impl Space {
     /// Puts a pseudo-random vector orthogonal to the columns before it.
     fn random_column(&mut self, column: usize) {
         let order = self.basis.nrows();
-        let mut vector: Vec<Complex64> = (0..order)
+        let mut vector: Vec<T> = (0..order)
             .map(|_| {
                 self.seed = self.seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
                 let mut bits = (self.seed ^ (self.seed >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
                 bits = (bits ^ (bits >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-                ((bits >> 11) as f64 / (1u64 << 53) as f64 - 0.5).into()
+                real((bits >> 11) as f64 / (1u64 << 53) as f64 - 0.5)
             })
             .collect();
         self.orthogonalise(column, &mut vector);
         let size = norm(&vector);
-        for (row, entry) in vector.iter().enumerate() {
-            self.basis[(row, column)] = if size > 0.0 { entry / size } else { Complex64::ZERO };
-        }
+        self.enter(column, &vector, if size > 0.0 { 1.0 / size } else { 0.0 });
     }
 
     /// Takes the first columns of the basis out of a vector, twice; their shares.
-    fn orthogonalise(&self, columns: usize, vector: &mut [Complex64]) -> Vec<Complex64> {
-        let mut total = vec![Complex64::ZERO; columns];
-        for _ in 0..2 {
-            for (k, total) in total.iter_mut().enumerate() {
-                let column = self.column(k);
-                let share: Complex64 = column.iter().zip(&*vector).map(|(v, x)| v.conj() * x).sum();
-                vector.iter_mut().zip(column).for_each(|(x, v)| *x -= share * v);
-                *total += share;
-            }
-        }
-        total
+    fn orthogonalise(&self, columns: usize, vector: &mut [T]) -> Mat<T> {
+        let basis = self.basis.as_ref().subcols(0, columns);
+        let rows = |task: usize, count: usize| basis.subrows(task * ROWS, count);
+        let sum = |parts: Vec<Mat<T>>| parts.into_iter().fold(Mat::zeros(columns, 1), |sum, part| sum + part);
+        let first = vector.par_chunks(ROWS).enumerate().map(|(task, x)| shares(rows(task, x.len()), x));
+        let first = sum(first.collect());
+        let second = vector.par_chunks_mut(ROWS).enumerate().map(|(task, x)| {
+            take_out(rows(task, x.len()), &first, x);
+            shares(rows(task, x.len()), x)
+        });
+        let second = sum(second.collect());
+        let tasks = vector.par_chunks_mut(ROWS).enumerate();
+        tasks.for_each(|(task, x)| take_out(rows(task, x.len()), &second, x));
+        first + second
     }
 
-    fn column(&self, index: usize) -> &[Complex64] {
-        let column: faer::ColRef<'_, Complex64> = self.basis.col(index);
+    fn column(&self, index: usize) -> &[T] {
+        let column: ColRef<'_, T> = self.basis.col(index);
         column.try_as_col_major().map_or(&[], |column| column.as_slice())
     }
 
+    /// Puts a multiple of a vector into a column.
+    fn enter(&mut self, column: usize, vector: &[T], factor: f64) {
+        for (row, entry) in vector.iter().enumerate() {
+            self.basis[(row, column)] = *entry * real::<T>(factor);
+        }
+    }
+
     /// Applies the operator until the space is full.
-    fn expand(&mut self, operator: &mut dyn FnMut(&[Complex64], &mut [Complex64])) {
+    fn expand(&mut self, operator: &mut dyn FnMut(&[T], &mut [T])) {
         let dimension = self.matrix.ncols();
-        let mut next = vec![Complex64::ZERO; self.basis.nrows()];
+        let mut next = vec![real(0.0); self.basis.nrows()];
         for column in self.active..dimension {
             operator(self.column(column), &mut next);
             let size = norm(&next);
             let shares = self.orthogonalise(column + 1, &mut next);
-            for (row, share) in shares.into_iter().enumerate() {
-                self.matrix[(row, column)] = share;
-            }
+            self.matrix.as_mut().submatrix_mut(0, column, column + 1, 1).copy_from(&shares);
             let left = norm(&next);
             // Nothing new to rounding: the space is invariant, and goes on elsewhere.
             if left <= 1e-14 * size {
                 self.random_column(column + 1);
             } else {
-                self.matrix[(column + 1, column)] = left.into();
-                for (row, entry) in next.iter().enumerate() {
-                    self.basis[(row, column + 1)] = entry / left;
-                }
+                self.matrix[(column + 1, column)] = real(left);
+                self.enter(column + 1, &next, 1.0 / left);
             }
         }
         self.active = dimension;
@@ -168,7 +178,8 @@ impl Space {
                 let size = norm(&weights);
                 let weights: Vec<Complex64> = weights.into_iter().map(|w| w / size).collect();
                 let last = weights.iter().enumerate();
-                let residual: Complex64 = last.map(|(k, w)| self.matrix[(dimension, k)] * w).sum();
+                let residual: Complex64 =
+                    last.map(|(k, w)| self.matrix[(dimension, k)].to_complex() * w).sum();
                 (value, weights, residual.norm())
             })
             .collect();
@@ -181,47 +192,60 @@ impl Space {
     fn combine(&self, weights: &[Complex64]) -> Vec<Complex64> {
         let mut vector = vec![Complex64::ZERO; self.basis.nrows()];
         for (k, weight) in weights.iter().enumerate() {
-            vector.iter_mut().zip(self.column(k)).for_each(|(x, v)| *x += weight * v);
+            vector.iter_mut().zip(self.column(k)).for_each(|(x, v)| *x += weight * v.to_complex());
         }
         vector
     }
 
     /// Restarts with the space that some vectors span.
-    fn shrink<'a>(&mut self, kept: impl Iterator<Item = &'a [Complex64]>) {
+    fn shrink(&mut self, kept: impl Iterator<Item = Vec<Complex64>>) {
         let dimension = self.matrix.ncols();
         // Vectors that coalesce are entered once.
-        let columns = orthonormal(kept.map(<[Complex64]>::to_vec), 1e-10);
+        let columns = orthonormal(kept, 1e-10);
         let count = columns.len();
-        let q = Mat::from_fn(dimension, count, |row, column| columns[column][row]);
-        let one = Complex64::ONE;
-        let mut product = Mat::zeros(dimension + 1, count);
-        matmul(product.as_mut(), Accum::Replace, self.matrix.as_ref(), q.as_ref(), one, Par::Seq);
+        let q = Mat::from_fn(dimension, count, |row, column| T::from_complex(columns[column][row]));
+        let product = times(self.matrix.as_ref(), q.as_ref());
         let mut inner = Mat::zeros(count, count);
-        matmul(
-            inner.as_mut(),
-            Accum::Replace,
-            q.adjoint(),
-            product.as_ref().subrows(0, dimension),
-            one,
-            Par::Seq,
-        );
-        let mut basis = Mat::zeros(self.basis.nrows(), count);
-        matmul(
-            basis.as_mut(),
-            Accum::Replace,
-            self.basis.as_ref().subcols(0, dimension),
-            q.as_ref(),
-            one,
-            Par::Seq,
-        );
-        let next = self.basis.col(dimension).to_owned();
-        self.matrix.fill(Complex64::ZERO);
-        self.matrix.as_mut().submatrix_mut(0, 0, count, count).copy_from(&inner);
-        for column in 0..count {
-            self.matrix[(count, column)] = product[(dimension, column)];
+        let (rows, one) = (product.as_ref().subrows(0, dimension), real(1.0));
+        matmul(inner.as_mut(), Accum::Replace, q.adjoint(), rows, one, Par::Seq);
+        for first in (0..self.basis.nrows()).step_by(ROWS) {
+            let rows = ROWS.min(self.basis.nrows() - first);
+            let rows = self.basis.as_mut().subrows_mut(first, rows);
+            let combined = times(rows.as_ref().subcols(0, dimension), q.as_ref());
+            rows.subcols_mut(0, count).copy_from(&combined);
         }
-        self.basis.as_mut().subcols_mut(0, count).copy_from(&basis);
+        let next = self.basis.col(dimension).to_owned();
+        self.matrix.fill(real(0.0));
+        self.matrix.as_mut().submatrix_mut(0, 0, count, count).copy_from(&inner);
+        self.matrix
+            .as_mut()
+            .submatrix_mut(count, 0, 1, count)
+            .copy_from(product.as_ref().subrows(dimension, 1));
         self.basis.as_mut().col_mut(count).copy_from(&next);
         self.active = count;
     }
+}
+
+fn real<T: Number>(value: f64) -> T {
+    T::from_complex(value.into())
+}
+
+fn times<T: Number>(a: MatRef<'_, T>, b: MatRef<'_, T>) -> Mat<T> {
+    let mut product = Mat::zeros(a.nrows(), b.ncols());
+    matmul(product.as_mut(), Accum::Replace, a, b, real(1.0), Par::Seq);
+    product
+}
+
+/// `Vᴴ x`
+fn shares<T: Number>(basis: MatRef<'_, T>, x: &[T]) -> Mat<T> {
+    let mut shares = Mat::zeros(basis.ncols(), 1);
+    let x = ColRef::from_slice(x).as_mat();
+    matmul(shares.as_mut(), Accum::Replace, basis.adjoint(), x, real(1.0), Par::Seq);
+    shares
+}
+
+/// `x − V s`
+fn take_out<T: Number>(basis: MatRef<'_, T>, shares: &Mat<T>, x: &mut [T]) {
+    let x = ColMut::from_slice_mut(x).as_mat_mut();
+    matmul(x, Accum::Add, basis, shares.as_ref(), real(-1.0), Par::Seq);
 }

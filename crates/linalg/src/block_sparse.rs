@@ -1,7 +1,11 @@
 //! Square sparse matrices of real 2 × 2 blocks.
 
 use crate::Error;
-use num_complex::Complex64;
+use rayon::prelude::*;
+use std::ops::{AddAssign, Mul};
+
+/// Rows of a product that are worth a task.
+const ROWS: usize = 1024;
 
 /// A square sparse matrix of real 2 × 2 blocks, in compressed rows. Row and column numbers count blocks.
 ///
@@ -18,6 +22,32 @@ pub struct BlockSparse {
     pub(crate) row_start: Vec<usize>,
     pub(crate) column: Vec<u32>,
     pub(crate) block: Vec<[f64; 4]>,
+}
+
+/// The blocks of a matrix column by column: their rows, and where they stand in it.
+#[derive(Debug)]
+pub(crate) struct Columns {
+    start: Vec<usize>,
+    row: Vec<u32>,
+    entry: Vec<u32>,
+}
+
+impl Columns {
+    /// Rows of the blocks of a column.
+    pub fn rows(&self, column: usize) -> &[u32] {
+        &self.row[self.start[column]..self.start[column + 1]]
+    }
+
+    /// The blocks of a column of the matrix.
+    pub fn of<'a>(
+        &'a self,
+        matrix: &'a BlockSparse,
+        column: usize,
+    ) -> impl Iterator<Item = (usize, &'a [f64; 4])> {
+        let range = self.start[column]..self.start[column + 1];
+        let blocks = self.entry[range.clone()].iter().map(|&entry| &matrix.block[entry as usize]);
+        self.row[range].iter().map(|&row| row as usize).zip(blocks)
+    }
 }
 
 impl BlockSparse {
@@ -58,53 +88,53 @@ impl BlockSparse {
         self.column[range.clone()].iter().map(|&column| column as usize).zip(&self.block[range])
     }
 
-    /// `y = A x`, both of the matrix' order.
-    pub fn apply(&self, x: &[f64], y: &mut [f64]) {
-        for (row, y) in y.chunks_exact_mut(2).enumerate().take(self.rows()) {
-            let (mut first, mut second) = (0.0, 0.0);
+    /// `y = A x`, both of the matrix' order and of real or complex numbers.
+    pub fn apply<T>(&self, x: &[T], y: &mut [T])
+    where
+        T: Copy + Default + AddAssign + Mul<f64, Output = T> + Send + Sync,
+    {
+        let rows = y.par_chunks_exact_mut(2).enumerate().take(self.rows()).with_min_len(ROWS);
+        rows.for_each(|(row, y)| {
+            let (mut first, mut second) = (T::default(), T::default());
             for (column, b) in self.row(row) {
                 let (p, q) = (x[2 * column], x[2 * column + 1]);
-                first += b[0] * p + b[1] * q;
-                second += b[2] * p + b[3] * q;
+                first += p * b[0];
+                first += q * b[1];
+                second += p * b[2];
+                second += q * b[3];
             }
             (y[0], y[1]) = (first, second);
-        }
-    }
-
-    /// `y = A x` for complex vectors.
-    pub fn apply_complex(&self, x: &[Complex64], y: &mut [Complex64]) {
-        for (row, y) in y.chunks_exact_mut(2).enumerate().take(self.rows()) {
-            let (mut first, mut second) = (Complex64::ZERO, Complex64::ZERO);
-            for (column, b) in self.row(row) {
-                let (p, q) = (x[2 * column], x[2 * column + 1]);
-                first += p * b[0] + q * b[1];
-                second += p * b[2] + q * b[3];
-            }
-            (y[0], y[1]) = (first, second);
-        }
+        });
     }
 
     /// The transposed matrix.
     #[must_use]
     pub fn transposed(&self) -> Self {
-        let mut row_start = vec![0; self.rows() + 1];
+        let Columns { start, row, entry } = self.columns();
+        let block = entry.iter().map(|&entry| self.block[entry as usize]);
+        let block = block.map(|[xx, xy, yx, yy]| [xx, yx, xy, yy]).collect();
+        Self { row_start: start, column: row, block }
+    }
+
+    /// Where the blocks of each column are.
+    pub(crate) fn columns(&self) -> Columns {
+        let mut start = vec![0; self.rows() + 1];
         for &column in &self.column {
-            row_start[column as usize + 1] += 1;
+            start[column as usize + 1] += 1;
         }
         for row in 0..self.rows() {
-            row_start[row + 1] += row_start[row];
+            start[row + 1] += start[row];
         }
-        let mut next = row_start.clone();
-        let mut column = vec![0; self.column.len()];
-        let mut block = vec![[0.0; 4]; self.block.len()];
+        let mut next = start.clone();
+        let (mut rows, mut entries) = (vec![0; self.column.len()], vec![0; self.column.len()]);
         for row in 0..self.rows() {
-            for (target, b) in self.row(row) {
-                column[next[target]] = row as u32;
-                block[next[target]] = [b[0], b[2], b[1], b[3]];
-                next[target] += 1;
+            for entry in self.row_start[row]..self.row_start[row + 1] {
+                let next = &mut next[self.column[entry] as usize];
+                (rows[*next], entries[*next]) = (row as u32, entry as u32);
+                *next += 1;
             }
         }
-        Self { row_start, column, block }
+        Columns { start, row: rows, entry: entries }
     }
 
     /// Largest sum of magnitudes in a row (the norm ‖A‖_∞): no eigenvalue is larger in magnitude.

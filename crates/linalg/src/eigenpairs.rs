@@ -1,6 +1,8 @@
 //! Eigenvalues with their vectors.
 
+use crate::number::Number;
 use crate::small_matrix::smallest_singular_value;
+use faer::ColRef;
 use num_complex::Complex64;
 
 /// Vectors that belong to eigenvalues, real ones stored as such and conjugate pairs once.
@@ -149,6 +151,6 @@ pub(crate) fn unit(mut vector: Vec<Complex64>) -> Vec<Complex64> {
     vector
 }
 
-pub(crate) fn norm(vector: &[Complex64]) -> f64 {
-    vector.iter().map(Complex64::norm_sqr).sum::<f64>().sqrt()
+pub(crate) fn norm<T: Number>(vector: &[T]) -> f64 {
+    ColRef::from_slice(vector).norm_l2()
 }

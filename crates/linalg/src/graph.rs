@@ -1,6 +1,7 @@
 //! Which unknowns of a sparse matrix are coupled.
 
 use crate::BlockSparse;
+use crate::block_sparse::Columns;
 
 /// A graph without directions: nodes and those they are coupled to, themselves perhaps among them.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -10,12 +11,17 @@ pub(crate) struct Graph {
 }
 
 impl Graph {
-    /// The block rows of a matrix, coupled where it or its transpose has a block.
-    pub fn of_blocks(matrix: &BlockSparse, transposed: &BlockSparse) -> Self {
+    /// The block rows of a matrix, given its columns, coupled where it or its transpose has a block.
+    pub fn of_blocks(matrix: &BlockSparse, columns: &Columns) -> Self {
         let mut graph = Self { start: vec![0], neighbour: Vec::new() };
+        let mut coupled = Vec::new();
         for node in 0..matrix.rows() {
-            let both = matrix.row(node).chain(transposed.row(node));
-            graph.neighbour.extend(both.map(|(other, _)| other as u32));
+            coupled.clear();
+            coupled.extend(matrix.row(node).map(|(other, _)| other as u32));
+            coupled.extend(columns.rows(node));
+            coupled.sort_unstable();
+            coupled.dedup();
+            graph.neighbour.extend(&coupled);
             graph.start.push(graph.neighbour.len());
         }
         graph

@@ -1,6 +1,8 @@
 //! Solving linear systems with a sparse matrix of 2 × 2 blocks, shifted.
 
-use crate::sparse_lu::{Number, Side, SparseLu};
+use crate::front_factor::Side;
+use crate::number::Number;
+use crate::sparse_lu::SparseLu;
 use crate::{BlockSparse, Complex64, Error};
 
 /// Real and complex numbers.

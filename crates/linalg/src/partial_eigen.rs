@@ -2,7 +2,9 @@
 
 use crate::arnoldi::{Preference, Ritz, Settings, arnoldi};
 use crate::eigenpairs::{Vectors, norm, unit};
-use crate::sparse_lu::{Number, Side, SparseLu};
+use crate::front_factor::Side;
+use crate::number::Number;
+use crate::sparse_lu::SparseLu;
 use crate::{BlockSparse, Eigenpairs, Error, Wanted};
 use num_complex::Complex64;
 
@@ -111,7 +113,7 @@ impl Search<'_> {
     fn outward(&self, progress: &mut Progress<'_>) -> Result<Vec<Ritz>, Error> {
         let settings = self.settings(Preference::LargestRealPart, OUTWARD_RESTARTS);
         progress("end of the spectrum", 0, OUTWARD_RESTARTS);
-        let apply = &mut |x: &[Complex64], y: &mut [Complex64]| self.matrix.apply_complex(x, y);
+        let apply = &mut |x: &[f64], y: &mut [f64]| self.matrix.apply(x, y);
         arnoldi(self.matrix.order(), &settings, apply, &mut |restart| {
             progress("end of the spectrum", restart, OUTWARD_RESTARTS);
         })
@@ -132,7 +134,14 @@ impl Search<'_> {
             }
             other => (other?, shift),
         };
-        let right = self.solve_side(&lu, Side::AsGiven, progress)?;
+        let (right, left) = rayon::join(
+            || self.solve_side(&lu, Side::AsGiven, progress),
+            || match self.wanted {
+                Wanted::RightAndLeft => self.solve_side(&lu, Side::Transposed, &mut |_, _, _| {}).map(Some),
+                Wanted::Values | Wanted::Right => Ok(None),
+            },
+        );
+        let (right, left) = (right?, left?);
         let order = self.matrix.order();
         let mut vectors = Vectors { order, ..Vectors::default() };
         let (mut values, mut residuals) = (Vec::new(), Vec::new());
@@ -174,8 +183,8 @@ impl Search<'_> {
             reach = reach.min(furthest);
         }
         let mut pairs = Eigenpairs { values, right: Some(vectors), left: None };
-        if self.wanted == Wanted::RightAndLeft {
-            pairs.left = Some(self.left_vectors(&lu, shift, &pairs.values, progress)?);
+        if let Some(left) = left {
+            pairs.left = Some(self.left_vectors(&left, shift, &pairs.values)?);
         }
         let mut found = PartialEigenpairs { pairs, residuals, shift, reach };
         found.nearest_only(self.count);
@@ -189,23 +198,21 @@ impl Search<'_> {
         progress: &mut Progress<'_>,
     ) -> Result<Vec<Ritz>, Error> {
         let settings = self.settings(Preference::LargestMagnitude, RESTARTS);
-        let stage = if side == Side::AsGiven { "modes" } else { "left modes" };
-        progress(stage, 0, RESTARTS);
-        let order = self.matrix.order();
-        arnoldi(order, &settings, &mut |x, y| T::solve_complex(lu, side, x, y), &mut |restart| {
-            progress(stage, restart, RESTARTS);
-        })
+        progress("modes", 0, RESTARTS);
+        let solve = &mut |x: &[T], y: &mut [T]| {
+            y.copy_from_slice(x);
+            lu.solve(side, y);
+        };
+        arnoldi(self.matrix.order(), &settings, solve, &mut |restart| progress("modes", restart, RESTARTS))
     }
 
     /// Left vectors of eigenvalues: conjugates of the right vectors of the transposed matrix.
-    fn left_vectors<T: Number>(
+    fn left_vectors(
         &self,
-        lu: &SparseLu<T>,
+        transposed: &[Ritz],
         shift: Complex64,
         values: &[Complex64],
-        progress: &mut Progress<'_>,
     ) -> Result<Vectors, Error> {
-        let transposed = self.solve_side(lu, Side::Transposed, progress)?;
         let order = self.matrix.order();
         let mut vectors = Vectors { order, ..Vectors::default() };
         for value in values {
@@ -221,7 +228,7 @@ impl Search<'_> {
     /// `xᴴ A x` of a unit vector, and its residual relative to the norm of the matrix.
     fn rayleigh(&self, x: &[Complex64]) -> (Complex64, f64) {
         let mut product = vec![Complex64::ZERO; x.len()];
-        self.matrix.apply_complex(x, &mut product);
+        self.matrix.apply(x, &mut product);
         let value: Complex64 = x.iter().zip(&product).map(|(x, y)| x.conj() * y).sum();
         product.iter_mut().zip(x).for_each(|(y, x)| *y -= value * x);
         (value, norm(&product) / self.matrix.norm().max(f64::MIN_POSITIVE))

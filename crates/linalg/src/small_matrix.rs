@@ -1,11 +1,14 @@
-//! Eigenvalues and singular values of small complex matrices.
+//! Eigenvalues and singular values of small matrices.
 
 use crate::Error;
+use crate::number::Number;
 use faer::{Mat, MatRef};
 use num_complex::Complex64;
 
-/// Eigenvalues and right vectors (columns) of a small complex matrix.
-pub(crate) fn small_eigen(matrix: MatRef<'_, Complex64>) -> Result<(Vec<Complex64>, Mat<Complex64>), Error> {
+/// Eigenvalues and right vectors (columns) of a small matrix; exact conjugates where it is real.
+pub(crate) fn small_eigen<T: Number>(
+    matrix: MatRef<'_, T>,
+) -> Result<(Vec<Complex64>, Mat<Complex64>), Error> {
     let order = matrix.nrows();
     let pairs = matrix.to_owned().eigen().map_err(|_| Error::NoConvergence { order })?;
     let values = pairs.S().column_vector();

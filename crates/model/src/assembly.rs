@@ -94,25 +94,24 @@ impl<S: Scalar> VelocityAssembly<S> {
                     passing.cells.push(cell as u32);
                     let sides = tessellation.ring(cell).zip(tessellation.twins(cell));
                     passing.forces.extend(sides.map(|(h, twin)| {
-                        *on_rings.get(twin.wrapping_sub(first)).unwrap_or(&on_rings[h - first])
+                        let [own, others] = [h, twin].map(|h| h.wrapping_sub(first));
+                        on_rings[if others < on_rings.len() { others } else { own }]
                     }));
                 });
             },
         );
         let (passing, begins) = (&self.passing, &self.begins);
         sums.par_chunks_mut(CHUNK).enumerate().for_each(|(chunk, sums)| {
-            let mut own = passing[chunk].forces.iter();
+            let mut own = 0;
             for &cell in &passing[chunk].cells {
                 let sum = &mut sums[cell as usize - chunk * CHUNK];
-                for (h, own) in tessellation.ring(cell as usize).zip(&mut own) {
+                for h in tessellation.ring(cell as usize) {
                     let other = tessellation.neighbour(h);
-                    *sum += match other / CHUNK == chunk {
-                        true => *own,
-                        false => {
-                            let begin = begins[other] as usize;
-                            passing[other / CHUNK].forces[begin + tessellation.twin_place(h)]
-                        }
-                    };
+                    // Which it is cannot be foreseen, so there is no branch.
+                    let passed = begins[other] as usize + tessellation.twin_place(h);
+                    let at = if other / CHUNK == chunk { own } else { passed };
+                    *sum += passing[other / CHUNK].forces[at];
+                    own += 1;
                 }
             }
         });
@@ -209,10 +208,14 @@ fn gather<S: Scalar>(
 ) {
     let first = tessellation.half_edge_start(cells.start);
     for (cell, sum) in cells.zip(sums) {
-        let mut total = *sum;
-        // Twins before the stretch are far beyond its end.
-        let mut written = tessellation.twins(cell).map(|twin| on_rings.get(twin.wrapping_sub(first)));
-        let complete = written.all(|of| of.inspect(|of| total += **of).is_some());
+        let (mut total, mut complete) = (*sum, true);
+        for twin in tessellation.twins(cell) {
+            // Twins before the stretch are far beyond its end.
+            let at = twin.wrapping_sub(first);
+            let is_here = at < on_rings.len();
+            complete &= is_here;
+            total += on_rings[if is_here { at } else { 0 }];
+        }
         if complete {
             *sum = total;
         } else {

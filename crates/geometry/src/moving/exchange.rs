@@ -1,7 +1,7 @@
 //! Cells come and go: what is around them is made anew, all else stays as it is.
 
 use super::lawson::Lawson;
-use super::splice::Spare;
+use super::splice::Splice;
 use super::{MovingTessellation, Renewal};
 use crate::builder::find_twins;
 use crate::domain::MOST_BOXES;
@@ -66,7 +66,7 @@ impl MovingTessellation {
             flips += lawson.flip_all(&next, positions).ok()?;
         }
         lawson.conclude(&next);
-        Spare::default().splice(&mut next, &lawson);
+        Splice::default().splice(&mut next, &lawson);
         Some((next, flips))
     }
 }

@@ -4,10 +4,11 @@
 //! concerns several waits until all have done. The order of flips does not matter: there is one Delaunay triangulation.
 
 use super::diagonal::{Site, is_delaunay};
-use super::scan::Edge;
+use super::scan::{Edge, Scan};
 use super::split::CHUNK;
 use crate::{Tessellation, Vector};
 use rayon::prelude::*;
+use smallvec::SmallVec;
 
 /// A cell that no flip has touched.
 const UNTOUCHED: u32 = u32::MAX;
@@ -15,7 +16,10 @@ const UNTOUCHED: u32 = u32::MAX;
 /// Flips per cell after which a triangulation is given up: a disordered one needs about one.
 const FLIPS_PER_CELL: usize = 50;
 
-/// The flips did not come to an end: rounding, or triangles that were turned over, or cells on a circle in an open field.
+/// The ring of a cell, mostly without memory of its own.
+pub(super) type Ring = SmallVec<[Site; 10]>;
+
+/// The flips did not come to an end: rounding, or triangles that are turned over, or cells on a circle in an open field.
 pub(super) struct Tangled;
 
 /// The rings that flips have changed, apart from the arrays of the tessellation. Memory is kept from call to call.
@@ -34,7 +38,7 @@ pub(super) struct Part {
     slot: Vec<u32>,
     /// The cells touched.
     touched: Vec<u32>,
-    rings: Vec<Vec<Site>>,
+    rings: Vec<Ring>,
     /// By how many half-edges there are more.
     growth: i32,
 }
@@ -54,44 +58,54 @@ struct Reach<'a> {
 }
 
 impl Lawson {
-    /// Flips until every edge is a Delaunay edge, given the edges of each [`CHUNK`] of cells that may not be. Returns the number of flips.
-    pub fn settle(
-        &mut self,
-        tessellation: &Tessellation,
-        positions: &[Vector<f64>],
-        suspects: &[Vec<Edge>],
-    ) -> Result<usize, Tangled> {
-        self.begin(tessellation.len());
-        let of_parts = self.parts.par_iter_mut().zip(&mut self.waiting).zip(suspects).enumerate();
+    /// Flips until every edge is a Delaunay edge. Returns the number of flips. Each part is flipped as soon as it was looked at.
+    pub fn settle(&mut self, scan: &Scan<'_>) -> Result<usize, Tangled> {
+        let Scan { tessellation, positions, .. } = *scan;
+        let cells = tessellation.len();
+        self.resize(cells);
+        let of_parts = self.parts.par_iter_mut().zip(&mut self.waiting).enumerate();
         let flips: Option<usize> = of_parts
-            .map(|(first, ((part, Waiting { queue, left }), suspects))| {
-                queue.extend(suspects.iter().rev());
+            .map(|(first, (part, waiting))| {
+                part.forget();
+                let Waiting { queue, left } = waiting;
+                queue.clear();
+                left.clear();
+                scan.suspects(first * CHUNK..((first + 1) * CHUNK).min(cells), queue)?;
+                queue.reverse();
                 let parts = std::slice::from_mut(part);
                 Reach { tessellation, first, parts }.flip_all(positions, queue, left).ok()
             })
             .sum();
-        let Some(flips) = flips else {
-            self.forget();
-            return Err(Tangled);
-        };
-        for waiting in self.waiting.iter_mut().rev() {
-            self.queue.extend(waiting.left.drain(..).rev());
+        let flips = flips.ok_or(Tangled)?;
+        for waiting in self.waiting.iter().rev() {
+            self.queue.extend(waiting.left.iter().rev());
         }
-        let more = self.flip_all(tessellation, positions)?;
-        self.conclude(tessellation);
-        Ok(flips + more)
+        let flips = flips + self.flip_all(tessellation, positions)?;
+        if flips > 0 {
+            self.conclude(tessellation);
+        }
+        Ok(flips)
     }
 
     /// Forgets all changes, of so many cells from now on.
     pub fn begin(&mut self, cells: usize) {
-        self.forget();
+        self.resize(cells);
+        self.parts.iter_mut().for_each(Part::forget);
+    }
+
+    fn resize(&mut self, cells: usize) {
         let parts = cells.div_ceil(CHUNK);
         self.parts.resize_with(parts, Part::default);
         self.waiting.resize_with(parts, Waiting::default);
-        for (k, part) in self.parts.iter_mut().enumerate() {
-            part.slot.resize(CHUNK.min(cells - k * CHUNK), UNTOUCHED);
-        }
         self.queue.clear();
+        let Some((last, full)) = self.parts.split_last_mut() else { return };
+        for (part, cells) in
+            full.iter_mut().map(|part| (part, CHUNK)).chain([(last, cells - CHUNK * (parts - 1))])
+        {
+            if part.slot.len() != cells {
+                *part = Part { slot: vec![UNTOUCHED; cells], ..Part::default() };
+            }
+        }
     }
 
     /// Flips until no edge is left that may not be a Delaunay edge.
@@ -101,11 +115,7 @@ impl Lawson {
         positions: &[Vector<f64>],
     ) -> Result<usize, Tangled> {
         let mut all = Reach { tessellation, first: 0, parts: &mut self.parts };
-        let flips = all.flip_all(positions, &mut self.queue, &mut Vec::new());
-        if flips.is_err() {
-            self.forget();
-        }
-        flips
+        all.flip_all(positions, &mut self.queue, &mut Vec::new())
     }
 
     /// Lets the rings that have changed begin as those of a tessellation do, and counts and orders them.
@@ -141,25 +151,19 @@ impl Lawson {
         Reach { tessellation, first: 0, parts: &mut self.parts }.flip(sites, &mut self.queue)
     }
 
-    pub(super) fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
+    pub(super) fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Ring {
         self.parts[cell as usize / CHUNK].touch(tessellation, cell)
-    }
-
-    /// Forgets all changes.
-    fn forget(&mut self) {
-        for part in &mut self.parts {
-            for cell in part.touched.drain(..) {
-                part.slot[cell as usize % CHUNK] = UNTOUCHED;
-            }
-        }
-        for Waiting { queue, left } in &mut self.waiting {
-            queue.clear();
-            left.clear();
-        }
     }
 }
 
 impl Part {
+    /// Forgets all changes.
+    fn forget(&mut self) {
+        for cell in self.touched.drain(..) {
+            self.slot[cell as usize % CHUNK] = UNTOUCHED;
+        }
+    }
+
     /// The cells whose rings have changed, in rising order once all is concluded.
     pub fn touched(&self) -> &[u32] {
         &self.touched
@@ -178,14 +182,14 @@ impl Part {
         }
     }
 
-    fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Vec<Site> {
+    fn touch(&mut self, tessellation: &Tessellation, cell: u32) -> &mut Ring {
         let slot = &mut self.slot[cell as usize % CHUNK];
         if *slot == UNTOUCHED {
             let next = self.touched.len();
             *slot = next as u32;
             self.touched.push(cell);
             if self.rings.len() == next {
-                self.rings.push(Vec::new());
+                self.rings.push(Ring::new());
             }
             let ring = tessellation.ring(cell as usize);
             let neighbours = tessellation.neighbour[ring.clone()].iter().copied();

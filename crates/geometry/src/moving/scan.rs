@@ -7,7 +7,9 @@ use crate::domain::MOST_BOXES;
 use crate::{Arithmetic, BySides, Domain, Lanes, Tessellation, Vector};
 use pulp::{Arch, Scalar, Simd, WithSimd};
 use rayon::prelude::*;
+use smallvec::SmallVec;
 use std::cmp::Ordering;
+use std::ops::Range;
 
 /// Bounds of the rounding errors of a cross product and of the in-circle determinant, in units of
 /// ε · (largest coordinate) · (length of the ring)^n. Four displacements, each rounded thrice at the size of the
@@ -22,65 +24,91 @@ pub(super) struct Edge {
     pub to: Site,
 }
 
-/// What a scan found.
-pub(super) enum Finding {
-    /// Every triangle is counter-clockwise. These edges of each [`CHUNK`] of cells are not, or to rounding not surely, Delaunay edges; all
-    /// others are. If there are none, the tessellation is that of the positions.
-    Suspects(Vec<Vec<Edge>>),
-    /// A triangle is turned over, or to rounding flat; or cells are too far from the box; or those of an open field have another hull.
-    Inverted,
-}
-
 /// Looks at every triangle and every edge of a tessellation.
 ///
 /// Triangles that are all counter-clockwise cover the torus once, because their images are those of a tessellation of it, and so they do the
-/// inside of a hull that they have as they had; edges that are all locally Delaunay then make the Delaunay triangulation. The pass is thus a proof.
-pub(super) fn scan(tessellation: &Tessellation, positions: &[Vector<f64>]) -> Finding {
-    let extent = positions
-        .par_chunks(CHUNK)
-        .map(|chunk| chunk.iter().map(|r| r.x.abs().max(r.y.abs())).fold(0.0, f64::max))
-        .reduce(|| 0.0, f64::max);
-    let size = match tessellation.domain() {
-        Domain::Periodic(cell_box) => {
-            let [width, height] = cell_box.lengths();
-            // Images are counted in 16 bits.
-            if extent > MOST_BOXES * width.min(height) {
-                return Finding::Inverted;
-            }
-            2.0 * extent + width + height + cell_box.offset().abs()
-        }
-        Domain::Open if turns_once(tessellation, positions) => 2.0 * extent,
-        Domain::Open => return Finding::Inverted,
-    };
-    let chunks = positions.len().div_ceil(CHUNK);
-    let findings: Option<Vec<Vec<Edge>>> = (0..chunks)
-        .into_par_iter()
-        .map(|chunk| {
-            let last = ((chunk + 1) * CHUNK).min(positions.len());
-            scan_cells(tessellation, positions, size, chunk * CHUNK..last)
-        })
-        .collect();
-    findings.map_or(Finding::Inverted, Finding::Suspects)
-}
-
-fn scan_cells(
-    tessellation: &Tessellation,
-    positions: &[Vector<f64>],
+/// inside of a hull that they have as they had; edges that are all locally Delaunay then make the Delaunay triangulation. A scan of all cells is thus a
+/// proof.
+pub(super) struct Scan<'a> {
+    pub tessellation: &'a Tessellation,
+    pub positions: &'a [Vector<f64>],
+    /// Of the numbers from which displacements are made.
     size: f64,
-    cells: std::ops::Range<usize>,
-) -> Option<Vec<Edge>> {
-    let by_sides = BySides::new(tessellation, cells);
-    let mut doubtful: Vec<usize> = by_sides.others().collect();
-    Arch::new().dispatch(Proof { by_sides: &by_sides, positions, size, doubtful: &mut doubtful });
-    doubtful.sort_unstable();
-    let mut suspects = Vec::new();
-    for cell in doubtful {
-        scan_cell(tessellation, positions, size, cell, &mut suspects)?;
-    }
-    Some(suspects)
 }
 
-/// Proves cells, and leaves the others to [`scan_cell`].
+impl<'a> Scan<'a> {
+    /// `None` if cells are too far from the box, or those of an open field have another hull.
+    pub fn new(tessellation: &'a Tessellation, positions: &'a [Vector<f64>]) -> Option<Self> {
+        let extent = positions.par_chunks(CHUNK).map(extent).reduce(|| 0.0, f64::max);
+        let size = match tessellation.domain() {
+            Domain::Periodic(cell_box) => {
+                let [width, height] = cell_box.lengths();
+                // Images are counted in 16 bits.
+                let is_near = extent <= MOST_BOXES * width.min(height);
+                is_near.then(|| 2.0 * extent + width + height + cell_box.offset().abs())?
+            }
+            Domain::Open => turns_once(tessellation, positions).then_some(2.0 * extent)?,
+        };
+        Some(Self { tessellation, positions, size })
+    }
+
+    /// Adds the edges of some cells that are not, or to rounding not surely, Delaunay edges. `None` if a triangle of theirs is turned over, or to
+    /// rounding flat. If no cell has a suspect, the tessellation is that of the positions.
+    pub fn suspects(&self, cells: Range<usize>, suspects: &mut Vec<Edge>) -> Option<()> {
+        let by_sides = BySides::new(self.tessellation, cells);
+        let mut doubtful: Vec<usize> = by_sides.others().collect();
+        let (positions, size) = (self.positions, self.size);
+        Arch::new().dispatch(Proof { by_sides: &by_sides, positions, size, doubtful: &mut doubtful });
+        doubtful.sort_unstable();
+        doubtful.into_iter().try_for_each(|cell| self.suspects_of(cell, suspects))
+    }
+
+    fn suspects_of(&self, cell: usize, suspects: &mut Vec<Edge>) -> Option<()> {
+        let one = Scalar::new();
+        let lifted = |d: Vector<f64>| Lifted::new(one, [d.x, d.y]);
+        let tessellation = self.tessellation;
+        let ring: SmallVec<[Lifted<f64>; 16]> =
+            tessellation.displacements(self.positions, cell).map(lifted).collect();
+        let is_closed = tessellation.is_closed(cell);
+        if ring.len() < if is_closed { 3 } else { 2 } {
+            return None;
+        }
+        let extremes = if is_closed { Extremes::of(one, &ring) } else { Extremes::of_open(one, &ring) };
+        let [flat, tied] = extremes.margins(one, self.size);
+        if extremes.cross.partial_cmp(&flat) != Some(Ordering::Greater) || !extremes.total.is_finite() {
+            return None;
+        }
+        // The edges of the hull are between no two triangles.
+        let inner = if is_closed { 0..ring.len() } else { 1..ring.len() - 1 };
+        for (m, h) in inner.clone().zip(tessellation.ring(cell).skip(inner.start)) {
+            let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(|m| ring[m % ring.len()]);
+            let crosses = [before.cross(one, here), here.cross(one, after)];
+            if determinant(one, [before, here, after], crosses) <= tied {
+                let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);
+                // Each edge from one end only.
+                if (other, image) > (cell as u32, [0, 0]) {
+                    suspects.push(Edge { from: cell as u32, to: (other, image) });
+                }
+            }
+        }
+        Some(())
+    }
+}
+
+/// The largest coordinate, in eight maxima side by side.
+fn extent(positions: &[Vector<f64>]) -> f64 {
+    let mut most = [[0.0; 2]; 4];
+    for four in positions.chunks(most.len()) {
+        for (most, r) in most.iter_mut().zip(four) {
+            for (most, x) in most.iter_mut().zip([r.x.abs(), r.y.abs()]) {
+                *most = if x > *most { x } else { *most };
+            }
+        }
+    }
+    most.into_iter().flatten().fold(0.0, f64::max)
+}
+
+/// Proves cells, and leaves the others to [`Scan::suspects_of`].
 struct Proof<'a> {
     by_sides: &'a BySides<'a>,
     positions: &'a [Vector<f64>],
@@ -187,7 +215,7 @@ impl<S: Copy> Extremes<S> {
 
 impl Extremes<f64> {
     /// Of the ring of a cell on the hull, which goes from the next cell of the hull to the one before: where the hull is no longer convex there, the cross
-    /// product of these two tells. Its edges are for [`scan_cell`].
+    /// product of these two tells. Its edges are for [`Scan::suspects_of`].
     fn of_open(one: Scalar, ring: &[Lifted<f64>]) -> Self {
         let ends = [ring[0], ring[ring.len() - 1]];
         let pairs = ring.windows(2).chain([&ends[..]]);
@@ -199,42 +227,6 @@ impl Extremes<f64> {
             total: squares().sum(),
         }
     }
-}
-
-/// Finds the suspects among the edges of one cell.
-fn scan_cell(
-    tessellation: &Tessellation,
-    positions: &[Vector<f64>],
-    size: f64,
-    cell: usize,
-    suspects: &mut Vec<Edge>,
-) -> Option<()> {
-    let one = Scalar::new();
-    let lifted = |d: Vector<f64>| Lifted::new(one, [d.x, d.y]);
-    let ring: Vec<Lifted<f64>> = tessellation.displacements(positions, cell).map(lifted).collect();
-    let is_closed = tessellation.is_closed(cell);
-    if ring.len() < if is_closed { 3 } else { 2 } {
-        return None;
-    }
-    let extremes = if is_closed { Extremes::of(one, &ring) } else { Extremes::of_open(one, &ring) };
-    let [flat, tied] = extremes.margins(one, size);
-    if extremes.cross.partial_cmp(&flat) != Some(Ordering::Greater) || !extremes.total.is_finite() {
-        return None;
-    }
-    // The edges of the hull are between no two triangles.
-    let inner = if is_closed { 0..ring.len() } else { 1..ring.len() - 1 };
-    for (m, h) in inner.clone().zip(tessellation.ring(cell).skip(inner.start)) {
-        let [before, here, after] = [m + ring.len() - 1, m, m + 1].map(|m| ring[m % ring.len()]);
-        let crosses = [before.cross(one, here), here.cross(one, after)];
-        if determinant(one, [before, here, after], crosses) <= tied {
-            let (other, image) = (tessellation.neighbour[h], tessellation.image[h]);
-            // Each edge from one end only.
-            if (other, image) > (cell as u32, [0, 0]) {
-                suspects.push(Edge { from: cell as u32, to: (other, image) });
-            }
-        }
-    }
-    Some(())
 }
 
 /// A neighbour relative to the cell, and the square of its distance.

@@ -1,7 +1,7 @@
 //! Cells are taken out of a triangulation and put into one.
 
 use super::diagonal::Site;
-use super::lawson::Lawson;
+use super::lawson::{Lawson, Ring};
 use super::scan::Edge;
 use crate::{Tessellation, Vector, cross};
 
@@ -138,7 +138,7 @@ impl Lawson {
             self.queue.push(Edge { from: from.0, to: seen_from(from, to) });
         }
         let corners = within.map(|[from, _]| seen_from(cell, from));
-        *self.touch(tessellation, cell.0) = corners.to_vec();
+        *self.touch(tessellation, cell.0) = Ring::from_slice(&corners);
         Some(())
     }
 }

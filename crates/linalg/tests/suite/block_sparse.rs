@@ -12,7 +12,7 @@ fn the_product_is_that_of_the_dense_matrix() {
     let complex: Vec<Complex64> = x.iter().map(|&x| Complex64::new(x, -2.0 * x)).collect();
     let (mut y, mut z) = (vec![0.0; n], vec![Complex64::ZERO; n]);
     matrix.apply(&x, &mut y);
-    matrix.apply_complex(&complex, &mut z);
+    matrix.apply(&complex, &mut z);
     for row in 0..n {
         let expected: f64 = (0..n).map(|column| dense[row * n + column] * x[column]).sum();
         assert!((y[row] - expected).abs() < 1e-12);

@@ -35,7 +35,7 @@ fn the_nearest_are_those_of_the_dense_matrix() {
             assert!(found.residuals[k] < 1e-10);
             let (value, y) = (found.pairs.values[k], found.pairs.left(k).unwrap());
             let mut product = vec![Complex64::ZERO; order];
-            matrix.transposed().apply_complex(&y, &mut product);
+            matrix.transposed().apply(&y, &mut product);
             let off: f64 = (0..order).map(|i| (product[i] - value.conj() * y[i]).norm()).sum();
             assert!(off < 1e-7, "{off:e}");
             assert!(found.pairs.condition(k, 0.0).unwrap() > 1.0 - 1e-9);

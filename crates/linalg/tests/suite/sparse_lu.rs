@@ -22,7 +22,7 @@ fn solutions_satisfy_real_and_complex_equations_and_their_transposes() {
                     [(&vectors[0], &matrix, *value), (&vectors[1], &transposed, value.conj())]
                 {
                     let mut product = vec![Complex64::ZERO; n];
-                    matrix.apply_complex(x, &mut product);
+                    matrix.apply(x, &mut product);
                     let worst = (0..n).map(|i| (product[i] - value * x[i]).norm()).fold(0.0, f64::max);
                     assert!(worst < 1e-11, "{side} {shift} {worst:e}");
                 }
