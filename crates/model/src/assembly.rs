@@ -74,7 +74,10 @@ impl<S: Scalar> VelocityAssembly<S> {
         if cells <= CHUNK {
             self.on_rings.resize(tessellation.half_edges(), nan);
             elements(0..cells, &mut self.on_rings, sums);
-            return gather(tessellation, 0..cells, &self.on_rings, sums, |_| {});
+            for (cell, sum) in sums.iter_mut().enumerate() {
+                *sum = tessellation.twins(cell).fold(*sum, |sum, twin| sum + self.on_rings[twin]);
+            }
+            return;
         }
         self.begins.resize(cells, 0);
         self.passing.resize_with(cells.div_ceil(CHUNK), Passing::default);

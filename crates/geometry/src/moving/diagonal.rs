@@ -25,14 +25,51 @@ pub(super) fn is_delaunay(positions: &[Vector<f64>], domain: &Domain, sites: [Si
         let image = [image[0] - x, image[1] - y];
         domain.displacement(positions[origin as usize], positions[cell as usize], image)
     });
-    let coordinates = at.map(|r| Coord { x: r.x, y: r.y });
-    let inside = match incircle(coordinates[0], coordinates[1], coordinates[2], coordinates[3]) {
+    let inside = match of_mirror_images(at).unwrap_or_else(|| {
+        let [a, b, c, d] = at.map(|r| Coord { x: r.x, y: r.y });
+        incircle(a, b, c, d)
+    }) {
         0.0 if matches!(domain, Domain::Open) => return None,
         0.0 => tie(ordered.map(|(cell, _)| cell), at),
         sign => sign,
     };
     // Going on by one site is an odd permutation of the rows of the determinant.
     Some(if first % 2 == 0 { inside <= 0.0 } else { inside >= 0.0 })
+}
+
+/// The sign of the in-circle determinant of four points, the first of which is the origin, if two of them are exactly as far along an axis as the
+/// other two are each: so it is with two cells and their images in a wall, in every step.
+///
+/// A circle through (0, 0), (w, 0) and (a, b) has the power `(c − a)(c + a − w)` at (c, b), of which the sign needs no more than one rounding error.
+fn of_mirror_images(at: [Vector<f64>; 4]) -> Option<f64> {
+    [1, 0].into_iter().find_map(|axis| {
+        let beside = (1..4).find(|&k| at[k][axis] == 0.0)?;
+        let [one, other] = [[2, 3], [1, 3], [1, 2]][beside - 1];
+        let height = at[one][axis];
+        if height == 0.0 || height != at[other][axis] {
+            return None;
+        }
+        let [w, a, c] = [beside, one, other].map(|k| at[k][1 - axis]);
+        let power = sign(c - a) * sign_of_sum(c, a, w);
+        // By the order of the points and by that of the axes.
+        let turned = if (beside == 2) == (axis == 0) { -1.0 } else { 1.0 };
+        Some(turned * sign(w) * sign(height) * power)
+    })
+}
+
+/// −1, 0 or 1.
+fn sign(x: f64) -> f64 {
+    f64::from(i8::from(x > 0.0) - i8::from(x < 0.0))
+}
+
+/// The sign of `a + b − c`.
+fn sign_of_sum(a: f64, b: f64, c: f64) -> f64 {
+    let sum = a + b;
+    if sum != c {
+        return sign(sum - c);
+    }
+    let of_b = sum - a;
+    sign((a - (sum - of_b)) + (b - of_b))
 }
 
 /// The sign of the determinant of four sites on one circle after the infinitesimal displacements.

@@ -1,7 +1,7 @@
 //! Which diagonal of a quadrilateral is an edge, whatever the numbers of its cells and wherever they come from.
 
-use crate::samples::{periodic, squares};
-use voronudge_geometry::{Domain, MovingTessellation, PeriodicBox, Renewal, Tessellation, Vector};
+use crate::samples::{periodic, random, squares};
+use voronudge_geometry::{Domain, Error, MovingTessellation, PeriodicBox, Renewal, Tessellation, Vector};
 
 /// Four cells, the first, in a disordered tissue with room for them.
 fn among_others(four: [Vector<f64>; 4]) -> Vec<Vector<f64>> {
@@ -78,4 +78,43 @@ fn images_of_one_cell_on_a_circle_are_decided_too() {
             assert!(*moving.tessellation() == expected, "{lengths:?} {offset}");
         }
     }
+}
+
+/// Two cells beside a wall and their images lie on a circle, but for rounding, which an exact predicate of another library decides.
+#[test]
+fn mirror_images_get_the_diagonal_that_exact_arithmetic_gives_them() -> Result<(), Error> {
+    let mut beside_walls = 0;
+    for (seed, axis) in [(1, 0), (2, 1), (3, 0), (4, 1)] {
+        let mut positions = random(60, [6.0, 10.0], seed);
+        let cells = positions.len();
+        positions.extend_from_within(..);
+        positions[cells..].iter_mut().for_each(|r| r[axis] = -r[axis]);
+        let mut lengths = [6.0, 10.0];
+        lengths[axis] *= 2.0;
+        let domain = periodic(lengths)?;
+        let tessellation = Tessellation::new(&positions, domain)?;
+        for cell in 0..positions.len() {
+            let ring: Vec<usize> = tessellation.ring(cell).collect();
+            for m in 0..ring.len() {
+                let site = |h: usize| (tessellation.neighbour(h), tessellation.image(h));
+                let [before, to, after] = [m + ring.len() - 1, m, m + 1].map(|m| site(ring[m % ring.len()]));
+                let mut sites = [(cell, [0, 0]), before, to, after];
+                let first = (0..4).min_by_key(|k| sites[*k]).unwrap();
+                sites.rotate_left(first);
+                let (origin, [x, y]) = sites[0];
+                let [a, b, c, d] = sites.map(|(other, image)| {
+                    let image = [image[0] - x, image[1] - y];
+                    let r = domain.displacement(positions[origin], positions[other], image);
+                    robust::Coord { x: r.x, y: r.y }
+                });
+                let inside = robust::incircle(a, b, c, d);
+                assert!(if first % 2 == 0 { inside <= 0.0 } else { inside >= 0.0 }, "{sites:?}");
+                let mut own = sites.map(|site| site.0 % cells);
+                own.sort_unstable();
+                beside_walls += usize::from(own[0] == own[1] && own[2] == own[3]);
+            }
+        }
+    }
+    assert!(beside_walls > 100, "{beside_walls}");
+    Ok(())
 }
