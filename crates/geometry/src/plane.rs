@@ -141,6 +141,41 @@ impl<S: Arithmetic> Corner<S> {
         }
         [on_a, on_b]
     }
+
+    /// The blocks of [`Corner::pull_back_slopes`], transposed, applied to `u`: by a and by b, how `g_a·u_a + g_b·u_b` changes at fixed `u`.
+    ///
+    /// With `α = (a − c)·u_a`, `β = (b − c)·u_b`, `v = s_a u_a + s_b u_b` and `w = α b − β a`,
+    ///
+    /// ```text
+    /// by a:   k (u_a × w) w_a + (s_a α + s_b β) k ẑ×b − β k ẑ×f − (∂c/∂a)ᵀ v + s_a u_a
+    /// by b:   k (u_b × w) w_b − (s_a α + s_b β) k ẑ×a + α k ẑ×f − (∂c/∂b)ᵀ v + s_b u_b
+    /// ```
+    ///
+    /// where the first terms have the `u_a ⊗ w_a` and `u_b ⊗ w_b` of the slopes.
+    #[inline(always)]
+    pub fn pull_back_slopes_transposed(
+        &self,
+        f: Vector<S>,
+        slopes: [Outer<S>; 2],
+        u: [Vector<S>; 2],
+    ) -> [Vector<S>; 2] {
+        let (a, b, k) = (self.a, self.b, self.inverse_cross);
+        let ([by_a, by_b], [c_by_a, c_by_b], [u_a, u_b]) = (slopes, self.centre_slopes(), u);
+        let (s_a, s_b) = (cross(f, b) * k, cross(a, f) * k);
+        let (alpha, beta) = (dot(a - self.centre, u_a), dot(b - self.centre, u_b));
+        let (pulled_a, pulled_b) = (u_a * s_a, u_b * s_b);
+        let (between, pulled) = (b * alpha - a * beta, pulled_a + pulled_b);
+        let sum = s_a * alpha + s_b * beta;
+        let on_a = by_a.row * (cross(by_a.column, between) * k)
+            + (quarter_turn(b) * sum - quarter_turn(f) * beta) * k
+            - c_by_a.row * dot(c_by_a.column, pulled)
+            + pulled_a;
+        let on_b = by_b.row * (cross(by_b.column, between) * k)
+            + (quarter_turn(f) * alpha - quarter_turn(a) * sum) * k
+            - c_by_b.row * dot(c_by_b.column, pulled)
+            + pulled_b;
+        [on_a, on_b]
+    }
 }
 
 /// How [`side_direction`] changes with the neighbour: `∂t/∂d = −(d/d²) ⊗ t`.

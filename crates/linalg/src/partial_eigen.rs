@@ -112,10 +112,10 @@ impl Search<'_> {
 
     fn outward(&self, progress: &mut Progress<'_>) -> Result<Vec<Ritz>, Error> {
         let settings = self.settings(Preference::LargestRealPart, OUTWARD_RESTARTS);
-        progress("end of the spectrum", 0, OUTWARD_RESTARTS);
+        progress("end of the spectrum", 0, 100);
         let apply = &mut |x: &[f64], y: &mut [f64]| self.matrix.apply(x, y);
-        arnoldi(self.matrix.order(), &settings, apply, &mut |restart| {
-            progress("end of the spectrum", restart, OUTWARD_RESTARTS);
+        arnoldi(self.matrix.order(), &settings, apply, &mut |done| {
+            progress("end of the spectrum", done, 100);
         })
     }
 
@@ -198,12 +198,12 @@ impl Search<'_> {
         progress: &mut Progress<'_>,
     ) -> Result<Vec<Ritz>, Error> {
         let settings = self.settings(Preference::LargestMagnitude, RESTARTS);
-        progress("modes", 0, RESTARTS);
+        progress("modes", 0, 100);
         let solve = &mut |x: &[T], y: &mut [T]| {
             y.copy_from_slice(x);
             lu.solve(side, y);
         };
-        arnoldi(self.matrix.order(), &settings, solve, &mut |restart| progress("modes", restart, RESTARTS))
+        arnoldi(self.matrix.order(), &settings, solve, &mut |done| progress("modes", done, 100))
     }
 
     /// Left vectors of eigenvalues: conjugates of the right vectors of the transposed matrix.

@@ -5,7 +5,6 @@ use crate::element_jacobian::{BlockOf, ByShape, ElementJacobian, along, seeded};
 use crate::ring_jacobian::RingJacobian;
 use crate::{Model, VertexForces, WeightedTerm};
 use pulp::{Arch, Simd, WithSimd};
-use std::ops::Range;
 use voronudge_geometry::{Arithmetic, BySides, CellPolygon, Lanes, Shape, Tangent, Tessellation, Vector};
 
 /// The derivatives of the elements that act on some cells: their own, and those of their neighbours.
@@ -30,7 +29,7 @@ impl<'a> ElementBlocks<'a> {
     }
 
     /// Differentiates the elements that act on some cells.
-    pub fn evaluate(&mut self, cells: Range<usize>) {
+    pub fn evaluate(&mut self, own: &[u32]) {
         let tessellation = self.work.tessellation;
         self.cells.clear();
         self.start.clear();
@@ -44,8 +43,8 @@ impl<'a> ElementBlocks<'a> {
                 total += (tessellation.neighbours(cell as usize).len() as u32 + 1).pow(2);
             }
         };
-        cells.clone().for_each(|cell| enter(cell as u32));
-        cells.flat_map(|cell| tessellation.neighbours(cell)).for_each(|&cell| enter(cell));
+        own.iter().for_each(|&cell| enter(cell));
+        own.iter().flat_map(|&cell| tessellation.neighbours(cell as usize)).for_each(|&cell| enter(cell));
         self.blocks.resize(total as usize, [0.0; 4]);
         let Self { work, cells, start, number, blocks } = self;
         for cells in cells.chunks(BySides::MOST_CELLS) {

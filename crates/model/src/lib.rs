@@ -52,6 +52,7 @@ mod stress;
 mod structure;
 mod term;
 mod term_jacobian;
+mod tiles;
 mod transition;
 mod velocities;
 

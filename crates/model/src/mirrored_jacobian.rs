@@ -30,7 +30,7 @@ pub fn jacobian_with_images(
     let mut rows: Vec<Vec<(u32, Block)>> = vec![Vec::new(); cells];
     for first in (0..cells).step_by(CHUNK) {
         let owners = first..(first + CHUNK).min(cells);
-        elements.evaluate(owners.clone());
+        elements.evaluate(&owners.clone().map(|owner| owner as u32).collect::<Vec<_>>());
         for owner in owners {
             let ring = tessellation.neighbours(owner);
             let members = || std::iter::once(owner).chain(ring.iter().map(|&cell| cell as usize));

@@ -216,12 +216,11 @@ impl<S: Arithmetic> Backwards<S> {
             let [mut on_this, mut on_next] = corners[m].pull_back(on_vertex);
             let by_next = Outer { column: -turns[after].column, row: turns[after].row };
             let force = held.on_vertex(area_gradient, perimeter_gradient);
-            let [of_this, of_next] = corners[m].pull_back_slopes(force, [turns[m], by_next]);
-            let back = |block: [S; 4], u: Vector<S>| {
-                Vector::new(block[0] * u.x + block[2] * u.y, block[1] * u.x + block[3] * u.y)
-            };
-            on_this += back(of_this[0], u[m]) + back(of_next[0], u[after]);
-            on_next += back(of_this[1], u[m]) + back(of_next[1], u[after]);
+            let slopes = [turns[m], by_next];
+            let [more_on_this, more_on_next] =
+                corners[m].pull_back_slopes_transposed(force, slopes, [u[m], u[after]]);
+            on_this += more_on_this;
+            on_next += more_on_next;
             on_ring[m] += on_this;
             on_ring[after] += on_next;
             on_cell -= on_this + on_next;

@@ -1,19 +1,18 @@
 //! The sparse Jacobian of the terms, row by row from elements.
 
 use crate::block_matrix::Block;
-use crate::chunk::CHUNK;
 use crate::element_blocks::ElementBlocks;
 use crate::has_velocity::has_velocity;
+use crate::tiles::tiles;
 use crate::{BlockMatrix, Model};
 use rayon::prelude::*;
-use std::ops::Range;
 use voronudge_geometry::{Tessellation, Vector};
 
 /// Builds Jacobians one after another in the same memory.
 #[derive(Debug, Default)]
 pub struct JacobianBuilder {
     /// Rows that are made at once, by one thread, from elements that stay in its cache. Elements of cells beside them are worked out again for
-    /// each tile: cheaper than bringing those of all cells from memory, unless neighbours are far apart in number.
+    /// each tile: cheaper than bringing those of all cells from memory.
     tiles: Vec<Pattern>,
 }
 
@@ -26,49 +25,67 @@ impl JacobianBuilder {
         model: &Model<f64>,
         matrix: &mut BlockMatrix,
     ) {
-        self.find_pattern(tessellation, matrix);
+        self.find_pattern(tessellation, positions, &mut matrix.row_start);
         let BlockMatrix { row_start, column, block } = matrix;
-        block.resize(column.len(), [0.0; 4]);
-        let (row_start, mut rest, mut rows) = (&*row_start, block.as_mut_slice(), Vec::new());
-        for Pattern { cells, .. } in &self.tiles {
-            let (own, after) = rest.split_at_mut(row_start[cells.end] - row_start[cells.start]);
-            rest = after;
-            rows.push(own);
-        }
-        self.tiles.par_iter().zip(rows).for_each_init(
+        let blocks = row_start.last().copied().unwrap_or(0);
+        column.resize(blocks, 0);
+        block.resize(blocks, [0.0; 4]);
+        let columns = rows_of_tiles(column, row_start, &self.tiles);
+        let blocks = rows_of_tiles(block, row_start, &self.tiles);
+        self.tiles.par_iter().zip(columns).zip(blocks).for_each_init(
             || ElementBlocks::new(tessellation, positions, model),
-            |elements, (tile, block)| {
-                elements.evaluate(tile.cells.clone());
-                block.fill([0.0; 4]);
-                let (offset, mut places) = (row_start[tile.cells.start], tile.places.as_slice());
-                for cell in tile.cells.clone() {
-                    let row = &mut block[row_start[cell] - offset..row_start[cell + 1] - offset];
+            |elements, ((tile, columns), blocks)| {
+                elements.evaluate(&tile.cells);
+                let (mut places, mut known) = (tile.places.as_slice(), tile.columns.as_slice());
+                for ((&cell, columns), row) in tile.cells.iter().zip(columns).zip(blocks) {
+                    let (own, rest) = known.split_at(columns.len());
+                    columns.copy_from_slice(own);
+                    known = rest;
+                    row.fill([0.0; 4]);
                     if !row.is_empty() {
-                        places = fill_row(elements, tessellation, cell, places, row);
+                        places = fill_row(elements, tessellation, cell as usize, places, row);
                     }
                 }
             },
         );
     }
 
-    fn find_pattern(&mut self, tessellation: &Tessellation, matrix: &mut BlockMatrix) {
+    fn find_pattern(
+        &mut self,
+        tessellation: &Tessellation,
+        positions: &[Vector<f64>],
+        row_start: &mut Vec<usize>,
+    ) {
         let cells = tessellation.len();
-        self.tiles.resize_with(cells.div_ceil(CHUNK), Pattern::default);
-        self.tiles.par_iter_mut().enumerate().for_each_init(
+        let tiles = tiles(tessellation, positions);
+        self.tiles.resize_with(tiles.len(), Pattern::default);
+        self.tiles.par_iter_mut().zip(tiles).for_each_init(
             || vec![(u32::MAX, 0); cells],
-            |seen, (tile, pattern)| {
-                pattern.find(tessellation, tile * CHUNK..((tile + 1) * CHUNK).min(cells), seen)
-            },
+            |seen, (pattern, cells)| pattern.find(tessellation, cells, seen),
         );
-        matrix.row_start.clear();
-        matrix.column.clear();
-        matrix.row_start.push(0);
-        for Pattern { ends, columns, .. } in &self.tiles {
-            let before = matrix.column.len();
-            matrix.row_start.extend(ends.iter().map(|end| before + end));
-            matrix.column.extend_from_slice(columns);
+        row_start.clear();
+        row_start.resize(cells + 1, 0);
+        for Pattern { cells, ends, .. } in &self.tiles {
+            let mut before = 0;
+            for (&cell, &end) in cells.iter().zip(ends) {
+                row_start[cell as usize + 1] = end - before;
+                before = end;
+            }
+        }
+        for row in 0..cells {
+            row_start[row + 1] += row_start[row];
         }
     }
+}
+
+/// What the rows of a matrix have in an array, tile by tile.
+fn rows_of_tiles<'a, T>(array: &'a mut [T], row_start: &[usize], tiles: &[Pattern]) -> Vec<Vec<&'a mut [T]>> {
+    let mut rest = array;
+    let lengths = row_start.windows(2).map(|ends| ends[1] - ends[0]);
+    let mut rows: Vec<&mut [T]> =
+        lengths.map(|length| rest.split_off_mut(..length).unwrap_or_default()).collect();
+    let mut row = |cell: &u32| std::mem::take(&mut rows[*cell as usize]);
+    tiles.iter().map(|tile| tile.cells.iter().map(&mut row).collect()).collect()
 }
 
 /// Adds what the elements of a cell and of its ring do to the cell, and returns the places of the next rows.
@@ -100,7 +117,7 @@ fn fill_row<'a>(
 /// The columns of some rows. A velocity depends on the cell, its neighbours, and their neighbours.
 #[derive(Debug, Default)]
 struct Pattern {
-    cells: Range<usize>,
+    cells: Vec<u32>,
     /// Number of columns up to the end of each row.
     ends: Vec<usize>,
     columns: Vec<u32>,
@@ -111,15 +128,15 @@ struct Pattern {
 
 impl Pattern {
     /// `seen` has, of each column, the row in which it was seen last, and its place there.
-    fn find(&mut self, tessellation: &Tessellation, cells: Range<usize>, seen: &mut [(u32, u32)]) {
+    fn find(&mut self, tessellation: &Tessellation, cells: Vec<u32>, seen: &mut [(u32, u32)]) {
         let Self { ends, columns, places, .. } = self;
         ends.clear();
         columns.clear();
         places.clear();
-        for cell in cells.clone() {
-            let (row, first) = (cell as u32, columns.len());
-            if has_velocity(tessellation, cell) {
-                for &k in std::iter::once(&row).chain(tessellation.neighbours(cell)) {
+        for &row in &cells {
+            let first = columns.len();
+            if has_velocity(tessellation, row as usize) {
+                for &k in std::iter::once(&row).chain(tessellation.neighbours(row as usize)) {
                     for &j in std::iter::once(&k).chain(tessellation.neighbours(k as usize)) {
                         let (last, place) = &mut seen[j as usize];
                         if *last != row {

@@ -19,13 +19,14 @@ fn rosette(petals: usize) -> Vec<Vector<f64>> {
     cells
 }
 
-/// Boxes in which cells meet themselves, a large one, an open field, cells of many sides.
+/// Boxes in which cells meet themselves, a large one, open fields numbered in rows and at random, cells of many sides.
 fn tissues() -> Result<Vec<Tissue>, voronudge_geometry::Error> {
     Ok(vec![
         (random(1, [1.0, 1.0], 3), periodic([1.0, 1.0])?),
         (random(5, [2.0, 2.5], 4), periodic([2.0, 2.5])?),
         (random(3000, [50.0, 60.0], 5), periodic([50.0, 60.0])?),
         (jittered(40, 40, 0.4, 6), Domain::Open),
+        (random(2000, [50.0, 40.0], 7), Domain::Open),
         (rosette(24), Domain::Open),
     ])
 }

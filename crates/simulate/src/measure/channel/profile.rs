@@ -114,6 +114,9 @@ impl ChannelProfile {
             _ => 0.5 * (values[around[face][0].0] + values[around[face][1].0]) / area,
         };
         let from_middle = |values: &[f64], face: usize| at_face(values, face) - at_face(values, middle);
+        let virial = |sample: &Sample, row: usize, column: usize| -> Vec<f64> {
+            sample.virial.iter().map(|virial| virial[row][column]).collect()
+        };
         let flux = |sample: &Sample, face: usize| {
             let [left, right] = around[face].map(|(bin, sign)| sign * sample.displacement[0][bin]);
             (right - left) / width
@@ -129,7 +132,7 @@ impl ChannelProfile {
             stress: [0, 1].map(|row| {
                 [0, 1].map(|column| {
                     over_bins(&move |sample: &Sample, bin| {
-                        (sample.virial[row][column][bin] / area, sample.duration)
+                        (sample.virial[bin][row][column] / area, sample.duration)
                     })
                 })
             }),
@@ -143,11 +146,11 @@ impl ChannelProfile {
             }),
             transport: over_faces(&|sample, face| (transport(sample, face), sample.duration)),
             shear_stress: over_faces(&|sample, face| {
-                (-from_middle(&sample.virial[1][0], face), sample.duration)
+                (-from_middle(&virial(sample, 1, 0), face), sample.duration)
             }),
             torque: over_faces(&|sample, face| {
-                let [[_, xy], [yx, _]] = &sample.virial;
-                (0.5 * (from_middle(xy, face) - from_middle(yx, face)), sample.duration)
+                let [xy, yx] = [[0, 1], [1, 0]].map(|[row, column]| virial(sample, row, column));
+                (0.5 * (from_middle(&xy, face) - from_middle(&yx, face)), sample.duration)
             }),
         }
     }

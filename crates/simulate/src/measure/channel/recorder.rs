@@ -42,7 +42,7 @@ pub(super) struct Sample {
     /// Displacements along x and y.
     pub displacement: [Vec<f64>; 2],
     /// Virials `−f ⊗ d` of bonds times time, row = component of the force, by the share of the bond in the bin (Irving and Kirkwood).
-    pub virial: [[Vec<f64>; 2]; 2],
+    pub virial: Vec<[[f64; 2]; 2]>,
     pub births: Vec<f64>,
     pub deaths: Vec<f64>,
     /// Births minus deaths. While counting, at all faces from edge to edge; then as [`Sample::between_walls`] and the others say.
@@ -93,9 +93,9 @@ impl ChannelRecorder {
             let virial = force * to.transpose() * -step.time_step;
             along(from.x / width, (from.x + to.x) / width, |bin, share| {
                 let (bin, sign) = mirrored(bin);
-                for (row, sums) in sample.virial.iter_mut().enumerate() {
+                for (row, sums) in sample.virial[bin].iter_mut().enumerate() {
                     for (column, sum) in sums.iter_mut().enumerate() {
-                        sum[bin] += if row == column { share } else { sign * share } * virial[(row, column)];
+                        *sum += if row == column { share } else { sign * share } * virial[(row, column)];
                     }
                 }
             });
@@ -152,7 +152,7 @@ impl Sample {
             duration: 0.0,
             residence: zeros(),
             displacement: [zeros(), zeros()],
-            virial: [[zeros(), zeros()], [zeros(), zeros()]],
+            virial: vec![[[0.0; 2]; 2]; bins],
             births: zeros(),
             deaths: zeros(),
             net_at_face: vec![0.0; bins + 1],
@@ -188,7 +188,12 @@ impl Sample {
             duration: self.duration,
             residence: fold(&self.residence, 1.0),
             displacement: [0, 1].map(|axis| fold(&self.displacement[axis], -1.0)),
-            virial: self.virial.each_ref().map(|row| row.each_ref().map(|entry| fold(entry, 1.0))),
+            virial: (0..bins / 2)
+                .map(|bin| {
+                    let [left, right] = [bin, bins - 1 - bin].map(|bin| self.virial[bin]);
+                    [0, 1].map(|row| [0, 1].map(|column| left[row][column] + right[row][column]))
+                })
+                .collect(),
             births: fold(&self.births, 1.0),
             deaths: fold(&self.deaths, 1.0),
             net_at_face: faces.collect(),
