@@ -136,7 +136,7 @@ pub(crate) struct Factor<T: Number> {
 enum Coupling<T: Number> {
     /// `U₁₂ = L⁻¹ P F₁₂`, beside `L₂₁ = F₂₁ U⁻¹`.
     Eliminated(Mat<T>),
-    /// `F₁₂` and `F₂₁` as they are in the sparse matrix, which takes a fifth of the memory.
+    /// `F₁₂` and `F₂₁` as they are in the sparse matrix, which takes less memory.
     Given(Vec<Blocks<T>>),
 }
 
