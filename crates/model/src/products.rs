@@ -32,7 +32,7 @@ pub fn jvp(
 
 /// `Jᵀ w`: the derivative of `Σ_i w_i·v_i` by each position (N). What `w` (N) has for cells without a velocity does not matter.
 ///
-/// Functions of areas and perimeters are differentiated backwards, element by element, for two to three times the price of the forces; models with
+/// Functions of areas and perimeters are differentiated backwards, element by element, for about twice the price of the forces; models with
 /// other terms, responses or differing cells by [`jacobian`], and as exactly as that.
 ///
 /// With `u` the difference of `w` from that of the cell, an element has `Σ_a g_a·u_a = Σ_m f_m·δc_m`: forces on vertices times how
