@@ -45,8 +45,8 @@ pub(crate) struct Ritz {
     pub vector: Vec<Complex64>,
 }
 
-/// The wanted eigenvalues, best first; those whose residual is above the tolerance did not converge in time. Tells how many per cent are `done`. For a real operator all is real
-/// but for what is returned.
+/// The wanted eigenvalues, best first; those whose residual is above the tolerance did not converge in time. Tells how many per cent are
+/// `done`. For a real operator all is real but for what is returned.
 pub(crate) fn arnoldi<T: Number>(
     order: usize,
     settings: &Settings,

@@ -18,10 +18,10 @@ pub(crate) fn tiles(tessellation: &Tessellation, positions: &[Vector<f64>]) -> V
         let neighbours = tessellation.neighbours(cell).iter();
         neighbours.filter(|&&other| other as usize / CHUNK != cell / CHUNK).count()
     };
-    let leaving: usize = (0..cells).into_par_iter().with_min_len(CHUNK).map(leaving).sum();
-    if leaving as f64 <= LEAVING * tessellation.half_edges() as f64 {
-        let all: Vec<u32> = (0..cells as u32).collect();
-        return all.chunks(CHUNK).map(<[u32]>::to_vec).collect();
+    let leaving = || (0..cells).into_par_iter().with_min_len(CHUNK).map(leaving).sum::<usize>();
+    if cells <= CHUNK || leaving() as f64 <= LEAVING * tessellation.half_edges() as f64 {
+        let tile = |first: usize| (first as u32..(first + CHUNK).min(cells) as u32).collect();
+        return (0..cells).step_by(CHUNK).map(tile).collect();
     }
     let wrapped: Vec<Vector<f64>> = positions.par_iter().map(|r| domain.wrap(*r)).collect();
     let ends = |[low, high]: [Vector<f64>; 2], r: &Vector<f64>| [low.inf(r), high.sup(r)];

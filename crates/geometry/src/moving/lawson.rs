@@ -98,12 +98,10 @@ impl Lawson {
         self.parts.resize_with(parts, Part::default);
         self.waiting.resize_with(parts, Waiting::default);
         self.queue.clear();
-        let Some((last, full)) = self.parts.split_last_mut() else { return };
-        for (part, cells) in
-            full.iter_mut().map(|part| (part, CHUNK)).chain([(last, cells - CHUNK * (parts - 1))])
-        {
-            if part.slot.len() != cells {
-                *part = Part { slot: vec![UNTOUCHED; cells], ..Part::default() };
+        for (k, part) in self.parts.iter_mut().enumerate() {
+            let own = CHUNK.min(cells - k * CHUNK);
+            if part.slot.len() != own {
+                *part = Part { slot: vec![UNTOUCHED; own], ..Part::default() };
             }
         }
     }

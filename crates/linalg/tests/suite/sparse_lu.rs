@@ -7,7 +7,7 @@ use voronudge_linalg::{BlockSparse, Complex64, Error, Wanted, nearest};
 /// ones, the last of which has fronts that are shared out to threads, some.
 #[test]
 fn solutions_satisfy_real_and_complex_equations_and_their_transposes() {
-    for (side, count) in [(1, 2), (4, 32), (12, 60), (30, 8)] {
+    for (side, count) in [(1, 2), (4, 32), (12, 60), (30, 8), (70, 6)] {
         let matrix = sample::lattice(side, 0.8);
         let (transposed, n) = (matrix.transposed(), matrix.order());
         for shift in [Complex64::new(0.3, 0.7), Complex64::new(0.3, 0.0)] {

@@ -109,14 +109,12 @@ impl ChannelProfile {
             (if face <= middle { between(face, middle) } else { -between(middle, face) }) * width / area
         };
         // No shear stress and no torque at a wall: they are opposite in the mirror.
-        let at_face = |values: &[f64], face: usize| match walls {
+        let at_face = |value: &dyn Fn(usize) -> f64, face: usize| match walls {
             Some(walls) if walls.contains(&face) => 0.0,
-            _ => 0.5 * (values[around[face][0].0] + values[around[face][1].0]) / area,
+            _ => 0.5 * (value(around[face][0].0) + value(around[face][1].0)) / area,
         };
-        let from_middle = |values: &[f64], face: usize| at_face(values, face) - at_face(values, middle);
-        let virial = |sample: &Sample, row: usize, column: usize| -> Vec<f64> {
-            sample.virial.iter().map(|virial| virial[row][column]).collect()
-        };
+        let from_middle =
+            |value: &dyn Fn(usize) -> f64, face: usize| at_face(value, face) - at_face(value, middle);
         let flux = |sample: &Sample, face: usize| {
             let [left, right] = around[face].map(|(bin, sign)| sign * sample.displacement[0][bin]);
             (right - left) / width
@@ -146,11 +144,12 @@ impl ChannelProfile {
             }),
             transport: over_faces(&|sample, face| (transport(sample, face), sample.duration)),
             shear_stress: over_faces(&|sample, face| {
-                (-from_middle(&virial(sample, 1, 0), face), sample.duration)
+                (-from_middle(&|bin| sample.virial[bin][1][0], face), sample.duration)
             }),
             torque: over_faces(&|sample, face| {
-                let [xy, yx] = [[0, 1], [1, 0]].map(|[row, column]| virial(sample, row, column));
-                (0.5 * (from_middle(&xy, face) - from_middle(&yx, face)), sample.duration)
+                let [xy, yx] = [[0, 1], [1, 0]]
+                    .map(|[row, column]| from_middle(&|bin| sample.virial[bin][row][column], face));
+                (0.5 * (xy - yx), sample.duration)
             }),
         }
     }
